@@ -95,8 +95,7 @@ class ObservedRecording(Observed):
 
 def _unit(x: FloatArray) -> FloatArray:
     sizes = lengths(x)[:, :, None]
-    unit: FloatArray = np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
-    return unit
+    return np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
 
 
 def verify_recording(

@@ -162,8 +162,7 @@ def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
 
 def centred(x: FloatArray) -> FloatArray:
     """Return vectors of all agents less their mean, shape (T, n, m)."""
-    apart: FloatArray = x - centres(x)[:, None]
-    return apart
+    return x - centres(x)[:, None]
 
 
 def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:

@@ -145,13 +145,13 @@ def test_algebra_decides_all_cases():
 
 
 def test_an_erratum_has_the_status_of_its_claims():
-    item = erratum(
-        "E0",
-        title="1 + 1 is 2",
-        statement="1 + 1 = 2",
-        source="arithmetic",
-        check=lambda tolerances: [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)],
-        expected={"refuted": "printed", "verified": "corrected"},
-    )
+    @erratum("E0", title="1 + 1 is 2", source="arithmetic")
+    def item(tolerances):
+        """1 + 1 = 2,
+        not 3.
+        """
+        return [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)]
+
+    assert item.statement == "1 + 1 = 2, not 3."
     assert dict(item.expected) == {"E0": "refuted", "E0:printed": "refuted", "E0:corrected": "verified"}
     assert [claim.status for claim in item.examine(Tolerances())[1]] == ["refuted", "verified"]

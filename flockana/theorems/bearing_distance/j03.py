@@ -47,7 +47,17 @@ def _pairing(mu: float) -> tuple[float, float]:
     return best, float(true.real.max())
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J3",
+    source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
+    expected={"refuted": "printed hurwitz", "verified": "trees"},
+    corrected=("trees",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees both are
+    triangular in one order, and it is right; on an undirected path it is not, and A_cl can be unstable though every
+    edge is longer than desired.
+    """
     from flockana.symbolic.spanning_trees import tree_characteristic
 
     residuals = {str(edges): tree_characteristic(edges).residuals[0] for edges in _TREE_SHAPES}
@@ -75,17 +85,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "triangular in one order",
         ),
     ]
-
-
-THEOREM = erratum(
-    "J3",
-    statement=(
-        "After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees "
-        "both are triangular in one order, and it is right; on an undirected path it is not, and A_cl can be "
-        "unstable though every edge is longer than desired."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
-    check=_check,
-    expected={"refuted": "printed hurwitz", "verified": "trees"},
-    corrected=("trees",),
-)

@@ -39,7 +39,17 @@ def _loop() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J4",
+    source="Jond, bearing-distance flocking, section 4, (28) to (35)",
+    expected={"refuted": "28 identity", "verified": "34 loop"},
+    corrected=("loop",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: together
+    they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds D_in Dᵀ, where D_in
+    keeps the receivers' entries alone.
+    """
     signs = "(28) as printed has the wrong sign before q", "the identity before (34) has the wrong sign, too"
     return [
         _identity("28", "separation = -(d W Dᵀ) p + (d W) q", signs[0], disproof=_PROOF),
@@ -47,17 +57,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right", proof=_PROOF),
         _loop(),
     ]
-
-
-THEOREM = erratum(
-    "J4",
-    statement=(
-        "(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: "
-        "together they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds "
-        "D_in Dᵀ, where D_in keeps the receivers' entries alone."
-    ),
-    source="Jond, bearing-distance flocking, section 4, (28) to (35)",
-    check=_check,
-    expected={"refuted": "28 identity", "verified": "34 loop"},
-    corrected=("loop",),
-)

@@ -61,13 +61,11 @@ class TreeCase:
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
-        A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
-        return A
+        return twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return ‖x_e‖ of each edge, shape (..., n − 1)."""
-        lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
-        return lengths
+        return np.linalg.norm(edge_vectors(q, self.links), axis=-1)
 
     @property
     def ends(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:

@@ -48,8 +48,7 @@ class AlignmentRate:
         from scipy.integrate import quad
 
         power = 1.0 - 2.0 * self.weight.decay
-        value: float = quad(lambda w: cosh(w) ** power, start, end, epsabs=0.0, epsrel=1e-12, limit=200)[0]
-        return value
+        return quad(lambda w: cosh(w) ** power, start, end, epsabs=0.0, epsrel=1e-12, limit=200)[0]
 
     def beyond(self, start: float) -> float:
         """Return ∫φ from a number to infinity; infinite for β <= ½."""

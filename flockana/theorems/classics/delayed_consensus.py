@@ -23,8 +23,7 @@ _SWEEP = 1e-9  # relative: to which a sweep locates a crossing that double roots
 
 
 def _net(n: int, pairs: list[tuple[int, int]]) -> FloatArray:
-    dense: FloatArray = laplacian(n, np.array(pairs, dtype=np.int32)).toarray()
-    return dense
+    return laplacian(n, np.array(pairs, dtype=np.int32)).toarray()
 
 
 def _nets() -> dict[str, tuple[DelaySystem, float]]:
@@ -117,7 +116,19 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "delayed-consensus",
+    title="Consensus bears a delay below π/(2 λ_n), and none above",
+    source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
+    references=("olfati-saber-murray-2004",),
+    expected={"verified": "margin below above root-below root-above average"},
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever it
+    is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at the frequency
+    λ_n. Compared with the delay margin that the library finds for any flock, on nets whose spectrum is known, and with
+    the rightmost root just below and just above it.
+    """
     nets = _nets()
     return [
         _margin(nets),
@@ -127,19 +138,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _exact("root-above", 1),
         _average(nets),
     ]
-
-
-THEOREM = erratum(
-    "delayed-consensus",
-    title="Consensus bears a delay below π/(2 λ_n), and none above",
-    statement=(
-        "Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever "
-        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at "
-        "the frequency λ_n. Compared with the delay margin that the library finds for any flock, on nets whose "
-        "spectrum is known, and with the rightmost root just below and just above it."
-    ),
-    source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
-    check=_check,
-    references=("olfati-saber-murray-2004",),
-    expected={"verified": "margin below above root-below root-above average"},
-)

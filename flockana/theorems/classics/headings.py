@@ -84,7 +84,21 @@ def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connec
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "jlm-headings",
+    title="Nearest-neighbour averaging: headings agree under joint connectivity",
+    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
+    law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
+    claims=("hull", "contraction", "agreement"),
+    references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
+    ours=("hull", "contraction"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one speed.
+    If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start on, across each
+    of which the agents are linked together, all headings tend to a common one. No heading ever leaves the span of those
+    before, and over n - 1 such intervals the span shrinks by a factor that the nets guarantee.
+    """
     run = seen.run
     if unmet(needs := [_plain(run.law), _every_step(run)]):
         return needs, []
@@ -99,22 +113,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _contraction(headings, averaging.blocks(nets, headings, windows), needs),
         _limit(run, headings[-1], [*needs, lasting], connected),
     ]
-
-
-THEOREM = run_theorem(
-    id="jlm-headings",
-    title="Nearest-neighbour averaging: headings agree under joint connectivity",
-    statement=(
-        "Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one "
-        "speed. If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start "
-        "on, across each of which the agents are linked together, all headings tend to a common one. No heading ever "
-        "leaves the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets "
-        "guarantee."
-    ),
-    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
-    check=_check,
-    law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
-    claims=("hull", "contraction", "agreement"),
-    references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
-    ours=("hull", "contraction"),
-)

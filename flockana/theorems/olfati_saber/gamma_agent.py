@@ -40,8 +40,7 @@ def _between(t: FloatArray) -> FloatArray:
     """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
     middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
     halves = np.stack([middle - half, middle + half], axis=1)
-    nodes: FloatArray = halves[:, :, None] + half[:, None, None] * _NODES
-    return nodes
+    return halves[:, :, None] + half[:, None, None] * _NODES
 
 
 def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
@@ -98,8 +97,7 @@ def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
 def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
     """Return the mean of a velocity over intervals from its Gauss nodes on the last axis."""
     values = np.array([velocity(float(time)) for time in nodes.ravel()]).reshape(*nodes.shape, -1)
-    mean: FloatArray = np.einsum("...kc,k->...c", values, _WEIGHTS)
-    return mean
+    return np.einsum("...kc,k->...c", values, _WEIGHTS)
 
 
 def consistent(run: Trajectory) -> Hypothesis:

@@ -31,8 +31,7 @@ def _rests(tube: Tube) -> Hypothesis:
 def _declared_velocity(tube: Tube) -> FloatArray:
     """Return p_r, which is constant on a straight path."""
     terms = tube.law.target.harmonic.terms
-    declared: FloatArray = terms[1] + terms[4]
-    return declared
+    return terms[1] + terms[4]
 
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:

@@ -9,7 +9,7 @@ from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import erratum, judged, of_state
 from flockana.theorems.slides.claims_on_energy import rises
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Trajectory, observed, stacked
+from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
@@ -61,8 +61,7 @@ def _following() -> list[Claim]:
 def _own_energy(run: Trajectory) -> FloatArray:
     """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
     apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
-    own: FloatArray = run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
-    return own
+    return run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
 
 
 def _claims_on(seen: Observed, speed: float) -> list[Claim]:
@@ -104,17 +103,17 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     ]
 
 
-THEOREM = erratum(
+@erratum(
     "directed-nets",
     title="Directed nets: what holds of Algorithms 1 to 3 and what fails",
-    statement=(
-        "Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, "
-        "all round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H "
-        "may rise. An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − "
-        "p_j‖², and follows it."
-    ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
-    check=lambda tolerances: [_undirected(), _momentum(), *_following()],
     expected={"verified": "undirected momentum-lost energy-rises follower leader"},
     author="flockana",
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, all
+    round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H may rise.
+    An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − p_j‖², and follows
+    it.
+    """
+    return [_undirected(), _momentum(), *_following()]

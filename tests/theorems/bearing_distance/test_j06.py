@@ -39,7 +39,7 @@ def test_one_claim_stands_for_all(monkeypatch, statuses, status, modes):
         return SimpleNamespace(doubt="", unresolved="")
 
     monkeypatch.setattr(j06, "observed", noted)
-    monkeypatch.setattr(j06, "zone_1_corrected", SimpleNamespace(THEOREM=corrected(statuses, modes)))
+    monkeypatch.setattr(j06, "zone_1_corrected", SimpleNamespace(theorem=corrected(statuses, modes)))
     claims = theorem("J6").examine(Tolerances())[1]
     assert [claim.name for claim in claims] == [f"{name}-{m}" for name, m in CASES]
     for claim, (law, q, p, span), (name, m) in zip(claims, runs, CASES, strict=True):

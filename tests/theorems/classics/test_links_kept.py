@@ -7,12 +7,12 @@ import pytest
 
 import flockana as fl
 from flockana.laws.link_keeping import LinkKeeping
-from flockana.theorems.classics.links_kept import THEOREM
+from flockana.theorems.classics.links_kept import theorem
 from flockana.theorems.observed import Observed
 
 
 def checked(run):
-    return {claim.name: claim for claim in THEOREM.check(Observed.alone(run), fl.Tolerances())[1]}
+    return {claim.name: claim for claim in theorem.check(Observed.alone(run), fl.Tolerances())[1]}
 
 
 @pytest.fixture(scope="module")

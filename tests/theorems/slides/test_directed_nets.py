@@ -19,12 +19,12 @@ def run():
 
 @pytest.fixture(scope="module")
 def claims():
-    return {claim.name: claim for claim in directed_nets.THEOREM.examine(Tolerances())[1]}
+    return {claim.name: claim for claim in directed_nets.theorem.examine(Tolerances())[1]}
 
 
 def test_they_say_what_is_expected(claims):
     expected = {f"directed-nets:{name}": claim.status for name, claim in claims.items()}
-    assert expected | {"directed-nets": "verified"} == dict(directed_nets.THEOREM.expected)
+    assert expected | {"directed-nets": "verified"} == dict(directed_nets.theorem.expected)
 
 
 def test_one_range_for_all_gives_the_laws(claims):
