@@ -84,11 +84,13 @@ def conclude(
             detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
         else:
             status, how, cites = proved, RIGOUR[key], CITES.get(key, ())
+    ends = (float(end) for end in (margin.mid, margin.lo, margin.hi))
+    best = next((end for end in ends if np.isfinite(end)), 0.0)  # finite, so that a search can compare margins
     return Claim(
         name,
         status,
         how,
-        margin=(best := _finite(margin)),
+        margin=best,
         error=float(best - margin.lo if best >= 0.0 else margin.hi - best),
         proof=proof,
         disproof=disproof,
@@ -124,12 +126,6 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
     if "unmet" in known:
         return "vacuous"
     return status if "assumed" not in known or (status == "verified" and about == "run") else "inconclusive"
-
-
-def _finite(margin: Enclosure) -> float:
-    """Return a margin's best value, or a finite substitute, so that a search can compare margins."""
-    ends = (float(margin.mid), float(margin.lo), float(margin.hi))
-    return next((end for end in ends if np.isfinite(end)), 0.0)
 
 
 def counted(name: str, most: int, certain: int, possible: int, needs: Needs = (), **fields: Any) -> Claim:
@@ -324,7 +320,7 @@ def erratum(
             source=source,
             kind="fixed",
             check=lambda tolerances: ([], check(tolerances)),
-            references=references or SOURCES.get(name[0], SOURCES["E"]),
+            references=references or SOURCES.get(name[0], ("olfati-saber-2006",)),
             **{"corrected": tuple({"corrected"} & each.keys()), **fields},
         )
         by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)

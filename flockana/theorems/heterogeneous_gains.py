@@ -26,17 +26,16 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
     problem = gain_problem(hexagonal_spiral(n, alpha.d), alpha=alpha, gains=Gains(), **options)
     best = design_gains(problem, starts=1)
     margin, error = best.ratio - 1.0 - _WORTH, _ratio_error(best)
-    found: dict[str, Any] = {
-        "computed": {"n": n, "alike": best.rate_homogeneous, "per agent": best.rate_heterogeneous},
-        "stated": "gains of its own for each agent make the slowest mode die out faster than one pair for all, by "
+    sure = margin > error  # else another search may find more
+    claim = spectral(name, margin, error) if sure else undecided(name, "", margin=margin, error=error)
+    return claim.described(
+        computed={"n": n, "alike": best.rate_homogeneous, "per agent": best.rate_heterogeneous},
+        stated="gains of its own for each agent make the slowest mode die out faster than one pair for all, by "
         f"more than {_WORTH:.0%}",
-        "witness": {"ratio": best.ratio},
-        "detail": f"n = {n}, {words}, gains within [0, 5]: decay rate {best.rate_homogeneous:.4f} with equal gains, at "
+        witness={"ratio": best.ratio},
+        detail=f"n = {n}, {words}, gains within [0, 5]: decay rate {best.rate_homogeneous:.4f} with equal gains, at "
         f"least {best.rate_heterogeneous:.4f} with gains for each agent, {100.0 * (best.ratio - 1.0):.2g} % faster",
-    }
-    if margin > error:
-        return spectral(name, margin, error, **found)
-    return undecided(name, margin=margin, error=error, **found)  # another search may find more
+    )
 
 
 def _ratio_error(design: GainDesign) -> float:

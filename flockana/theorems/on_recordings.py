@@ -81,16 +81,10 @@ class ObservedRecording(Observed):
         recorded = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
         ways = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
         ways.append((_unit(run.u), _unit(centred(run.p))))
-        moved = (
-            [
-                replace(run, q=run.q + sign * off_q * a, p=run.p + sign * off_p * b, between=None)
-                for a, b in ways
-                for sign in (1.0, -1.0)
-            ]
-            if np.isfinite(off_q).all() and np.isfinite(off_p).all()
-            else []
-        )
-        return (recorded, *moved)
+        if not (np.isfinite(off_q).all() and np.isfinite(off_p).all()):
+            return (recorded,)
+        signed = [(sign * off_q * a, sign * off_p * b) for a, b in ways for sign in (1.0, -1.0)]
+        return (recorded, *(replace(run, q=run.q + x, p=run.p + v, between=None) for x, v in signed))
 
 
 def _unit(x: FloatArray) -> FloatArray:

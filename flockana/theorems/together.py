@@ -24,7 +24,8 @@ class Verdicts(tuple[Verdict, ...]):
 
     def rows(self) -> list[tuple[str, str, str, str, str]]:
         """Return (theorem, status, rigour, name of the deciding claim, title) of each verdict."""
-        return [(v.theorem, v.status, v.rigour, _deciding(v), _title(v.theorem)) for v in self]
+        titles = {name: item.title for name, item in catalogue().items()}
+        return [(v.theorem, v.status, v.rigour, _deciding(v), titles.get(v.theorem, "")) for v in self]
 
     def __str__(self) -> str:
         rows = [
@@ -58,11 +59,6 @@ def _deciding(verdict: Verdict) -> str:
     return (
         next((c.name for c in verdict.main_claims if c.status == verdict.status), "") if missed is None else missed.name
     )
-
-
-def _title(name: str) -> str:
-    known = catalogue().get(name)
-    return known.title if known is not None else ""
 
 
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:

@@ -4,9 +4,7 @@ from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
-
-_CLAIMS = ("bounded", "rate", "velocities")
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem
 
 
 @run_theorem(
@@ -14,7 +12,7 @@ _CLAIMS = ("bounded", "rate", "velocities")
     title="For β <= ½ every start becomes a flock, at an exponential rate",
     source="Cucker and Smale 2007",
     law=law_is("the Cucker-Smale law", CuckerSmale),
-    claims=_CLAIMS,
+    claims=("bounded", "rate", "velocities"),
     references=("cucker-smale-2007",),
 )
 def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
@@ -25,5 +23,4 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     it (ha-liu).
     """
     beta = seen.law.weight.decay
-    needs = [condition("β <= ½", beta <= 0.5, 0.5 - beta, f"β = {beta:g}")]
-    return needs, [] if unmet(needs) else Guarantee(seen, sqrt(2.0)).claims(_CLAIMS, needs, proof="cucker-smale")
+    return Guarantee(seen, sqrt(2.0)).claims([condition("β <= ½", beta <= 0.5, 0.5 - beta, f"β = {beta:g}")])

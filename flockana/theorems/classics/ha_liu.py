@@ -4,15 +4,14 @@ from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem
 
 _NAMES = ("bounded", "rate", "flock")
 
 
 def _checked(seen: Observed, stretch: float) -> Checked:
     guarantee = Guarantee(seen, stretch)
-    needs = [guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
-    return needs, [] if unmet(needs) else guarantee.claims(_NAMES, needs, proof="cucker-smale")
+    return guarantee.claims([guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")], limit="flock")
 
 
 @run_theorem(

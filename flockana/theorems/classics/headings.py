@@ -16,16 +16,15 @@ _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart
 
 
-def _plain(law: HeadingAveraging) -> Hypothesis:
-    """Return the hypothesis that headings are averaged as numbers, without noise."""
+def _kinds(run: Trajectory) -> list[Hypothesis]:
+    """Return the hypotheses that headings are averaged as numbers, without noise, and that every step is kept."""
+    law, steps = run.law, np.diff(run.t)
     plain = law.average == "headings" and law.noise == 0.0
-    return condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}")
-
-
-def _every_step(run: Trajectory) -> Hypothesis:
-    steps = np.diff(run.t)
-    kept = "heading" in run.extra and bool(np.all(np.abs(steps - run.law.dt) <= _EVERY * run.law.dt))
-    return condition("every step is kept", kept, detail=f"{len(run.t)} samples")
+    kept = "heading" in run.extra and bool(np.all(np.abs(steps - law.dt) <= _EVERY * law.dt))
+    return [
+        condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}"),
+        condition("every step is kept", kept, detail=f"{len(run.t)} samples"),
+    ]
 
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
@@ -100,7 +99,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     before, and over n - 1 such intervals the span shrinks by a factor that the nets guarantee.
     """
     run = seen.run
-    if unmet(needs := [_plain(run.law), _every_step(run)]):
+    if unmet(needs := _kinds(run)):
         return needs, []
     headings = run.extra["heading"]
     nets = [run.law.links(q) for q in run.q[:-1]]

@@ -8,9 +8,9 @@ _AWAY = Fraction(1, 100)  # of a turn: how far two agents head to either side of
 _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turned
 
 
-def averaged(headings: tuple[Fraction, ...], zero: Fraction = Fraction(0)) -> Fraction:
-    """The mean of headings in turns, each counted in [zero, zero + 1), as a direction in [0, 1)."""
-    counted = [zero + (heading - zero) % 1 for heading in headings]
+def averaged(headings: tuple[Fraction, ...]) -> Fraction:
+    """The mean of headings in turns, each counted in [0, 1), as a direction in [0, 1)."""
+    counted = [heading % 1 for heading in headings]
     return (sum(counted, start=Fraction(0)) / len(counted)) % 1
 
 

@@ -148,11 +148,6 @@ class Components:
         error = (n + 16.0) * EPS * (extent + self.r) + bent + 2.0 * off
         return float((nearest - self.r - radius[a] - radius[b]).min()) / self.r, error / self.r
 
-    @property
-    def parting(self) -> bool:
-        """Whether the components certainly separate."""
-        return self.separation.certain
-
     @cached_property
     def separation(self) -> Certificate:
         """Certificate that no two components ever meet, and that their centres move apart without bound."""

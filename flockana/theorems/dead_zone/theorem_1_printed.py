@@ -14,7 +14,7 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
     """Return 1 − R/r of the limit, and its evidence; None where unknown."""
     if end.count > 1:
         apart = end.separation
-        return Enclosure.around(-apart.margin, apart.error) if end.parting else None, apart.text
+        return Enclosure.around(-apart.margin, apart.error) if apart.certain else None, apart.text
     (whole,), r = end.members, end.r
     caught = whole.basin.certificate
     if whole.size == 1 or caught.certain:

@@ -188,11 +188,6 @@ def _rates(run: Trajectory) -> FloatArray:
     return np.array([[term.act(t, q, p, np.zeros_like(q)) for term in run.law.terms] for t, q, p in rows])
 
 
-def _sizes(run: Trajectory) -> FloatArray:
-    """Magnitude of all terms of dH/dt at each sample, which may cancel each other."""
-    return np.abs(_rates(run)).sum(axis=1)
-
-
 def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
     """Return the two claims about a user's law: no term adds energy, and the energy balances."""
     rates = _rates(seen.run)
@@ -200,8 +195,9 @@ def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
     status: HypothesisStatus = "unmet" if most > (seen.n**2 + 64) * EPS * largest else "assumed"
     name = "no term adds energy"
     falls = Hypothesis(name, status, -most, f"at the samples a term adds {max(most, 0.0):.3g} per time at most")
-    claims = [] if status == "unmet" else [never_rises(seen, [falls], cancels=_sizes)]
-    claims += [balance(seen, smooth_where_needed(seen), tolerances)]
+    claims = [balance(seen, smooth_where_needed(seen), tolerances)]
+    if status != "unmet":
+        claims.insert(0, never_rises(seen, [falls], cancels=lambda run: np.abs(_rates(run)).sum(axis=1)))
     return [falls], [replace(claim, by="flockana") for claim in claims]
 
 

@@ -9,7 +9,7 @@ from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import erratum, judged, of_state
 from flockana.theorems.slides.claims_on_energy import rises
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
@@ -52,20 +52,17 @@ def _momentum() -> Claim:
     )
 
 
-def _following() -> list[Claim]:
-    """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
-    speed = 1.0
-    return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [speed]], (0.0, 30.0), rtol=1e-10), speed)
-
-
 def _own_energy(run: Trajectory) -> FloatArray:
     """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
     apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
     return run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
 
 
-def _claims_on(seen: Observed, speed: float) -> list[Claim]:
-    law, run = seen.law, seen.run
+def _following() -> list[Claim]:
+    """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
+    law, speed = _pair(), 1.0
+    seen = observed(law, [[0.0], [7.0]], [[0.0], [speed]], (0.0, 30.0), rtol=1e-10)
+    run = seen.run
     energy = seen.series(
         lambda run: np.array([law.law.energy(0.0, q, p) for q, p in zip(run.q, run.p, strict=True)]),
         floor=seen.floors.work,

@@ -10,7 +10,6 @@ from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observe
 @erratum(
     "E1",
     source="slides, collective dynamics",
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:

@@ -11,7 +11,6 @@ from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observe
 @erratum(
     "E2",
     source="slides, Algorithm 3",
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:

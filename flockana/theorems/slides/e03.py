@@ -144,7 +144,6 @@ def _compressed(tolerances: Tolerances) -> Claim:
 @erratum(
     "E3",
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"refuted": "double-agent smallest strained algorithm-2"},
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:

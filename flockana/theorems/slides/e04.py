@@ -133,7 +133,6 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
 @erratum(
     "E4",
     source="slides, Theorem 1(iii)",
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"verified": "printed found vacuous barrier together"},
     ours=("found", "vacuous", "barrier", "together"),
 )

@@ -57,9 +57,9 @@ def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
     q, p = [[0.0, 0.0], [100.0, 15.0 + offset]], [[1.0, 0.0], [-1.0, 0.0]]
     found = components_of(np.array(q), np.array(p), LAW)
     if offset > 0.0:
-        assert found.parting if offset >= 1e-9 else True
+        assert found.separation.certain if offset >= 1e-9 else True
     else:
-        assert not found.parting
+        assert not found.separation.certain
     run = simulate(LAW, q, p, (0.0, 10.0))
     status = said("dead-zone-1-printed", run)["velocity"]
     assert status == ("refuted" if offset >= 1e-6 else "inconclusive") or 0.0 < offset < 1e-6
