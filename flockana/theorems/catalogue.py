@@ -89,13 +89,11 @@ def theorem(name: str | Theorem) -> Theorem:
 def _printed_as(name: str) -> Theorem:
     """Return the theorem that its source prints under a name such as "Theorem 3"."""
     wanted = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
-    found = {
-        i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])
-    }
+    found = [x for x in catalogue().values() if x.id[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])]
     if len(found) == 1:
-        return catalogue()[next(iter(found))]
+        return found[0]
     if found:
-        listed = "; ".join(f"{i} ({source})" for i, source in found.items())
+        listed = "; ".join(f"{x.id} ({x.source})" for x in found)
         raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
     raise UnknownNameError("theorem", name, theorems())
 

@@ -67,9 +67,8 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS
     ends = [predicted(law, run.t, run.q, run.p, refine=refine) for refine in (_FINE, _FINE // 2)]
-    led, rough = (
-        np.array([law.hamiltonian(*row) for row in zip(run.t[1:].tolist(), *end, strict=True)]) for end in ends
-    )
+    t = run.t[1:].tolist()
+    led, rough = (np.array([law.hamiltonian(*row) for row in zip(t, *end, strict=True)]) for end in ends)
     change, defect = np.diff(energy), energy[1:] - led
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
     own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"

@@ -172,11 +172,8 @@ def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
     """Accuracy of places and velocities, shape (T, n)."""
-    place, speed = (
-        np.broadcast_to(np.asarray(each, dtype=np.float64), rec.q.shape[:2])
-        for each in (rec.accuracy.place, rec.accuracy.speed)
-    )
-    return place, speed
+    place, speed = (np.asarray(each, dtype=np.float64) for each in (rec.accuracy.place, rec.accuracy.speed))
+    return np.broadcast_to(place, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
 
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
@@ -187,9 +184,8 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     zeros = np.zeros(rec.q.shape)
     given = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
     if seen.doubt or len(run.t) != len(rec.t) or doubt_about(given):
-        return ObservedRecording(
-            given, run, seen.other, seen.errors, seen.doubt or doubt_about(given) or "the run ended"
-        )
+        doubt = seen.doubt or doubt_about(given) or "the run ended"
+        return ObservedRecording(given, run, seen.other, seen.errors, doubt)
     place, (apart, slip) = _widths(rec)[0], (rec.q - run.q, p - run.p)
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:

@@ -376,9 +376,8 @@ class Theorem:
             text, made = self.reason.format(**known).removesuffix(": "), {claim.name for claim in claims}
             left_out = (name for name in self.claims if name not in made)
             claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
-        return tuple(hypotheses), tuple(
-            claim if claim.by != "source" else replace(claim, by=self.by(claim.name)) for claim in claims
-        )
+        owners = (self.by(claim.name) if claim.by == "source" else claim.by for claim in claims)
+        return tuple(hypotheses), tuple(replace(claim, by=by) for claim, by in zip(claims, owners, strict=True))
 
 
 def statement_of(check: Callable[..., Any]) -> str:

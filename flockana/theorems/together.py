@@ -56,9 +56,9 @@ class Verdicts(tuple[Verdict, ...]):
 def _deciding(verdict: Verdict) -> str:
     """Return the name of the first claim with the verdict's own status; of a vacuous one, the unmet hypothesis."""
     missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
-    return (
-        next((c.name for c in verdict.main_claims if c.status == verdict.status), "") if missed is None else missed.name
-    )
+    if missed is not None:
+        return missed.name
+    return next((c.name for c in verdict.main_claims if c.status == verdict.status), "")
 
 
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:

@@ -39,10 +39,8 @@ def _pairing(mu: float) -> tuple[float, float]:
     true = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
     best = np.inf
     for gammas in permutations(np.linalg.eigvals(stiffness)):
-        roots = [
-            root for m, g in zip(np.linalg.eigvals(damping), gammas, strict=True) for root in np.roots([1.0, m, g])
-        ]
-        gap = np.abs(np.array(roots)[:, None] - true)
+        pairs = zip(np.linalg.eigvals(damping), gammas, strict=True)
+        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - true)
         best = min(best, float(gap[linear_sum_assignment(gap)].max()))
     return best, float(true.real.max())
 

@@ -27,9 +27,8 @@ def _loop() -> Claim:
     D, D_in = incidence(5, _TREE), receivers(5, _TREE)
     w = 0.7 * (1.0 - 1.3 / np.linalg.norm(edge_vectors(q, _TREE), axis=1))
     u = law.acceleration(0.0, q, p)
-    error, undirected = (
-        float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
-    )  # W^a = I on a tree
+    # W^a = I on a tree
+    error, undirected = (float(np.abs(-L * w @ D.T @ q - L @ D.T @ p - u).max()) for L in (D_in, D))
     return of_state("loop", _SAME - error / float(np.abs(u).max()), _ROUNDING).described(
         computed=error,
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",

@@ -36,9 +36,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """Remark 3 calls the bearing form with the estimate (17) equivalent. (17) leaves out the global speed term and both
     bounds: estimates drift away from the velocities, and the flock disperses.
     """
-    estimated, measured = (
-        runs_from_random_starts(ZoneFlocking(own_velocity=name)) for name in ("estimated", "measured")
-    )
+    laws = (ZoneFlocking(own_velocity=name) for name in ("estimated", "measured"))
+    estimated, measured = map(runs_from_random_starts, laws)
     drift = [float(np.linalg.norm(run.extra["estimate"][-1] - run.p[-1], axis=1).mean()) for run in estimated]
     flocks = [int(components(run.n, links(run.q[-1], 5.0)).max()) + 1 for run in estimated]
     connected = [not components(run.n, links(run.q[-1], 5.0)).any() for run in measured]

@@ -116,9 +116,7 @@ class Guarantee:
         """Hypothesis ‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
         v0 = self.seen.velocity_spread[0]
         if self.integral_to_infinity.lo == inf:
-            return Hypothesis(
-                name, "met", 1.0, f"β = {self.seen.law.continuous.weight.decay:g}: the integral is infinite"
-            )
+            return Hypothesis(name, "met", 1.0, f"β = {self.phi.weight.decay:g}: the integral is infinite")
         detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
         return positive_room(name, self.integral_to_infinity - v0, detail)
 

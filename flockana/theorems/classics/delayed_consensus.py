@@ -36,9 +36,8 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
         "star of 5": (_net(5, star), 5.0),
         "complete net of 4": (_net(4, whole), 4.0),
     }
-    flock = delay_system(
-        Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0)), hexagonal_patch(1, Algorithm1().alpha.length)
-    )
+    law = Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0))
+    flock = delay_system(law, hexagonal_patch(1, law.alpha.length))
     top = float(np.linalg.eigvalsh(flock.late[1])[-1])
     nets = {name: (consensus_system(matrix), largest) for name, (matrix, largest) in known.items()}
     free = replace(flock, neutral=consensus_system(flock.late[1]).neutral)  # nothing holds any place, not only rigidly
@@ -130,11 +129,5 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     the rightmost root just below and just above it.
     """
     nets = _nets()
-    return [
-        _margin(nets),
-        _side("below", -1, nets),
-        _side("above", 1, nets),
-        _exact("root-below", -1),
-        _exact("root-above", 1),
-        _average(nets),
-    ]
+    sides, roots = (("below", -1), ("above", 1)), (("root-below", -1), ("root-above", 1))
+    return [_margin(nets), *(_side(*side, nets) for side in sides), *(_exact(*root) for root in roots), _average(nets)]

@@ -56,20 +56,16 @@ def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
-    enough = condition(
-        f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
-    )
+    name = f"n - 1 = {n - 1} jointly connected windows in a row"
+    enough = condition(name, bool(found), detail=f"{len(found)} times in the run")
     slowest = max((b.factor for b in found), default=float("nan"))
+    first = (missed[0].start, missed[0].stop) if missed else None
+    text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
     return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF).described(
         computed=slowest,
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
-        witness={
-            "blocks": len(found),
-            "steps of the first missed": (missed[0].start, missed[0].stop) if missed else None,
-        },
-        detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
-        if found
-        else does_not_hold(enough.name),
+        witness={"blocks": len(found), "steps of the first missed": first},
+        detail=text if found else does_not_hold(name),
     )
 
 

@@ -18,9 +18,8 @@ def _joined(seen: Observed) -> Hypothesis:
     """The hypothesis that the links join all agents."""
     ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
     parts = len({*components(seen.n, ends).tolist()})
-    return condition(
-        "the links join all agents", parts == 1, float(1 - parts), f"{parts} component(s), {len(ends)} links"
-    )
+    text = f"{parts} component(s), {len(ends)} links"
+    return condition("the links join all agents", parts == 1, float(1 - parts), text)
 
 
 def longest_link(seen: Observed) -> Enclosure:

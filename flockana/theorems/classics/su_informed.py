@@ -44,11 +44,8 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     here: links may be as weak as one likes when they come and go, and a run shows its own end only.
     """
     run = observed.run
-    needs = [
-        leader_frame.some_informed(run),
-        positive(observed, c1_alpha="c1α", c2_alpha="c2α"),
-        leader_frame.constant_velocity(run),
-    ]
+    gains, steady = positive(observed, c1_alpha="c1α", c2_alpha="c2α"), leader_frame.constant_velocity(run)
+    needs = [leader_frame.some_informed(run), gains, steady]
     if unmet(needs):
         return needs, []
     seen = leader_frame.as_the_leader_sees(observed)

@@ -97,10 +97,8 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     acceleration, leaves a lag.
     """
     run = observed.run
-    needs = [
-        condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent),
-        _is_feedforward(run),
-    ]
+    alike = condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
+    needs = [alike, _is_feedforward(run)]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]

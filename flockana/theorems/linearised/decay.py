@@ -86,17 +86,16 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
     error = max(each.exponent_error for each in ranges.values())
     bend = sqrt(1.0 + alpha.eps * alpha.d**2) / alpha.d**2  # σ₁'s argument is 1 where ‖q_ij‖_σ is off by 1
-    limits = "; ".join(
-        f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
-    )
+    limits = [f"{name}: 1 % at {x.limit(0.01):.2g} d, 10 % at {x.limit(0.1):.2g} d" for name, x in ranges.items()]
     return spectral("range", margin, error).described(
         computed={
-            name: {key.replace("_", " "): getattr(each, key) for key in _RANGE_FIELDS} for name, each in ranges.items()
+            name: {key.replace("_", " "): getattr(x, key) for key in _RANGE_FIELDS} for name, x in ranges.items()
         },
         stated="a run leaves its linear prediction by a distance that grows as the square of the amplitude",
         witness={"σ₁ bends at": bend, "a link reaches r at": {name: each.margin for name, each in ranges.items()}},
-        detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of {limits}. σ₁ "
-        f"saturates where a link is off by {bend:.2g} d, and that ends the linear range, long before a link reaches r",
+        detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of "
+        f"{'; '.join(limits)}. σ₁ saturates where a link is off by {bend:.2g} d, and that ends the linear range, long "
+        "before a link reaches r",
     )
 
 

@@ -45,6 +45,5 @@ def theorem(run: Observed, tolerances: Tolerances) -> Checked:
     pairs = meeting(run)
     above = energy_at_start(run) - pairs.floor
     bounds = {name: below_multiple(above, pairs.c_star, k) for name, k in _MULTIPLES.items()}
-    return [*needs, *bounds.values()], [
-        no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
-    ]
+    claims = [no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()]
+    return [*needs, *bounds.values()], claims

@@ -219,7 +219,5 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     if is_own(seen.law):
         return _own_terms(seen, tolerances)
     rest, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
-    return [*rest, *rates], [
-        never_rises(seen, rest, proof=proof),
-        balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof),
-    ]
+    balanced = balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof)
+    return [*rest, *rates], [never_rises(seen, rest, proof=proof), balanced]

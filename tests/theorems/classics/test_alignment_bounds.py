@@ -93,7 +93,7 @@ def test_how_exactly_a_fall_is_known_far_from_rest():
     phi, x0 = AlignmentRate(law.weight, 2.0, sqrt(2.0)), spread(run.q)[0]
     x_m = phi.reached(x0, v0)
     rate = phi(x_m)
-    claim = Guarantee(Observed.alone(run), sqrt(2.0)).claims(("bounded", "rate", "flock"), [], "cucker-smale")[1]
+    claim = Guarantee(Observed.alone(run), sqrt(2.0)).claims([])[1][1]
     assert claim.computed == pytest.approx(np.log(v0 / v) / 2.0, rel=1e-9)
     assert claim.margin == pytest.approx(np.log(v0 / v) / (2.0 * rate) - 1.0, rel=1e-6)
     x_blur, v_blur = (sqrt(2.0) * (2 + 4) * np.finfo(float).eps * np.abs(z).max() for z in (run.q, run.p))
