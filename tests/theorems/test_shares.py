@@ -32,15 +32,11 @@ def test_always(outcomes, status):
 @pytest.mark.parametrize(
     ("outcomes", "status"),
     [
-        (20 * YES, "verified"),
-        (20 * YES + 5 * OPEN, "verified"),
-        (20 * YES + 15 * OPEN, "inconclusive"),
-        (3 * YES, "inconclusive"),
-        (20 * NO, "refuted"),
-        (20 * NO + 5 * OPEN, "refuted"),
+        (20 * YES, "verified"), (20 * YES + 5 * OPEN, "verified"), (20 * YES + 15 * OPEN, "inconclusive"),
+        (3 * YES, "inconclusive"), (20 * NO, "refuted"), (20 * NO + 5 * OPEN, "refuted"),
         (20 * NO + 15 * OPEN, "inconclusive"),
     ],
-)
+)  # fmt: skip
 def test_mostly(outcomes, status):
     claim = mostly("x", outcomes, "it holds", "mostly")
     assert claim.status == status

@@ -1,5 +1,7 @@
 """Erratum E7: C* is a share of nodes, though it is printed as a share of edges."""
 
+from typing import Any
+
 import numpy as np
 
 from flockana.measures.metrics import connectivity, giant_share
@@ -19,7 +21,8 @@ def _components(*sizes: int) -> FloatArray:
 def _share(name: str, share: float, count: int, of: int, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a given number of a total."""
     stated = f"{count / of:g}" if of == 100 else f"{count}/{of}"
-    claim = by_count(name, abs(round(of * share) - count), **{"disproof" if name == "printed" else "proof": _PROOF})
+    proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
+    claim = by_count(name, abs(round(of * share) - count), **proof)
     return claim.described(computed=share, stated=stated, witness=witness, detail=detail)
 
 

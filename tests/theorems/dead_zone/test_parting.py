@@ -18,12 +18,6 @@ def test_parts_tell_receding_from_approaching():
     assert not components_of(q, 0.0 * q, law).separation.certain  # they stay apart, but at one velocity
 
 
-def test_parts_may_pass_each_other_beyond_range_only():
-    law, p = DeadZoneFlocking(), np.array([[1.0, 0.0], [-1.0, 0.0]])
-    for offset, certain in ((15.1, True), (14.9, False)):
-        assert components_of(np.array([[0.0, 0.0], [100.0, offset]]), p, law).separation.certain is certain
-
-
 def test_centres_that_recede_do_not_part_what_can_still_reach_out():
     """A pair that is about to break up sends an agent after the other part, so its centre says nothing.
 
