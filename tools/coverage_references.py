@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -17,7 +17,7 @@ from flockana.report.coverage import Reference, Source
 from flockana.report.coverage.anchors import is_erratum
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems
-from flockana.theorems.theorem import Theorem
+from flockana.theorems.catalogue import theorems_in
 
 _CHECKOUT = Path(__file__).resolve().parents[1]  # the folder that holds the package
 
@@ -94,24 +94,12 @@ def _file(found: Any, holder: Any) -> str:
 
 @cache
 def _theorem_files() -> dict[str, str]:
-    return dict(_defined("flockana.theorems", "THEOREM", _theorem_ids))
+    return {item.id: str(m.__file__) for m in modules("flockana.theorems") for item in theorems_in(m).values()}
 
 
 @cache
 def _scenario_files() -> dict[str, str]:
-    return dict(_defined("flockana.scenarios", "SCENARIOS", tuple))
-
-
-def _defined(package: str, attribute: str, ids: Callable[[Any], tuple[str, ...]]) -> Iterator[tuple[str, str]]:
-    """Return (name, file) of all that the modules of a package define under an attribute."""
-    for module in modules(package):
-        for name in ids(getattr(module, attribute, ())):
-            yield name, str(module.__file__)
-
-
-def _theorem_ids(defined: Any) -> tuple[str, ...]:
-    several = defined if isinstance(defined, tuple) else (defined,)
-    return tuple(item.id for item in several if isinstance(item, Theorem))
+    return {name: str(m.__file__) for m in modules("flockana.scenarios") for name in getattr(m, "SCENARIOS", ())}
 
 
 def _scenario(name: str) -> str:

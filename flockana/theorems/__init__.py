@@ -1,4 +1,4 @@
-"""Theorems and errata: every file of this package that defines `THEOREM` is in the catalogue."""
+"""Theorems and errata: all that the files of this package define are in the catalogue."""
 
 from flockana.theorems.catalogue import theorem, theorems, verify
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict

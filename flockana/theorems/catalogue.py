@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 import numpy as np
@@ -32,13 +33,14 @@ _REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are j
 
 @cache
 def catalogue() -> dict[str, Theorem]:
-    """Return all theorems by id, from the `THEOREM` of every module of this package."""
-    by_id: dict[str, Theorem] = {}
-    for module in modules("flockana.theorems"):
-        defined = getattr(module, "THEOREM", None)
-        several = defined if isinstance(defined, tuple) else (defined,)
-        by_id |= {item.id: item for item in several if isinstance(item, Theorem)}
+    """Return all theorems by id, from every module of this package."""
+    by_id = {item.id: item for module in modules("flockana.theorems") for item in theorems_in(module).values()}
     return dict(sorted(by_id.items(), key=lambda pair: _natural(pair[0])))
+
+
+def theorems_in(module: ModuleType) -> dict[str, Theorem]:
+    """Return the theorems that a module defines, by their names in it."""
+    return {name: item for name, item in vars(module).items() if isinstance(item, Theorem)}
 
 
 def _natural(name: str) -> tuple[Any, ...]:
@@ -57,13 +59,13 @@ def theorems() -> tuple[str, ...]:
     return tuple(catalogue())
 
 
-def theorem(name: str) -> Theorem:
+def theorem(name: str | Theorem) -> Theorem:
     """Return a theorem by its id or printed name: its statement, its source, the cases it is checked on.
 
     Parameters
     ----------
     name : str
-        One of `theorems`, or the name that its source prints, such as "Theorem 3".
+        One of `theorems`, or the name that its source prints, such as "Theorem 3"; a theorem is returned as it is.
 
     Raises
     ------
@@ -77,6 +79,8 @@ def theorem(name: str) -> Theorem:
     >>> theorem("os-3").kind, theorem("Theorem 3").id
     ('trajectory', 'os-3')
     """
+    if isinstance(name, Theorem):
+        return name
     if not isinstance(name, str):
         raise UnknownNameError("theorem", name, theorems())
     return catalogue().get(name) or _printed_as(name)
@@ -85,13 +89,11 @@ def theorem(name: str) -> Theorem:
 def _printed_as(name: str) -> Theorem:
     """Return the theorem that its source prints under a name such as "Theorem 3"."""
     wanted = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
-    found = {
-        i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])
-    }
+    found = [x for x in catalogue().values() if x.id[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])]
     if len(found) == 1:
-        return catalogue()[next(iter(found))]
+        return found[0]
     if found:
-        listed = "; ".join(f"{i} ({source})" for i, source in found.items())
+        listed = "; ".join(f"{x.id} ({x.source})" for x in found)
         raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
     raise UnknownNameError("theorem", name, theorems())
 
@@ -174,34 +176,25 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
-    if _is("recording", trajectory):
-        if basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
-            raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
-        from flockana.theorems.on_recordings import verify_recording, verify_recording_together
-
-        used, case = Tolerances() if tolerances is None else tolerances, {"law": law, "d": d, "r": r}
-        if name is None:
-            return verify_recording_together(trajectory, used, **case, subject=subject)
-        item = name if isinstance(name, Theorem) else theorem(name)
-        return verify_recording(item, trajectory, used, **case, subject=subject)
-    if name is None:
-        from flockana.theorems.together import verify_together  # which checks each theorem by this function
-
-        run = _run(trajectory, law, q0, p0, t_span)
-        return verify_together(run, tolerances=tolerances, subject=subject)
-    item = name if isinstance(name, Theorem) else theorem(name)
     used = Tolerances() if tolerances is None else tolerances
     if not isinstance(used, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
-    motion = {"law": law, "q0": q0, "p0": p0, "t_span": t_span}
-    still = {"q": q, "d": d, "r": r}
-    given = {k for k, v in {"trajectory": trajectory, **motion, **still}.items() if v is not None}
-    start = given & set(motion) if {"law", "q0"} <= given else set(motion)
-    needed = {"trajectory": ({"trajectory"}, start), "configuration": (set(still),), "fixed": (set(),)}[item.kind]
-    if given not in needed:
-        options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
-        raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
-    if item.kind == "trajectory" and _is("tube", trajectory):
+    if _is("recording", trajectory):
+        if any(each is not None for each in (basin, q0, p0, t_span, q)):
+            raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
+        from flockana.theorems.on_recordings import verify_recording, verify_recording_together
+
+        case = {"law": law, "d": d, "r": r, "subject": subject}
+        if name is None:
+            return verify_recording_together(trajectory, used, **case)
+        return verify_recording(theorem(name), trajectory, used, **case)
+    if name is None:
+        from flockana.theorems.together import verify_together  # which checks each theorem by this function
+
+        return verify_together(_run(trajectory, law, q0, p0, t_span), tolerances=used, subject=subject)
+    item = theorem(name)
+    _ensure_given(item, trajectory=trajectory, law=law, q0=q0, p0=p0, t_span=t_span, q=q, d=d, r=r)
+    if _is("tube", trajectory):
         return _verified_tube(item, trajectory, basin, used, subject)
     if basin is not None:
         raise ArgumentError("a basin decides the limit of a tube: expected verify(theorem, enclose(...), basin=...)")
@@ -211,6 +204,17 @@ def verify(
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
     return item.verdict(item.examine(*subject_data, used), used, subject)
+
+
+def _ensure_given(item: Theorem, **case: Any) -> None:
+    """Raise unless exactly what a theorem is checked on is given."""
+    given = {name for name, value in case.items() if value is not None}
+    motion = {"law", "q0", "p0", "t_span"}
+    start = given & motion if {"law", "q0"} <= given else motion
+    needed = {"trajectory": ({"trajectory"}, start), "configuration": ({"q", "d", "r"},), "fixed": (set(),)}[item.kind]
+    if given not in needed:
+        options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
+        raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
 
 
 def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:

@@ -14,7 +14,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
 from flockana.theorems.headline import does_not_hold, overall
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, By, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
+from flockana.theorems.theorem import About, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances, statement_of
 
 
 def judged(name: str, margin: Enclosure, needs: Needs = (), *, about: About = "run", **fields: Any) -> Claim:
@@ -84,11 +84,13 @@ def conclude(
             detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
         else:
             status, how, cites = proved, RIGOUR[key], CITES.get(key, ())
+    ends = (float(end) for end in (margin.mid, margin.lo, margin.hi))
+    best = next((end for end in ends if np.isfinite(end)), 0.0)  # finite, so that a search can compare margins
     return Claim(
         name,
         status,
         how,
-        margin=(best := _finite(margin)),
+        margin=best,
         error=float(best - margin.lo if best >= 0.0 else margin.hi - best),
         proof=proof,
         disproof=disproof,
@@ -124,12 +126,6 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
     if "unmet" in known:
         return "vacuous"
     return status if "assumed" not in known or (status == "verified" and about == "run") else "inconclusive"
-
-
-def _finite(margin: Enclosure) -> float:
-    """Return a margin's best value, or a finite substitute, so that a search can compare margins."""
-    ends = (float(margin.mid), float(margin.lo), float(margin.hi))
-    return next((end for end in ends if np.isfinite(end)), 0.0)
 
 
 def counted(name: str, most: int, certain: int, possible: int, needs: Needs = (), **fields: Any) -> Claim:
@@ -284,52 +280,50 @@ def erratum(
     name: str,
     *,
     title: str = "",
-    statement: str,
     source: str,
-    check: Callable[[Tolerances], list[Claim]],
     expected: Mapping[Status, str] = _EXPECTED,
     references: tuple[str, ...] = (),
-    author: By = "source",
-    corrected: tuple[str, ...] = (),
-    ours: tuple[str, ...] = (),
-) -> Theorem:
-    """Return an erratum: a theorem checked without a user's run, with expected statuses of its claims.
+    **fields: Any,
+) -> Callable[[Callable[[Tolerances], list[Claim]]], Theorem]:
+    """Return a decorator that makes an erratum of a function: a theorem checked without a user's run.
+
+    The function returns the claims, from the tolerances; its docstring is the statement.
 
     Parameters
     ----------
-    title, statement, source : str
+    title, source : str
         As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
-    check : callable
-        Returns the claims, from the tolerances.
     expected : mapping of str to str
         By expected status the names of claims, with blanks between; by default of "printed" and "corrected". The
         status of the whole follows from them.
     references : tuple of str
         Keys of the bibliography; by default the source of the numbered errata of that letter.
-    author, corrected, ours
-        As in `Theorem`; by default a claim of the name "corrected" is one.
+    **fields
+        `author`, `corrected` and `ours`, as in `Theorem`; by default a claim of the name "corrected" is one.
 
     Examples
     --------
-    >>> two = erratum(
-    ...     "two", title="1 + 1 is 2", statement="1 + 1 = 2", source="arithmetic",
-    ...     check=lambda tolerances: [exact("sum", 1 + 1 == 2)], expected={"verified": "sum"},
-    ... )
+    >>> @erratum("two", title="1 + 1 is 2", source="arithmetic", expected={"verified": "sum"})
+    ... def two(tolerances):
+    ...     "1 + 1 = 2."
+    ...     return [exact("sum", 1 + 1 == 2)]
     >>> dict(two.expected), two.examine(Tolerances())[1][0].status
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
     each = {claim: status for status, claims in expected.items() for claim in claims.split()}
-    item = Theorem(
-        id=name,
-        title=title or printed(name),
-        statement=statement,
-        source=source,
-        kind="fixed",
-        check=lambda tolerances: ([], check(tolerances)),
-        references=references or SOURCES.get(name[0], SOURCES["E"]),
-        author=author,
-        corrected=corrected or tuple({"corrected"} & each.keys()),
-        ours=ours,
-    )
-    by_author = overall(status for claim, status in each.items() if item.by(claim) == author)
-    return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})
+
+    def made(check: Callable[[Tolerances], list[Claim]]) -> Theorem:
+        item = Theorem(
+            id=name,
+            title=title or printed(name),
+            statement=statement_of(check),
+            source=source,
+            kind="fixed",
+            check=lambda tolerances: ([], check(tolerances)),
+            references=references or SOURCES.get(name[0], ("olfati-saber-2006",)),
+            **{"corrected": tuple({"corrected"} & each.keys()), **fields},
+        )
+        by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)
+        return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})
+
+    return made

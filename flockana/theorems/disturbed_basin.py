@@ -74,11 +74,6 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
     return condition(name, True, margin, detail), _Case(bound, q, p, unit)
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    need, case = _case(seen)
-    return [need], [] if case is None else [_stays(seen, case), _ultimate(seen, case)]
-
-
 def _stays(seen: Observed, case: _Case) -> Claim:
     """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
@@ -126,20 +121,21 @@ def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float) 
     return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached)
 
 
-THEOREM = run_theorem(
-    id="disturbed-basin",
+@run_theorem(
+    "disturbed-basin",
     title="A bounded disturbance leaves a flock near its certified equilibrium",
-    statement=(
-        "If a disturbance d of the accelerations, minus its mean over the agents, is at most W at all times, a flock "
-        "under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and is eventually within W "
-        "c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin falls at "
-        "the rate α wherever it is larger than (W c/α)²."
-    ),
     source="ours",
-    check=_check,
     law=_law,
     claims=_CLAIMS,
     author="flockana",
     wrapped=True,
     references=("olfati-saber-2006",),
 )
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """If a disturbance d of the accelerations, minus its mean over the agents, is at most W at all times, a flock under
+    Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and is eventually within W c/(α √(1 − e))
+    √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin falls at the rate α wherever it is
+    larger than (W c/α)².
+    """
+    need, case = _case(seen)
+    return [need], [] if case is None else [_stays(seen, case), _ultimate(seen, case)]

@@ -15,11 +15,8 @@ SORTS: dict[Sort, str] = {
     "vacuous": "true, but of no flock or of hardly any",
     "confirmed": "examined, and true as printed",
 }
-SOURCES = {
-    "E": ("olfati-saber-2006",),
-    "J": ("jond-2025",),
-    "L": ("li-dead-zone",),
-}  # sources by the first letter of an id
+# sources by the first letter of an id
+SOURCES = {"E": ("geschwender-2016", "olfati-saber-2006"), "J": ("jond-2025",), "L": ("li-dead-zone",)}
 FOREWORD = (
     "E1 to E16 are in lecture slides and student projects on Olfati-Saber's paper of 2006. None is shown to be in the "
     "paper itself; the last column says where that was not looked up. The others are in the papers named."

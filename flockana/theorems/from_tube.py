@@ -12,6 +12,9 @@ from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from flockana.measures.nets import components
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Needs, Tolerances, judged, positive_room
 
@@ -57,8 +60,7 @@ def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
         decide = getattr(import_module(f"flockana.theorems.olfati_saber.{module}"), name)
-        checked: Checked = decide(tube, basin, tolerances)
-        return checked
+        return decide(tube, basin, tolerances)
 
     return check
 
@@ -158,10 +160,8 @@ def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair]
 
 def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
     """Sizes of the connected components of n agents, largest first."""
-    label = list(range(n))
-    for i, j in pairs:
-        label = [label[j] if x == label[i] else x for x in label]
-    return sorted((label.count(x) for x in set(label)), reverse=True)
+    label = components(n, np.array(pairs, dtype=np.int32).reshape(-1, 2))
+    return sorted(np.bincount(label).tolist(), reverse=True)
 
 
 def rest_strain(basin: BasinLike, alpha: Any) -> arb:

@@ -20,9 +20,8 @@ def headline(verdict: Verdict) -> str:
     """Return the counts of the author's claims by status, then each correction and extension with its status."""
     by_author = _counts(verdict, verdict.main_claims)
     others = sorted(verdict.further_claims, key=lambda claim: claim.by)
-    return "; ".join(
-        [by_author, *(f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))]
-    )
+    further = (f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))
+    return "; ".join([by_author, *further])
 
 
 def _counts(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
@@ -31,11 +30,8 @@ def _counts(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
         return "no claim"
     order = dict.fromkeys((verdict.status, "refuted", "inconclusive", "verified", "vacuous"))
     found = {status: sum(claim.status == status for claim in claims) for status in order}
-    texts = [
-        f"{count}{f' of {len(claims)}' if status == verdict.status else ''} {status}"
-        for status, count in found.items()
-        if count
-    ]
+    of = {verdict.status: f" of {len(claims)}"}
+    texts = [f"{count}{of.get(status, '')} {status}" for status, count in found.items() if count]
     return ", ".join(texts) + (_reason(verdict, claims) if found["vacuous"] else "")
 
 

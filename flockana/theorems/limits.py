@@ -70,9 +70,8 @@ def limit_claim(
     claim = conclude(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
     proved = claim.status == "verified" and not best.certain
     if proved:  # no number of this run says how far it holds
-        return replace(
-            claim, margin=None, error=None, detail="; ".join(filter(None, (detail, "proved for every start")))
-        )
+        detail = "; ".join(filter(None, (detail, "proved for every start")))
+        return replace(claim, margin=None, error=None, detail=detail)
     parts = (detail, best.text, "" if best.certain else evidence)
     return replace(claim, detail="; ".join(filter(None, parts)))
 

@@ -25,7 +25,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.claims import with_needs
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.rounding import EPS, energy_rounding
+from flockana.theorems.rounding import EPS, energy_rounding, frame_error
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, failure, largest_over, paired
 from flockana.theorems.step_resolution import NAME
 from flockana.theorems.theorem import Claim, Hypothesis, Known, Needs, Status
@@ -117,11 +117,10 @@ class Observed(ResultCache):
         widths = self._windowed(errors, self.t, self.t)
         if self.begins_exactly:
             widths[0] = 0.0
-        return widths + _rounding(x)
+        return widths + frame_error(x)
 
     def _between_samples(self, errors: FloatArray, x: FloatArray) -> FloatArray:
-        worst: FloatArray = self._windowed(errors, self.t[:-1], self.t[1:]).max(axis=1)
-        return worst + _rounding(x)
+        return self._windowed(errors, self.t[:-1], self.t[1:]).max(axis=1) + frame_error(x)
 
     @property
     def begins_exactly(self) -> bool:
@@ -307,8 +306,3 @@ def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
     """Return the norm over all agents of vectors, each known with an error."""
     sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
     return sizes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)
-
-
-def _rounding(x: FloatArray) -> float:
-    """Return the rounding of each x_i − x_c, x_c a mean of n numbers."""
-    return float((x.shape[1] + 4) * EPS * np.abs(x).max())

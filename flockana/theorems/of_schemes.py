@@ -6,7 +6,6 @@ by the scheme's own defect; whether it falls nevertheless is seen.
 """
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
 from flockana.theorems.olfati_saber.os_6 import start_of_condition
 from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, judged
 
 ON_STEPS = {
     "energy": "where no term adds energy, H rises in a step by no more than the scheme's own defect",
@@ -67,7 +66,9 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS
-    led, rough = (_ends(law, run, refine) for refine in (_FINE, _FINE // 2))
+    ends = [predicted(law, run.t, run.q, run.p, refine=refine) for refine in (_FINE, _FINE // 2)]
+    t = run.t[1:].tolist()
+    led, rough = (np.array([law.hamiltonian(*row) for row in zip(t, *end, strict=True)]) for end in ends)
     change, defect = np.diff(energy), energy[1:] - led
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
     own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
@@ -86,9 +87,3 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
         detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {own}",
     )
     return [replace(claim, by="flockana") for claim in (falls, within)]
-
-
-def _ends(law: Any, run: Trajectory, refine: int) -> FloatArray:
-    """Return H after the law's flow from each sample to the time of the next."""
-    ends = predicted(law, run.t, run.q, run.p, refine=refine)
-    return np.array([law.hamiltonian(float(t), *state) for t, *state in zip(run.t[1:], *ends, strict=True)])

@@ -81,22 +81,15 @@ class ObservedRecording(Observed):
         recorded = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
         ways = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
         ways.append((_unit(run.u), _unit(centred(run.p))))
-        moved = (
-            [
-                replace(run, q=run.q + sign * off_q * a, p=run.p + sign * off_p * b, between=None)
-                for a, b in ways
-                for sign in (1.0, -1.0)
-            ]
-            if np.isfinite(off_q).all() and np.isfinite(off_p).all()
-            else []
-        )
-        return (recorded, *moved)
+        if not (np.isfinite(off_q).all() and np.isfinite(off_p).all()):
+            return (recorded,)
+        signed = [(sign * off_q * a, sign * off_p * b) for a, b in ways for sign in (1.0, -1.0)]
+        return (recorded, *(replace(run, q=run.q + x, p=run.p + v, between=None) for x, v in signed))
 
 
 def _unit(x: FloatArray) -> FloatArray:
     sizes = lengths(x)[:, :, None]
-    unit: FloatArray = np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
-    return unit
+    return np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
 
 
 def verify_recording(
@@ -179,11 +172,8 @@ def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
     """Accuracy of places and velocities, shape (T, n)."""
-    place, speed = (
-        np.broadcast_to(np.asarray(each, dtype=np.float64), rec.q.shape[:2])
-        for each in (rec.accuracy.place, rec.accuracy.speed)
-    )
-    return place, speed
+    place, speed = (np.asarray(each, dtype=np.float64) for each in (rec.accuracy.place, rec.accuracy.speed))
+    return np.broadcast_to(place, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
 
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
@@ -194,9 +184,8 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     zeros = np.zeros(rec.q.shape)
     given = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
     if seen.doubt or len(run.t) != len(rec.t) or doubt_about(given):
-        return ObservedRecording(
-            given, run, seen.other, seen.errors, seen.doubt or doubt_about(given) or "the run ended"
-        )
+        doubt = seen.doubt or doubt_about(given) or "the run ended"
+        return ObservedRecording(given, run, seen.other, seen.errors, doubt)
     place, (apart, slip) = _widths(rec)[0], (rec.q - run.q, p - run.p)
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:

@@ -30,8 +30,7 @@ def spread_error(x: FloatArray) -> FloatArray:
     """Return a bound of the rounding of ½ Σ‖x_i − x_c‖², by instant."""
     size, off = x.shape[1] * x.shape[2], frame_error(x)
     norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), size), axis=1)
-    error: FloatArray = (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
-    return error
+    return (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
 
 
 def pair_force_error(alpha: AlphaInteraction) -> float:
@@ -63,8 +62,7 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     for _ in law.obstacles:
         most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
         error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
-    bound: FloatArray = error + (pairs + n * m + 8) * EPS * size + 2.0 * spread_error(p)
-    return bound
+    return error + (pairs + n * m + 8) * EPS * size + 2.0 * spread_error(p)
 
 
 def deepest_of(pair: PairInteraction) -> float:
@@ -82,5 +80,4 @@ def energy_rounding(run: Trajectory) -> FloatArray:
     energy = run.energy()
     if isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition):
         return energy_error(run.law, run.q, run.p, energy)
-    bound: FloatArray = run.n**2 * EPS * np.abs(energy) + 2.0 * spread_error(run.p)
-    return bound
+    return run.n**2 * EPS * np.abs(energy) + 2.0 * spread_error(run.p)

@@ -32,8 +32,7 @@ def _motion(seen: Observed) -> FloatArray:
 
 def fastest_between(seen: Observed) -> FloatArray:
     """Return an upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,)."""
-    fastest: FloatArray = _motion(seen)[0]
-    return fastest
+    return _motion(seen)[0]
 
 
 def mismatch_over(seen: Observed) -> Enclosure:
@@ -75,8 +74,7 @@ def spread_over(seen: Observed) -> Enclosure:
     def bound() -> FloatArray:
         steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
         sizes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
-        size: FloatArray = seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
-        return size
+        return seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
 
     return _over(seen, seen.spread, bound)
 
@@ -116,8 +114,7 @@ def polygons(run: Trajectory, steps: Iterable[int] | None = None) -> Iterator[tu
 
 def _legs(h: float, points: FloatArray) -> FloatArray:
     """Return the control points of velocities."""
-    legs: FloatArray = 5.0 / h * np.diff(points, axis=1)
-    return legs
+    return 5.0 / h * np.diff(points, axis=1)
 
 
 @dataclass(frozen=True)
@@ -190,8 +187,7 @@ def _unknown_nets(seen: Observed, count: int) -> Nets:
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
     """Return how far a distance may go beyond its end values, given relative speeds and accelerations."""
     straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
-    slack: FloatArray = np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
-    return slack
+    return np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
 
 
 def _relative(run: Trajectory, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:

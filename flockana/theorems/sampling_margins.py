@@ -13,7 +13,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.stability.linearise import linearise
 from flockana.stability.sampling import CLOSE, sampling_margin
-from flockana.theorems.toolkit import Claim, FloatArray, erratum, spectral
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, spectral
 
 _MSN = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
 _MSN_GAINS = Gains(c1_alpha=100.0, c2_alpha=20.0, c1_gamma=70.0, c2_gamma=2.0 * 70.0**0.5)
@@ -60,18 +60,18 @@ def _claim(name: str, words: str, step: DiscreteLaw, q: FloatArray) -> Claim:
     )
 
 
-THEOREM = erratum(
+@erratum(
     "sampling-margins",
     title="How far from instability the sources' time steps are",
-    statement=(
-        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, "
-        "the map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN "
-        "project's 0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly "
-        "for the step; the R² notebook's 0.05 is half of the largest stable step, and its 0.1 nearly all of it."
-    ),
     source="ours, on the steps of the MSN project, the R² notebook and the bearing-distance paper",
-    check=lambda tolerances: [_claim(*step) for step in _steps()],
     author="flockana",
     references=("isola-2024", "notebook-r2", "jond-2025"),
     expected={"verified": "msn-few msn-few-in-place notebook-1 notebook-2 minimal", "refuted": "msn"},
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, the map
+    is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN project's 0.009 is
+    stable for small flocks and not for its 100 agents, whose many links damp too strongly for the step; the R²
+    notebook's 0.05 is half of the largest stable step, and its 0.1 nearly all of it.
+    """
+    return [_claim(*step) for step in _steps()]

@@ -77,9 +77,8 @@ def paired(run: Trajectory) -> Pair:
 def _longest_step(run: Trajectory) -> float | None:
     """Return the longest step that the second run may take; None if it is free."""
     steps, _ = steps_of(run)
-    asked = max(
-        _FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / max(_MOST_STEPS, _TIMES * len(steps))
-    )
+    most = max(_MOST_STEPS, _TIMES * len(steps))
+    asked = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / most)
     method, given = run.stats.get("method"), run.stats.get("max_step") or np.inf
     own = np.inf if "rtol" not in run.stats or method in _LOW_ORDER else _SHARE * float(steps.max())
     bound = min(asked, own, given)
@@ -162,8 +161,7 @@ def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
 
 def centred(x: FloatArray) -> FloatArray:
     """Return vectors of all agents less their mean, shape (T, n, m)."""
-    apart: FloatArray = x - centres(x)[:, None]
-    return apart
+    return x - centres(x)[:, None]
 
 
 def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:

@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
-
 from flockana.base.binomial import clopper_pearson
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
@@ -22,14 +20,6 @@ def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float
     return float(low), float(high)
 
 
-def share(holds: Iterable[bool | None]) -> tuple[int, int, tuple[float, float]]:
-    """Return how often something holds, of how many starts, and the interval of its share; None is undecided."""
-    outcomes = list(holds)
-    unknown = sum(each is None for each in outcomes)
-    count = sum(bool(each) for each in outcomes)
-    return count, len(outcomes), interval(count, len(outcomes), undecided=unknown)
-
-
 def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
     """Return a claim about every start: refuted if the share is below 1 for certain, never verified by a sample."""
     return _judged(name, list(holds), 1.0, what, about="all", stated=stated, witness=witness)
@@ -41,13 +31,13 @@ def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, w
 
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
-    count, size, (low, high) = share(holds)
-    unknown = sum(each is None for each in holds)
+    """Return a claim by the share of the starts for which something holds; None is undecided."""
+    count, size, unknown = sum(map(bool, holds)), len(holds), sum(each is None for each in holds)
+    low, high = interval(count, size, undecided=unknown)
     text = f", undecided in {unknown}" if unknown else ""
-    ends = (np.asarray(end) for end in (low, count / max(size, 1), high))
     return judged(
         name,
-        Enclosure(*ends).widened(INTERVAL_ERROR) - least,
+        Enclosure(low, count / max(size, 1), high).widened(INTERVAL_ERROR) - least,
         computed={"holds": count, "of": size, "share": (low, high)},
         detail=f"{what} in {count} of {size} seeds{text}: a share of {low:.2f} to {high:.2f} ({CONFIDENCE:.0%})",
         **fields,

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import partial
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
@@ -252,6 +251,7 @@ Known = tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]  # what a theorem says 
 Lead = Callable[[Any, Claim], float]
 Needs = Iterable[Hypothesis]  # hypotheses under which something is claimed
 Checked = tuple[list[Hypothesis], list[Claim]]  # what a theorem's `check` returns
+Check = Callable[..., tuple[Needs, Iterable[Claim]]]
 
 
 @dataclass(frozen=True)
@@ -300,14 +300,14 @@ class Theorem:
     statement: str
     source: str
     kind: Kind
-    check: Callable[..., tuple[Needs, Iterable[Claim]]]
+    check: Check
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
     leads: Mapping[str, Lead] = field(default_factory=dict)
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
     reason: str = "{unmet}: {detail}"
-    enclosed: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
+    enclosed: Check | None = None
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
@@ -356,7 +356,7 @@ class Theorem:
         text = f"{does_not_hold(missed.name)}: {missed.detail}".removesuffix(": ")
         return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
 
-    def examine(self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None) -> Known:
+    def examine(self, *case: Any, check: Check | None = None) -> Known:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 
         Parameters
@@ -376,12 +376,43 @@ class Theorem:
             text, made = self.reason.format(**known).removesuffix(": "), {claim.name for claim in claims}
             left_out = (name for name in self.claims if name not in made)
             claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
-        return tuple(hypotheses), tuple(
-            claim if claim.by != "source" else replace(claim, by=self.by(claim.name)) for claim in claims
-        )
+        owners = (self.by(claim.name) if claim.by == "source" else claim.by for claim in claims)
+        return tuple(hypotheses), tuple(replace(claim, by=by) for claim, by in zip(claims, owners, strict=True))
 
 
-run_theorem = partial(Theorem, kind="trajectory")
+def statement_of(check: Callable[..., Any]) -> str:
+    """Return the statement of a theorem: the docstring of the function that checks it, as one paragraph.
+
+    Parameters
+    ----------
+    check : callable
+        The function.
+    """
+    return " ".join((check.__doc__ or "").split())
+
+
+def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
+    """Return a decorator that makes a theorem about runs of the function that checks it.
+
+    Parameters
+    ----------
+    name : str
+        Id of the theorem; its statement is the function's docstring.
+    **fields
+        Further fields of `Theorem`.
+
+    Examples
+    --------
+    >>> @run_theorem("still", title="Nothing moves", source="a toy")
+    ... def theorem(seen, tolerances):
+    ...     "All agents stay where they are."
+    ...     return [], []
+    >>> theorem.statement
+    'All agents stay where they are.'
+    """
+    return lambda check: Theorem(
+        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **fields}
+    )
 
 
 def unmet(hypotheses: Needs) -> Hypothesis | None:

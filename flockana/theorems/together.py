@@ -24,7 +24,8 @@ class Verdicts(tuple[Verdict, ...]):
 
     def rows(self) -> list[tuple[str, str, str, str, str]]:
         """Return (theorem, status, rigour, name of the deciding claim, title) of each verdict."""
-        return [(v.theorem, v.status, v.rigour, _deciding(v), _title(v.theorem)) for v in self]
+        titles = {name: item.title for name, item in catalogue().items()}
+        return [(v.theorem, v.status, v.rigour, _deciding(v), titles.get(v.theorem, "")) for v in self]
 
     def __str__(self) -> str:
         rows = [
@@ -55,14 +56,9 @@ class Verdicts(tuple[Verdict, ...]):
 def _deciding(verdict: Verdict) -> str:
     """Return the name of the first claim with the verdict's own status; of a vacuous one, the unmet hypothesis."""
     missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
-    return (
-        next((c.name for c in verdict.main_claims if c.status == verdict.status), "") if missed is None else missed.name
-    )
-
-
-def _title(name: str) -> str:
-    known = catalogue().get(name)
-    return known.title if known is not None else ""
+    if missed is not None:
+        return missed.name
+    return next((c.name for c in verdict.main_claims if c.status == verdict.status), "")
 
 
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:

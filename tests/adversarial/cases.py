@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,9 @@ class Case:
         """Whether it is integrated so loosely that its samples need not fit its law."""
         return self.options.get("method") == "RK4" or self.options.get("rtol", 0.0) > 1e-6
 
+    @cached_property
     def run(self):
+        """Made once: it remembers its tighter second run for every theorem that asks."""
         return simulate(self.law, self.q0, self.p0, (self.since, self.since + self.until), **self.options)
 
     def __repr__(self):
@@ -53,12 +56,12 @@ def _text(value):
     return repr(value.tolist() if isinstance(value, np.ndarray) else value)
 
 
-def hold(theorem, case, truth, *, run=None, may_refuse=False, **options):
+def hold(theorem, case, truth, *, may_refuse=False):
     """Fail if a verdict says what is not so; `truth` gives the statuses that each claim may have."""
     __tracebackhide__ = True
-    run = case.run() if run is None else run
+    run = case.run
     try:
-        verdict = verify(theorem, run, **options)
+        verdict = verify(theorem, run)
     except ArgumentError as error:  # its samples do not fit its law: rightly said of a step that is far too large
         if may_refuse:
             return None
@@ -80,10 +83,8 @@ def ill_founded(claim, run):
     """What no decided claim by computation may do: have a margin of the other sign, or stand on a run that failed."""
     if claim.rigour != "numeric" or claim.status not in ("verified", "refuted"):
         return ""
-    if run is not None and run.status == "failed":
+    if run.status == "failed":
         return f"{claim.status} on a run that failed"
-    if claim.margin is None:
-        return ""
-    if claim.margin != 0.0 and (claim.margin > 0.0) != (claim.status == "verified"):
+    if claim.margin and (claim.margin > 0.0) != (claim.status == "verified"):
         return f"{claim.status} with a margin of {claim.margin}"
     return ""

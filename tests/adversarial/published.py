@@ -26,10 +26,8 @@ _OF_RUN = 1e-3  # relative, of a margin beyond the errors
 
 def data_of(verdict):
     """What a verdict says, as plain data."""
-    kept = "name by status rigour proof disproof computed stated margin error witness detail"
-    return {
-        claim.pop("name"): claim for claim in ({k: c[k] for k in kept.split()} for c in verdict.to_dict()["claims"])
-    }
+    kept = "by status rigour proof disproof computed stated margin error witness detail"
+    return {claim["name"]: {k: claim[k] for k in kept.split()} for claim in verdict.to_dict()["claims"]}
 
 
 @cache
@@ -62,12 +60,8 @@ def _said_of_run(verdict):
     """Status and margin of each hypothesis; of each claim its error, its value, and how it is known."""
     said = verdict.to_dict()
     needs = {need["name"]: [need["status"], need["margin"]] for need in said["hypotheses"]}
-    kept = ("status", "margin", "error", "computed")
-    claims = {
-        claim["name"]: [*(claim[key] for key in kept), claim["rigour"], claim["proof"], claim["disproof"]]
-        for claim in said["claims"]
-    }
-    return needs | claims
+    kept = ("status", "margin", "error", "computed", "rigour", "proof", "disproof")
+    return needs | {claim["name"]: [claim[key] for key in kept] for claim in said["claims"]}
 
 
 def _as_published(before, after):

@@ -32,10 +32,9 @@ def alphas(draw):
     b = draw(st.sampled_from((5.0, 1.0, 1e-3, 5e4)))
     eps = draw(powers(-3.0, 3.0)) / d**2 if draw(st.booleans()) else 0.1
     h, a = draw(st.sampled_from((0.2, 0.01, 0.5, 0.9, 0.99))), b * draw(st.sampled_from((1.0, 0.5, 0.01)))
+    r = d * draw(st.sampled_from((1.05, 1.2, sqrt(2.0), 1.7, 2.5)))
     try:
-        return AlphaInteraction(
-            d=d, r=d * draw(st.sampled_from((1.05, 1.2, sqrt(2.0), 1.7, 2.5))), eps=eps, h=h, a=a, b=b, unit=unit
-        )
+        return AlphaInteraction(d=d, r=r, eps=eps, h=h, a=a, b=b, unit=unit)
     except ArgumentError:  # a σ-norm that floating point cannot resolve
         assume(False)
 
@@ -61,14 +60,9 @@ def targets(m, length, time):
     def jittering(t):
         return [length * np.sin(2.0 * np.pi * t / time)] * m, [0.0] * m
 
-    some = [
-        StaticTarget(here),
-        StaticTarget(here, away),
-        LinearTarget(here, away),
-        RescaledVelocity(LinearTarget(here, away), 0.5),
-        SineTarget(here, away, 3.0 * length, f, axis=m - 1),
-        CallableTarget(jittering, time),
-    ]
+    line, sine = LinearTarget(here, away), SineTarget(here, away, 3.0 * length, f, axis=m - 1)
+    some = [StaticTarget(here), StaticTarget(here, away), line, RescaledVelocity(line, 0.5), sine]
+    some.append(CallableTarget(jittering, time))
     if m > 1:
         some += [CircleTarget(here, 3.0 * length, f), RescaledVelocity(CircleTarget(here, 2.0 * length, f), -1.0)]
     return st.sampled_from(some)

@@ -61,12 +61,11 @@ def test_short_runs_say_what_was_published(name):
     assert found == [], "if it is meant: python -m tests.adversarial.published"
 
 
-def pairs():
-    every = [(name, change) for name in scenarios() for change in CHANGES]
-    return [pytest.param(*one, marks=() if QUICK.get(one[0]) == one[1] else pytest.mark.attack) for one in every]
+EVERY = [(name, change) for name in scenarios() for change in CHANGES]
+CASES = [pytest.param(*one, marks=() if QUICK.get(one[0]) == one[1] else pytest.mark.attack) for one in EVERY]
 
 
-@pytest.mark.parametrize(("name", "change"), pairs())
+@pytest.mark.parametrize(("name", "change"), CASES)
 def test_expected_statuses(name, change):
     entry = scenario(name)
     start, end = entry.t_span
@@ -75,15 +74,7 @@ def test_expected_statuses(name, change):
         other = CHANGES[change](case, np.random.default_rng(len(name)))
     except (UnchangedError, ArgumentError, TypeError) as why:
         pytest.skip(str(why))
-    span = (other.since, other.since + other.until)
-    changed = replace(
-        entry,
-        law=other.law,
-        q0=np.asarray(other.q0),
-        p0=np.asarray(other.p0),
-        t_span=span,
-        options=other.options,
-        instants=(),  # of the entry's own span
-    )
+    span, q, p = (other.since, other.since + other.until), np.asarray(other.q0), np.asarray(other.p0)
+    changed = replace(entry, law=other.law, q0=q, p0=p, t_span=span, options=other.options, instants=())
     lines = [line for verdict in changed.verify(changed.run()) for line in changed.surprises(verdict)]
     assert lines == []

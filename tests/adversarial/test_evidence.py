@@ -15,7 +15,6 @@ from flockana.certified.certificate import basin_certificate
 from flockana.certified.tube_certificate import tube_certificate
 from flockana.equilibria.record import write_equilibrium
 from flockana.explore.watching import shown
-from flockana.falsify.counterexample import Counterexample
 from flockana.stability.motion import mode_motion
 
 LAW = fl.Algorithm1()
@@ -26,64 +25,51 @@ TUBE = fl.enclose(LAW, [[0.0], [7.1]], [[0.0], [0.0]], (0.0, 0.03125))
 FOUND = fl.falsify("collision-energy", "head-on", claim="twice", budget=60)
 
 
+KINDS = {"run": RUN, "tube": TUBE, "basin": BASIN, "equilibrium": EQUILIBRIUM, "falsification": FOUND}
+KINDS["counterexample"] = FOUND.counterexample()
+
+
 def doors(kind, folder):
-    at_rest = ([[0.0], [7.0]], [[0.0], [0.0]])
-    return {
-        "run": (RUN, [lambda run: fl.verify("energy", run), lambda run: fl.verify("os-1", run)]),
-        "tube": (
-            TUBE,
-            [
-                lambda tube: fl.verify("collision-energy", tube),
-                lambda tube: fl.verify("os-1", tube, basin=BASIN),
-                lambda tube: tube.ends_in(BASIN),
-                tube_certificate,
-                lambda tube: fl.write_tube_certificate(tube, folder / "tube.json"),
-            ],
-        ),
-        "basin": (
-            BASIN,
-            [
-                lambda basin: fl.verify("os-1", TUBE, basin=basin),
-                lambda basin: TUBE.ends_in(basin),
-                lambda basin: basin.holds(*at_rest),
-                lambda basin: tube_certificate(TUBE, basin=basin),
-                basin_certificate,
-                lambda basin: fl.write_certificate(basin, folder / "basin.json"),
-            ],
-        ),
-        "equilibrium": (
-            EQUILIBRIUM,
-            [lambda one: write_equilibrium(one, folder / "e.json"), fl.certify, lambda one: fl.linearise(LAW, one)],
-        ),
-        "falsification": (FOUND, [lambda found: found.counterexample(), lambda found: found.save(folder / "c.json")]),
-        "counterexample": (FOUND.counterexample(), [lambda one: one.save(folder / "c.json"), lambda one: one.check()]),
+    """One of that kind, and where it may be used."""
+    at_rest, file = ([[0.0], [7.0]], [[0.0], [0.0]]), folder / "written.json"
+    return KINDS[kind], {
+        "run": [lambda run: fl.verify("energy", run), lambda run: fl.verify("os-1", run)],
+        "tube": [
+            lambda tube: fl.verify("collision-energy", tube),
+            lambda tube: fl.verify("os-1", tube, basin=BASIN),
+            lambda tube: tube.ends_in(BASIN),
+            lambda tube: fl.write_tube_certificate(tube, file),
+            tube_certificate,
+        ],
+        "basin": [
+            lambda basin: fl.verify("os-1", TUBE, basin=basin),
+            lambda basin: tube_certificate(TUBE, basin=basin),
+            lambda basin: TUBE.ends_in(basin),
+            lambda basin: basin.holds(*at_rest),
+            lambda basin: fl.write_certificate(basin, file),
+            basin_certificate,
+        ],
+        "equilibrium": [lambda one: write_equilibrium(one, file), fl.certify, lambda one: fl.linearise(LAW, one)],
+        "falsification": [lambda found: found.counterexample(), lambda found: found.save(file)],
+        "counterexample": [lambda one: one.save(file), lambda one: one.check()],
     }[kind]
 
 
-KINDS = {
-    "run": fl.Trajectory,
-    "tube": type(TUBE),
-    "basin": type(BASIN),
-    "equilibrium": type(EQUILIBRIUM),
-    "falsification": type(FOUND),
-    "counterexample": Counterexample,
-}
-FIELDS = [(kind, field.name) for kind, cls in KINDS.items() for field in fields(cls)]
+FIELDS = [(kind, field.name) for kind, whole in KINDS.items() for field in fields(whole)]
 
 
 def altered(value):
     if isinstance(value, bool) or value is None:
         return 1
-    if isinstance(value, np.ndarray):
-        return value + 1
-    if isinstance(value, str):
-        return value + " "
-    if isinstance(value, dict):
-        return value | {"more": 1}
-    if isinstance(value, tuple):
-        return value[:-1]
-    if isinstance(value, fl.Algorithm1):
-        return fl.Algorithm1(gains=fl.Gains(c1_alpha=1e4))
+    for cls, change in (
+        (np.ndarray, lambda x: x + 1),
+        (str, lambda x: x + " "),
+        (dict, lambda x: x | {"more": 1}),
+        (tuple, lambda x: x[:-1]),
+        (fl.Algorithm1, lambda x: fl.Algorithm1(gains=fl.Gains(c1_alpha=1e4))),
+    ):
+        if isinstance(value, cls):
+            return change(value)
     return 100 * value + 1 if isinstance(value, float) or hasattr(value, "numerator") else SimpleNamespace()
 
 
@@ -177,15 +163,12 @@ def test_the_law_of_a_user_with_a_function_of_its_own_keeps_its_seal():
 @pytest.mark.parametrize("stats", [{}, {"rtol": 10}, {"method": "DOP853", "rtol": 1e-8, "atol": 1e-10}])
 def test_a_recording_is_measured_and_drawn_but_not_judged(stats):
     q = np.cumsum(np.random.default_rng(0).normal(size=(20, 3, 2)), axis=0)
-    walk = fl.Trajectory(
-        np.arange(20.0), q, 0.0 * q, 0.0 * q, fl.Algorithm2(target=fl.StaticTarget((0, 0))), stats=stats
-    )
+    law = fl.Algorithm2(target=fl.StaticTarget((0, 0)))
+    walk = fl.Trajectory(np.arange(20.0), q, 0.0 * q, 0.0 * q, law, stats=stats)
     assert walk.metrics()["cohesion_radius"].shape == (20,)
     assert walk.window(3.0, 9.0).min_distance() >= 0.0
     for name in ("os-3", "energy", "su-varying"):
-        with pytest.raises(
-            ArgumentError, match=r"expected a run as simulate returned it.* simulate\(law, q0, p0, t_span\)"
-        ):
+        with pytest.raises(ArgumentError, match=r"run as simulate returned it.* simulate\(law, q0, p0, t_span\)"):
             fl.verify(name, walk)
 
 
@@ -197,12 +180,9 @@ def test_the_facts_of_a_run_are_numbers_that_can_be(name, value):
         fl.Trajectory([0.0], zeros, zeros, zeros, LAW, stats={name: value})
 
 
-def test_a_motion_along_a_mode_is_no_run():
+def test_a_motion_along_a_mode_is_no_run_and_what_is_no_basin_decides_no_limit():
     pair = fl.linearise(LAW, EQUILIBRIUM)
     with pytest.raises(ArgumentError, match="was made or changed by hand"):
         fl.verify("energy", mode_motion(pair, pair.modes[0]))
-
-
-def test_what_is_no_basin_decides_no_limit():
     with pytest.raises(ArgumentError, match=r"basin = .*: expected a basin, as certify"):
         fl.verify("os-1", TUBE, basin=SimpleNamespace(law=LAW, holds=lambda q, p: True))

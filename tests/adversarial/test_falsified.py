@@ -44,9 +44,8 @@ def test_what_is_proved_is_not_falsified(theorem, claim, name, region, speed, se
 @given(region=regions, speed=speeds, seed=st.integers(0, 999))
 def test_a_counterexample_stands(region, speed, seed):
     """`twice`: what is found collides in the reduced problem too, below 2 c*, and at a thousandth of the tolerance."""
-    found = falsify(
-        "collision-energy", "head-on-collision", claim="twice", budget=BUDGET, seed=seed, region=region, speed=speed
-    )
+    where = {"budget": BUDGET, "seed": seed, "region": region, "speed": speed}
+    found = falsify("collision-energy", "head-on-collision", claim="twice", **where)
     if not found.found:
         return
     law, (q, p), span = found.case.law, (found.case.q0, found.case.p0), found.case.t_span

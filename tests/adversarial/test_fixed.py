@@ -11,10 +11,7 @@ from tests.adversarial.published import changes
 
 THEOREMS = tuple(name for name in theorems() if theorem(name).kind == "fixed")
 SLOW = ("E3", "J11", "delay-margin", "sampling-margins", "linearised-decay", "heterogeneous-gains")
-
-
-def cases():
-    return [pytest.param(name, marks=pytest.mark.attack if name in SLOW else ()) for name in THEOREMS]
+CASES = [pytest.param(name, marks=pytest.mark.attack if name in SLOW else ()) for name in THEOREMS]
 
 
 def expected(name):
@@ -24,7 +21,7 @@ def expected(name):
     return {claim: marks[status] for claim, status in each if claim}
 
 
-@pytest.mark.parametrize("name", cases())
+@pytest.mark.parametrize("name", CASES)
 def test_what_is_printed_and_what_is_true(name, verdict_of):
     said = {claim.name: claim.status for claim in verdict_of(name).claims}
     assert said.keys() == expected(name).keys()

@@ -60,20 +60,12 @@ def test_without_damping_an_informed_agent_swings_for_ever():
 
 
 @effort(0.2)
-@given(
-    st.sampled_from((0.3, 1.0, 3.0)),
-    st.sampled_from((0.3, 1.0, 2.0)),
-    st.sampled_from((0.02, 0.3)),
-    st.booleans(),
-    seeds,
-)
+@given(*[st.sampled_from(some) for some in ((0.3, 1.0, 3.0), (0.3, 1.0, 2.0), (0.02, 0.3))], st.booleans(), seeds)
 def test_a_centre_that_is_told_converges(pull, zeta, frequency, feedforward, seed):
     rng = np.random.default_rng(seed)
     match = 2.0 * zeta * np.sqrt(pull)
-    circle = CircleTarget((0.0, 0.0), 4.0, frequency)
-    law = Composition(
-        AlphaInteraction(), Gains(1.0, 1.0, 0.0, 0.0, pull, match), target=circle, feedforward=feedforward
-    )
+    gains, circle = Gains(1.0, 1.0, 0.0, 0.0, pull, match), CircleTarget((0.0, 0.0), 4.0, frequency)
+    law = Composition(AlphaInteraction(), gains, target=circle, feedforward=feedforward)
     q = np.array([[20.0, 0.0], [-20.0, 3.0]]) + rng.uniform(-1.0, 1.0, (2, 2))
     p = rng.uniform(-1.0, 1.0, (2, 2))
     expected = dict.fromkeys(("centre", "velocities", "distance", "no-collision"), VACUOUS)

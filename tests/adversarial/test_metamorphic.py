@@ -21,9 +21,8 @@ opposite = {("verified", "refuted"), ("refuted", "verified")}
 
 
 def statuses(case):
-    run = case.run()
     names = BY_LAW[1 if isinstance(case.law, Algorithm1) else 2]
-    return {f"{name}:{c.name}": c.status for name in names for c in verify(name, run).claims}
+    return {f"{name}:{c.name}": c.status for name in names for c in verify(name, case.run).claims}
 
 
 def agree(case, other):
@@ -36,7 +35,7 @@ def agree(case, other):
 def small(draw):
     case = draw(flocks())
     case = replace(case, options={}, until=min(case.until, 8.0 * truth.law_time(case.law)))
-    assume(case.run().stats["steps"] < 1000)  # what is stiff takes a minute by LSODA, and changes no other way
+    assume(case.run.stats["steps"] < 1000)  # what is stiff takes a minute by LSODA, and changes no other way
     return case
 
 

@@ -17,19 +17,19 @@ STILL = {"rate": TRUE, "balance": TRUE}
 @effort(1.0)
 @given(flocks())
 def test_what_holds_of_every_flock(case):
-    law, run = case.law, case.run()
-    hold("energy", case, STILL, run=run, may_refuse=case.rough)
-    hold("collision-energy", case, {"below": TRUE}, run=run, may_refuse=case.rough)
+    law = case.law
+    hold("energy", case, STILL, may_refuse=case.rough)
+    hold("collision-energy", case, {"below": TRUE}, may_refuse=case.rough)
     if isinstance(law, Algorithm1):
         damped = TRUE if law.gains.c2_alpha > 0.0 else TRUE | FALSE
-        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, run=run, may_refuse=case.rough)
+        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, may_refuse=case.rough)
         return
     single = {"i": TRUE, "ii": TRUE, "iii": TRUE}
     if min(law.gains.c1_gamma, law.gains.c2_gamma) == 0.0:
         single = dict.fromkeys(single, OPEN)
     counts = {"iv-instant": TRUE, "iv-none": TRUE, "iv-barrier": TRUE}
-    hold("os-3", case, single | counts, run=run, may_refuse=case.rough)
-    hold("E13", case, {"corrected": TRUE}, run=run, may_refuse=case.rough)
+    hold("os-3", case, single | counts, may_refuse=case.rough)
+    hold("E13", case, {"corrected": TRUE}, may_refuse=case.rough)
 
 
 def algorithm3(law, obstacles=(), **gains):
@@ -85,17 +85,14 @@ def among_obstacles(draw):
 @effort(0.3)
 @given(among_obstacles())
 def test_theorem_6(case):
-    run = case.run()
-    hold("os-6", case, STILL, run=run, may_refuse=case.rough)
-    hold("energy", case, STILL, run=run, may_refuse=case.rough)
+    hold("os-6", case, STILL, may_refuse=case.rough)
+    hold("energy", case, STILL, may_refuse=case.rough)
 
 
 @pytest.mark.parametrize("strong", [1.0, 1e-6, 1e3])
 def test_theorem_6_needs_one_drag_for_all(strong):
     """Per-agent c2γ: condition (76) holds with room to spare, and the energy rises all the same."""
-    told = 1.0
-    law = Algorithm3(
-        gains=Gains(1.0, 0.0, 0.0, 0.0, 0.0, (strong, 1e-12 * strong)), target=StaticTarget((0.0, 0.0), (told, 0.0))
-    )
-    q, p = np.array([[0.0, 0.0], [100.0, 0.0]]), np.array([[0.5 * told, 0.0], [3.0 * told, 0.0]])
+    gains = Gains(1.0, 0.0, 0.0, 0.0, 0.0, (strong, 1e-12 * strong))
+    law = Algorithm3(gains=gains, target=StaticTarget((0.0, 0.0), (1.0, 0.0)))
+    q, p = np.array([[0.0, 0.0], [100.0, 0.0]]), np.array([[0.5, 0.0], [3.0, 0.0]])
     hold("os-6", Case(law, q, p, 0.05 / max(strong, 1.0)), {"rate": OPEN, "balance": TRUE})

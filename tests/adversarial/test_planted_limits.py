@@ -48,34 +48,34 @@ def test_a_damped_pair_settles(drawn, data):
     until = (45.0 if long else 0.05) / rate
     case = Case(law, q, p, until, data.draw(ways(until, 0.05 / np.sqrt(spring))))
     settled = VERIFIED if long and not case.options else TRUE
-    run = case.run()
     rough = case.options.get("method") == "RK4"
     if isinstance(law, Algorithm1):
-        hold("os-1", case, {"i": settled, "ii": settled}, run=run, may_refuse=rough)
-        hold("lattice-limit-printed", case, {"lattice": settled}, run=run, may_refuse=rough)
+        hold("os-1", case, {"i": settled, "ii": settled}, may_refuse=rough)
+        hold("lattice-limit-printed", case, {"lattice": settled}, may_refuse=rough)
         return
-    hold("os-3", case, {"i": TRUE, "ii": settled, "iii": settled}, run=run, may_refuse=rough)
+    hold("os-3", case, {"i": TRUE, "ii": settled, "iii": settled}, may_refuse=rough)
     strain = abs(s / law.alpha.d - 1.0)
     assume(abs(strain / 1e-6 - 1.0) > 1e-2)
     lattice = TRUE if strain < 1e-6 else FALSE
     lattice = REFUTED if long and not case.options and strain > 1e-4 else lattice
-    hold("lattice-limit-printed", case, {"lattice": lattice}, run=run, may_refuse=rough)
+    hold("lattice-limit-printed", case, {"lattice": lattice}, may_refuse=rough)
 
 
 @effort(0.25)
-@given(near_balance(damping=(0.0,), pulls=(0.01,)), st.integers(1, 9), st.data())
+@given(near_balance(damping=(0.0,), pulls=(0.01,)), st.integers(1, 20), st.data())
 def test_an_undamped_pair_swings_for_ever(drawn, halves, data):
-    """Stopped at its turning points, where for an instant nothing moves: K̃ = 0 there, and the limit does not exist."""
+    """Seen at its turning points, where for an instant nothing moves, or so that it looks like a decay: no limit."""
     law, q, p, spring, _, _ = drawn
-    until = halves * np.pi / np.sqrt(spring)
-    times = data.draw(st.sampled_from((None, np.linspace(0.0, until, halves + 1), np.linspace(0.0, until, 300))))
+    until, k = halves * np.pi / np.sqrt(spring), np.arange(1, halves + 1)
+    decaying = (np.pi * k - np.arcsin(np.maximum(data.draw(st.floats(0.1, 0.9)) ** k, 1e-9))) / np.sqrt(spring)
+    turning, often = np.linspace(0.0, until, halves + 1), np.linspace(0.0, until, 300)
+    times = data.draw(st.sampled_from((None, turning, often, np.concatenate([[0.0], decaying]))))
     case = Case(law, q, p, until, {} if times is None else {"t_eval": times})
-    run = case.run()
     if isinstance(law, Algorithm1):
-        hold("os-1", case, {"i": FALSE, "ii": FALSE}, run=run)
+        hold("os-1", case, {"i": OPEN, "ii": OPEN})
     else:
-        hold("os-3", case, {"i": OPEN, "ii": OPEN, "iii": OPEN}, run=run)  # c2γ > 0 is asked for, and is not so
-    hold("lattice-limit-printed", case, {"lattice": FALSE}, run=run)
+        hold("os-3", case, {"i": OPEN, "ii": OPEN, "iii": OPEN})  # c2γ > 0 is asked for, and is not so
+    hold("lattice-limit-printed", case, {"lattice": FALSE})
 
 
 @effort(0.4)
@@ -92,21 +92,6 @@ def test_a_pair_that_leaves_is_caught_by_nothing(alpha, share, until, late):
 
 
 @effort(0.2)
-@given(near_balance(damping=(0.0,), pulls=(0.01,)), st.floats(0.1, 0.9), st.integers(10, 60))
-def test_samples_chosen_to_look_like_a_decay(drawn, factor, count):
-    law, q, p, spring, _, _ = drawn
-    omega = np.sqrt(spring)
-    phases = np.pi * np.arange(1, count + 1) - np.arcsin(np.maximum(factor ** np.arange(1, count + 1), 1e-9))
-    case = Case(law, q, p, float(phases[-1] / omega), {"t_eval": np.concatenate([[0.0], phases / omega])})
-    run = case.run()
-    if isinstance(law, Algorithm1):
-        hold("os-1", case, {"i": OPEN, "ii": OPEN}, run=run)
-    else:
-        hold("os-3", case, {"ii": OPEN, "iii": OPEN}, run=run)
-    hold("lattice-limit-printed", case, {"lattice": FALSE}, run=run)
-
-
-@effort(0.2)
 @given(alphas(), st.sampled_from((0.0, 0.1, 2.0, 10.0)), st.integers(1, 5), st.integers(1, 3), st.data())
 def test_springs_alone(alpha, drag, n, m, data):
     """c1α = 0 leaves x'' = −c1γ x − c2γ x': every theorem says something of it, and none what is not so."""
@@ -118,11 +103,11 @@ def test_springs_alone(alpha, drag, n, m, data):
     until = 45.0 / rate if long and rate else np.pi if not rate else 0.02
     assume(until < 1e3)
     case = Case(law, q, p, until, data.draw(ways(until, 0.05)))
-    run, rough = case.run(), case.options.get("method") == "RK4"
+    rough = case.options.get("method") == "RK4"
     limit = TRUE if drag else OPEN
-    hold("os-3", case, {"i": limit, "ii": limit, "iii": limit}, run=run, may_refuse=rough)
+    hold("os-3", case, {"i": limit, "ii": limit, "iii": limit}, may_refuse=rough)
     for theorem in ("energy", "collision-energy", "E13", "lattice-limit-printed"):
-        hold(theorem, case, {"rate": TRUE, "balance": TRUE, "below": TRUE}, run=run, may_refuse=rough)
+        hold(theorem, case, {"rate": TRUE, "balance": TRUE, "below": TRUE}, may_refuse=rough)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
@@ -153,13 +138,9 @@ def test_flocking_by_definition(drift, size, n, data):
     x, v = truth.harmonic(law, q, p, np.linspace(0.5 * until, until, 2001))
     mismatch = 0.5 * (v**2).sum(axis=(1, 2)) / n
     reach = np.linalg.norm(x, axis=2).max(axis=1)
-    expected = {
-        "mismatch": _above(mismatch.max(), 0.05 * 1e3, 0.05 * 1e-3),
-        "cohesive": _above(reach.max() / reach[0], 1.6, 1.4),
-    }
-    run = case.run()
+    expected = {"mismatch": _above(mismatch.max(), 50.0, 5e-5), "cohesive": _above(reach.max() / reach[0], 1.6, 1.4)}
     for theorem in ("alpha-flocking", "alpha-flocking-strict"):
-        hold(theorem, case, expected, run=run)
+        hold(theorem, case, expected)
 
 
 def _above(value, high, low):

@@ -10,61 +10,46 @@ from tests.adversarial.published import alike, differences, near, number
 
 
 @pytest.mark.parametrize(
-    ("path", "was", "now", "expected"),
+    ("path", "was", "same", "others"),
     [
-        ("x/margin", 1.0, 1.00009, True),
-        ("x/margin", 1.0, 1.0002, False),
-        ("x/margin", 1.0, -1.0, False),
-        ("x/error", 1e-3, 1.04e-3, True),
-        ("x/error", 1e-3, 1.1e-3, False),
-        ("x/error", 1e-9, 2e-8, True),
-        ("x/error", 1e-10, 2e-8, False),
-        ("x/error", 1e-9, -1e-9, False),
-        ("x/computed", 0.0, 5e-15, True),
-        ("x/computed", 0.0, 1e-13, False),
-        ("x/computed", True, 1, True),
-        ("x/computed", True, False, False),
-        ("x/computed", None, 0.0, False),
-        ("x/detail", "at 1.23e-16 of 4", "at 2.5e-9 of 4.01", True),
-        ("x/detail", "at 1.23 of 4", "at 1.23 of 4.2", False),
-        ("x/detail", "at 1.23 of 4", "at 1.23 off 4", False),
+        ("x/margin", 1.0, 1.00009, (1.0002, -1.0)),
+        ("x/error", 1e-3, 1.04e-3, (1.1e-3,)),
+        ("x/error", 1e-10, 5e-9, (2e-8, -1e-10)),
+        ("x/computed", 0.0, 5e-15, (1e-13, None)),
+        ("x/computed", True, 1, (False,)),
+        ("x/detail", "at 1.23e-16 of 4", "at 2.5e-9 of 4.01", ("at 1.23e-16 of 4.2", "at 1.23e-16 off 4")),
     ],
 )
-def test_what_is_alike(path, was, now, expected):
-    assert alike(path, was, now) is expected
+def test_what_is_alike(path, was, same, others):
+    assert alike(path, was, same)
+    assert not any(alike(path, was, other) for other in others)
 
 
 def test_every_place_of_a_change_is_named():
     was, now = {"a": {"computed": [1.0, 2.0]}, "b": 1}, {"a": {"computed": [1.0, 3.0, 4.0]}}
-    assert list(differences("E1", was, now)) == [
-        "E1/a/computed/1: 2.0 is now 3.0",
-        "E1/a/computed/2: None is now 4.0",
-        "E1/b: 1 is now None",
-    ]
+    first, second, last = differences("E1", was, now)
+    assert (first, second) == ("E1/a/computed/1: 2.0 is now 3.0", "E1/a/computed/2: None is now 4.0")
+    assert last == "E1/b: 1 is now None"
 
 
 @pytest.mark.parametrize(
-    ("was", "now", "expected"),
+    ("was", "same", "another"),
     [
-        ((1.0, 1e-6), (1.0005, 1e-6), True),
-        ((1.0, 1e-6), (1.01, 1e-6), False),
-        ((1.0, 0.006), (1.01, 0.006), True),
-        ((1.0, 1e-6), (1.0, 2e-4), False),
-        ((1.0, 1e-6), (1.0, 5e-5), True),
-        ((1.0, 1e-16), (1.0, 0.0), True),
-        ((1.0, None), (1.0, None), True),
-        ((1.0, None), (1.0, 0.0), False),
-        ((None, None), (None, None), True),
-        ((None, 0.0), (1.0, 0.0), False),
-        ((1.0, "inf"), (0.9995, "inf"), True),
-        ((1.0, "inf"), (1.0, 1.0), False),
-        (("inf", 0.0), ("inf", 0.0), True),
-        (("inf", 0.0), (1e9, 0.0), False),
+        ((1.0, 1e-6), (1.0005, 1e-6), (1.01, 1e-6)),
+        ((1.0, 0.006), (1.01, 0.006), (1.02, 0.006)),
+        ((1.0, 1e-6), (1.0, 5e-5), (1.0, 2e-4)),
+        ((1.0, 1e-16), (1.0, 0.0), (1.0, 1e-3)),
+        ((1.0, None), (1.0, None), (1.0, 0.0)),
+        ((None, None), (None, None), (None, 0.0)),
+        ((1.0, "inf"), (0.9995, "inf"), (1.0, 1.0)),
+        (("inf", 0.0), ("inf", 0.0), (1e9, 0.0)),
+        ((None, 0.0), (None, 0.0), (1.0, 0.0)),
     ],
 )
-def test_which_margins_of_runs_are_near(was, now, expected):
-    margin, error, other, own = map(number, (*was, *now))
-    assert bool(near(margin, other, error, own)) is expected
+def test_which_margins_of_runs_are_near(was, same, another):
+    for now, expected in ((same, True), (another, False)):
+        margin, error, other, own = map(number, (*was, *now))
+        assert bool(near(margin, other, error, own)) is expected
 
 
 @pytest.fixture(scope="module")

@@ -28,43 +28,19 @@ def decides_nothing(name, run):
     assert [(c.name, c.status) for c in verdict.claims if c.rigour == "numeric" and c.status in decided] == []
 
 
-@pytest.mark.parametrize("name", ["alpha-flocking", "alpha-flocking-strict", "os-1", "os-3", "E13", "collision-energy"])
-def test_one_sample_decides_no_claim_about_a_run_that_is_not_proved(name):
-    law = Algorithm1() if name != "os-3" and name != "E13" else Algorithm2(target=ORIGIN)
-    run = Case(law, [[0.0, 0.0], [6.0, 0.0]], [[0.0, 0.0], [-1.0, 0.0]], 5.0, {"t_eval": [0.0]}).run()
-    moving = {"i", "ii", "iii", "giant", "cohesive", "deviation", "mismatch", "flock", "below", "twice", "iv-none"}
-    claims = [c for c in verify(name, run).claims if c.name in moving and c.rigour == "numeric"]
-    assert {c.name: c.status for c in claims if c.status in decided} == {}
-
-
-@pytest.mark.parametrize("dt", [0.1, 0.5, 3.0])
-def test_a_step_far_too_large_refutes_nothing(dt):
-    """R = 4.9e5 where H_λ(0) allows 1: the integrator's, not the law's."""
-    law = Algorithm2(target=ORIGIN)
-    q = np.random.default_rng(0).uniform(-9.0, 9.0, (8, 2))
-    case = Case(law, q, 0.0 * q, 30.0, {"method": "RK4", "dt": dt})
-    run = case.run()
-    for name in ("os-3", "energy", "collision-energy", "E13"):
-        true = ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier", "rate", "balance", "below", "corrected")
-        hold(name, case, dict.fromkeys(true, TRUE), run=run, may_refuse=True)
-        if np.abs(run.q).max() > 1e3:
-            decides_nothing(name, run)
-
-
 def test_an_error_larger_than_what_it_measures_verifies_nothing():
     """An energy that rises by 5.4 and is off by 211 is not seen to fall."""
     law = DeadZoneFlocking()
     q = np.random.default_rng(1).uniform(0.0, 30.0, (9, 2))
     case = Case(law, q, 0.0 * q, 20.0, {"method": "RK4", "dt": 0.5})
-    run = case.run()
-    assert np.abs(run.energy_residual).max() > 1.0
-    hold("dead-zone-1-printed", case, {"energy": FALSE, "collision": TRUE}, run=run, may_refuse=True)
-    hold("dead-zone-1-corrected", case, {"rate": TRUE, "balance": TRUE, "distance": TRUE}, run=run, may_refuse=True)
+    assert np.abs(case.run.energy_residual).max() > 1.0
+    hold("dead-zone-1-printed", case, {"energy": FALSE, "collision": TRUE}, may_refuse=True)
+    hold("dead-zone-1-corrected", case, {"rate": TRUE, "balance": TRUE, "distance": TRUE}, may_refuse=True)
 
 
 @cache
 def failed(law, samples):
-    run = Case(law, APART, STILL, 1.0, {"t_eval": np.linspace(0.0, 1.0, 5)[:samples]}).run()
+    run = Case(law, APART, STILL, 1.0, {"t_eval": np.linspace(0.0, 1.0, 5)[:samples]}).run
     return replace(run, status="failed", message="gave up")
 
 

@@ -11,9 +11,8 @@ from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIE
 from tests.adversarial.strategies import powers, seeds, ways
 
 THEOREMS = ("zone-1-printed", "zone-1-corrected")
-CORRECTED = dict.fromkeys(
-    ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"), TRUE
-)
+HELD = "lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"
+CORRECTED = dict.fromkeys(HELD, TRUE)
 PRINTED = {"equilibrium": REFUTED, "edges": FALSE, "velocities": TRUE, "hurwitz": TRUE | FALSE}
 exactly = st.just(0.0)
 
@@ -43,10 +42,8 @@ def trees(draw, *, directed=True, off=exactly, sigma=1.0):
     edges = random_out_tree(n, rng)
     lengths = rho * (1.0 + draw(off) * rng.uniform(-1.0, 1.0, n - 1))
     q = placed(edges, lengths, rng, m)
-    law = MinimalFlocking(
-        edges=edges if directed else both_ways(edges), spacing=rho, mu=mu, sigma=sigma, normalised=directed
-    )
-    return law, q, rho, rng
+    edges = edges if directed else both_ways(edges)
+    return MinimalFlocking(edges=edges, spacing=rho, mu=mu, sigma=sigma, normalised=directed), q, rho, rng
 
 
 @effort(0.4)

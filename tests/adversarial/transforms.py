@@ -8,11 +8,8 @@ from flockana import Capsule, LedDeadZoneFlocking, MinimalFlocking, Polygon, Sph
 from flockana.environment import targets
 from tests.adversarial.cases import Case
 
-UNITS = {
-    "micrometres and milliseconds": (1e6, 1e3),
-    "kilometres and hours": (1e-3, 1.0 / 3600.0),
-    "powers of two": (2.0**10, 2.0**-7),
-}
+UNITS = {"micrometres and milliseconds": (1e6, 1e3), "kilometres and hours": (1e-3, 1.0 / 3600.0)}
+UNITS["powers of two"] = (2.0**10, 2.0**-7)
 
 
 class UnchangedError(Exception):

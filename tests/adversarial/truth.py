@@ -213,17 +213,6 @@ def harmonic(law, q, p, times):
     return (hold * x + grow * v).real, (hold * v - grow * (law.gains.c1_gamma * x + law.gains.c2_gamma * v)).real
 
 
-def flight(q, p, until):
-    """Least distance of any pair over [0, until] if all fly straight on."""
-    least = np.inf
-    for (x, v), (y, w) in combinations(zip(np.asarray(q, float), np.asarray(p, float), strict=True), 2):
-        at, rate = y - x, w - v
-        speed2 = float(rate @ rate)
-        when = min(max(-float(at @ rate) / speed2, 0.0), until) if speed2 else 0.0
-        least = min(least, float(np.linalg.norm(at + when * rate)))
-    return least
-
-
 # --- equilibria of two agents ---------------------------------------------------------------------------------------
 
 

@@ -10,12 +10,12 @@ import pytest
 pytest.importorskip("z3")  # the extra flockana[proofs]
 
 from flockana.base.modules import modules
-from flockana.theorems.theorem import Theorem
+from flockana.theorems.catalogue import theorems_in
 from proofs.proof import load, names
 
 IDS = set(names())
 MODULES = {module.__name__ for module in modules("flockana.theorems")}
-TABLES = ("THEOREM", "RIGOUR", "CITES")  # of all proofs, or followed by themselves
+TABLES = ("RIGOUR", "CITES")  # of all proofs, or followed by themselves
 
 
 @cache
@@ -59,21 +59,20 @@ def cited(module, name, seen):
         elif isinstance(one, ast.Return) and one.value is not None and name == "_enclosed":
             found |= strings(one.value)
         elif isinstance(one, ast.Attribute) and (source := ".".join(imported.get(getattr(one.value, "id", ""), ""))):
-            found |= cited(source, one.attr, seen) if source in MODULES and one.attr != "THEOREM" else set()
+            found |= cited(source, one.attr, seen) if source in MODULES and one.attr != "theorem" else set()
         elif isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load) and one.id != name:
             found |= cited(module, one.id, seen)
     return found
 
 
 def cites():
-    """(theorem, proof) for every claim's proof; a module of several theorems gives each of them all of its proofs."""
-    found = set()
-    for module in modules("flockana.theorems"):
-        defined = getattr(module, "THEOREM", None)
-        for item in defined if isinstance(defined, tuple) else (defined,):
-            if isinstance(item, Theorem):
-                found |= {(item.id, proof) for proof in cited(module.__name__, "THEOREM", set())}
-    return found
+    """(theorem, proof) for every claim's proof."""
+    return {
+        (item.id, proof)
+        for module in modules("flockana.theorems")
+        for name, item in theorems_in(module).items()
+        for proof in cited(module.__name__, name, set())
+    }
 
 
 def test_backs_and_cites_agree():

@@ -5,16 +5,8 @@ from math import inf, sqrt
 import numpy as np
 import pytest
 
-from flockana.theorems.basin import (
-    ALONE,
-    Basin,
-    barrier,
-    connected_within,
-    curvatures,
-    excess,
-    gyration,
-    lipschitz_constant,
-)
+from flockana.theorems import basin as module
+from flockana.theorems.basin import ALONE, Basin, barrier, connected_within, curvatures, excess, lipschitz_constant
 
 
 @pytest.mark.parametrize(
@@ -113,4 +105,4 @@ def test_of_many_windows_the_best_is_taken_as_if_each_were_looked_into(rise, dis
 
 
 def test_a_pair_turns_by_the_root_of_two():
-    assert gyration(np.array([[-1.0, 0.0], [1.0, 0.0]])) == np.sqrt(2.0)
+    assert module.gyration(np.array([[-1.0, 0.0], [1.0, 0.0]])) == np.sqrt(2.0)

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.theorems.claims import by_count, counted, equal, erratum, exact, judged, undecided, vacuous
+from flockana.theorems.claims import counted, erratum, exact, judged, undecided, vacuous
 from flockana.theorems.toolkit import Certificate, Claim, Enclosure, Hypothesis, Tolerances, limit_claim
 
 MET, ASSUMED, UNMET = (Hypothesis(status, status) for status in ("met", "assumed", "unmet"))
@@ -68,16 +67,11 @@ def test_numbers_against_a_proof_decide_nothing_and_say_so(margin, fields):
 @pytest.mark.parametrize(
     ("status", "about", "need", "allowed"),
     [
-        ("verified", "run", ASSUMED, True),
-        ("verified", "limit", ASSUMED, False),
-        ("verified", "all", ASSUMED, False),
-        ("refuted", "run", ASSUMED, False),
-        ("verified", "run", UNMET, False),
-        ("refuted", "all", MET, True),
-        ("vacuous", "limit", UNMET, True),
-        ("inconclusive", "limit", ASSUMED, True),
+        ("verified", "run", ASSUMED, True), ("verified", "limit", ASSUMED, False),
+        ("verified", "all", ASSUMED, False), ("refuted", "run", ASSUMED, False), ("verified", "run", UNMET, False),
+        ("refuted", "all", MET, True), ("vacuous", "limit", UNMET, True), ("inconclusive", "limit", ASSUMED, True),
     ],
-)
+)  # fmt: skip
 def test_a_claim_refuses_a_status_that_its_hypotheses_do_not_allow(status, about, need, allowed):
     if allowed:
         assert Claim("i", status, about=about, needs=(need,)).status == status
@@ -86,16 +80,10 @@ def test_a_claim_refuses_a_status_that_its_hypotheses_do_not_allow(status, about
         Claim("i", status, about=about, needs=(need,))
 
 
-def test_the_error_is_how_far_the_margin_may_be_off_towards_0():
+def test_the_error_is_how_far_the_margin_may_be_off_towards_0_and_never_below_0():
     claims = [judged("i", Enclosure(*ends)) for ends in ((-np.inf, -3.0, -1.0), (0.5, 3.0, np.inf), (-1.0, 3.0, 4.0))]
-    assert [(c.status, c.margin, c.error) for c in claims] == [
-        ("refuted", -3.0, 2.0),
-        ("verified", 3.0, 2.5),
-        ("inconclusive", 3.0, 4.0),
-    ]
-
-
-def test_a_claim_refuses_an_error_below_0():
+    assert [claim.status for claim in claims] == ["refuted", "verified", "inconclusive"]
+    assert [(claim.margin, claim.error) for claim in claims] == [(-3.0, 2.0), (3.0, 2.5), (3.0, 4.0)]
     with pytest.raises(ArgumentError, match=r"claim 'i' has error = -1: expected none below 0"):
         Claim("i", "verified", error=-1.0)
 
@@ -108,10 +96,6 @@ def test_whole_numbers_are_judged_by_what_certainly_and_what_possibly_happens(ce
     claim = counted("links", 3, certain, possible)
     assert claim.status == status
     assert claim.margin == (3.5 - certain if status == "refuted" else 3.5 - possible)
-
-
-def test_failures_are_counted_where_no_rounding_can_change_a_sign():
-    assert [by_count("falls", k).margin for k in (0, 1, 5)] == [1.0, -1.0, -5.0]
 
 
 def test_a_margin_that_a_search_compares_is_finite():
@@ -137,21 +121,14 @@ def test_a_limit_needs_a_certificate_and_nothing_assumed():
     assert limit_claim("ii", [MET], [Certificate(1e-13, "rounding")]).status == "inconclusive"
 
 
-def test_algebra_decides_all_cases():
-    x = sp.Symbol("x")
-    assert equal("identity", sp.expand((x + 1) ** 2 - x**2 - 2 * x - 1)).status == "verified"
-    assert equal("printed", [0, x]).witness == ["0", "x"]
-    assert exact("sum", False).about == "all"
-
-
 def test_an_erratum_has_the_status_of_its_claims():
-    item = erratum(
-        "E0",
-        title="1 + 1 is 2",
-        statement="1 + 1 = 2",
-        source="arithmetic",
-        check=lambda tolerances: [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)],
-        expected={"refuted": "printed", "verified": "corrected"},
-    )
+    @erratum("E0", title="1 + 1 is 2", source="arithmetic")
+    def item(tolerances):
+        """1 + 1 = 2,
+        not 3.
+        """
+        return [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)]
+
+    assert item.statement == "1 + 1 = 2, not 3."
     assert dict(item.expected) == {"E0": "refuted", "E0:printed": "refuted", "E0:corrected": "verified"}
     assert [claim.status for claim in item.examine(Tolerances())[1]] == ["refuted", "verified"]

@@ -42,11 +42,7 @@ def test_a_wind_on_all_alike_moves_no_shape():
     [
         (Disturbed(Algorithm1(), force=[[1.0], [-1.0]]), {}, "drive the flock out"),
         (Disturbed(Algorithm1(), times=(0.0, 5.0), table=[[[0.0], [0.0]], [[1.0], [-1.0]]]), {}, "drive the flock out"),
-        (
-            Disturbed(Algorithm1(), force=lambda t: ((0.0,), (0.0,))),
-            {},
-            "no bound is known of a force that is a function",
-        ),
+        (Disturbed(Algorithm1(), force=lambda t: ((0.0,), (0.0,))), {}, "no bound is known of a force that is a funct"),
         (Disturbed(Algorithm1(), intensity=0.1), {"dt": 0.01}, "wrapped in Disturbed"),
         (Disturbed(Delayed(Algorithm1(), 0.01)), {"dt": 0.01}, "wrapped in Disturbed, Delayed"),
         (Algorithm1(), {}, "the law is Algorithm1"),

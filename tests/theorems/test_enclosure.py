@@ -69,28 +69,22 @@ def test_nothing_is_known_of_a_quotient_by_what_may_be_0_and_its_logarithm():
     assert far.hi == np.inf
 
 
-def test_0_stays_0_and_an_exact_number_exact():
+def test_0_stays_0_an_exact_number_exact_and_an_unknown_half_width_encloses_everything():
     zero = Enclosure.of(0.0)
     assert [float(end) for x in (zero + zero, zero * 3.0, zero.sqrt(), abs(zero)) for end in (x.lo, x.hi)] == [0.0] * 8
     three = Enclosure.around(3.0, 0.0)
     assert three.lo == three.hi == 3.0
-
-
-def test_an_unknown_half_width_encloses_everything():
     for width in (np.inf, np.nan):
         x = Enclosure.around(1.0, width)
         assert (x.lo, x.hi) == (-np.inf, np.inf)
     assert float((Enclosure.around(1.0, np.inf) * 0.0).hi) == 0.0
 
 
-def test_the_entry_that_decides_is_the_most_certain_failure_or_else_the_least_sure():
+def test_the_most_certain_failure_decides_or_else_the_least_sure_and_ends_are_in_order():
     margins = Enclosure([-1.0, 0.5, -3.0], [1.0, 2.0, -2.0], [2.0, 3.0, -1.0])
     assert margins.worst_index == 2
     assert margins[:2].worst_index == 0
     assert Enclosure.of(np.empty(0)).worst.lo == 1.0
-
-
-def test_ends_in_the_wrong_order_are_refused():
     with pytest.raises(ArgumentError, match=r"lo = 2 above hi = 1: expected lo <= hi"):
         Enclosure(2.0, 1.5, 1.0)
 

@@ -197,15 +197,12 @@ def test_the_path_of_four():
     np.testing.assert_allclose(damping, [[1.5, -0.5, 0.0], [-0.5, 1.0, -0.5], [0.0, -0.5, 1.5]], atol=1e-12)
 
 
-def test_the_drag():
+def test_the_drag_and_that_what_never_happens_has_no_first_step():
     assert dragged_speed(0.1) == pytest.approx(2.0083, abs=5e-5)
     speeds = [dragged_speed(dt) for dt in (0.05, 0.01, 0.001)]
     np.testing.assert_allclose(speeds, [1.628, 0.974, 0.457], atol=1e-3)  # found by iteration, to three digits
     v = dragged_speed(0.1)
     assert 4.0 * tanh((v + 0.2) / 4.0) == pytest.approx(v, abs=1e-12)
-
-
-def test_what_never_happens_has_no_first_step():
-    """Its number would be 0 by argmax, and two such would have no delay."""
+    # Its number would be 0 by argmax, and two such would have no delay
     assert first_step(np.array([False, False, True, True])) == 2.0
     assert np.isnan(first_step(np.zeros(3, dtype=bool)))

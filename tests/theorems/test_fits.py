@@ -35,14 +35,15 @@ class Gusty(Pushed):
         return u + 1e-4 * len(self.asked), rate
 
 
+def moved(values, by):
+    """At the sixth sample, the first agent."""
+    return values + (np.arange(len(values)) == 5)[:, None, None] * np.array([[by], [0.0]])
+
+
 EDITS = {
     "an input": lambda run: replace(run, u=np.where(np.arange(len(run.t))[:, None, None] == 5, 1.001 * run.u, run.u)),
-    "a position": lambda run: replace(
-        run, q=run.q + (np.arange(len(run.t)) == 5)[:, None, None] * np.array([[1e-4], [0.0]])
-    ),
-    "a velocity": lambda run: replace(
-        run, p=run.p + (np.arange(len(run.t)) == 5)[:, None, None] * np.array([[1e-3], [0.0]])
-    ),
+    "a position": lambda run: replace(run, q=moved(run.q, 1e-4)),
+    "a velocity": lambda run: replace(run, p=moved(run.p, 1e-3)),
     "the law": lambda run: replace(run, law=Pushed()),
     "its gains": lambda run: replace(run, law=fl.Algorithm1(gains=fl.Gains(c1_alpha=30.001))),
 }

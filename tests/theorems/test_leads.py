@@ -26,9 +26,6 @@ def test_the_nearest_pair_that_has_not_met_over_d():
     """Over all samples: the second and the third come within 3.5, the first stays 10 and more away."""
     run = made_up(LAW, [line(0.0, 20.0, 27.0), line(0.0, 10.0, 13.5)])
     assert pairs_apart(run, CLAIM) == pytest.approx(squash(0.5))
-
-
-def test_pairs_that_met_lead_no_more():
     run = made_up(LAW, [line(0.0, 0.0, 14.0), line(0.0, 0.0, 14.0)])
     assert pairs_apart(run, CLAIM) == pytest.approx(squash(2.0))
     assert pairs_apart(made_up(LAW, [line(0.0, 0.0)] * 2), CLAIM) == 0.0

@@ -40,12 +40,9 @@ def test_a_narrow_well_is_seen_wherever_it_is(length):
     assert meeting(run_of(pair, 2)).floor <= -2.5 * (1.9997**2 + 1e-12)
 
 
-def test_a_pair_that_falls_together_has_no_least():
+def test_a_pair_that_falls_together_has_no_least_and_it_is_a_bound_where_it_is_proved():
     pair = pair_law("-k/s", adjacency=0, range=3.0, length=2.0, parameters={"k": 1.0})
     assert meeting(run_of(pair, 2)) == (0.0, -inf)
-
-
-def test_the_least_is_a_bound_where_it_is_proved():
     alpha, other = AlphaInteraction(), pair_law("k*(s-r)**2", adjacency=0, range=3.0, length=2.0, parameters={"k": 1.0})
     assert meeting(run_of(alpha)) == (2.5 * alpha.c_star, 0.0)
     assert least_is_known(run_of(alpha)) == least_is_known(run_of(other)) == []

@@ -78,11 +78,8 @@ def test_enclosures_hold_every_flock_that_the_accuracy_allows(own):
         ways *= bound / np.linalg.norm(ways, axis=3, keepdims=True)
         q, p = own[0] + ways[0], own[1] + ways[1]
         energies = [LAW.energy(t, a, b) for t, a, b in zip(T.tolist(), q, p, strict=True)]
-        assert (seen.energy.lo <= energies).all()
-        assert (energies <= seen.energy.hi).all()
-        radii = [fl.cohesion_radius(x) for x in q]
-        assert (seen.radius.lo <= radii).all()
-        assert (radii <= seen.radius.hi).all()
+        for found, true in ((seen.energy, energies), (seen.radius, [fl.cohesion_radius(x) for x in q])):
+            assert ((found.lo <= true) & (true <= found.hi)).all()
     assert seen.energy.half_width.max() < 0.2 * np.abs(seen.energy.mid).max()  # no excess
 
 
@@ -133,20 +130,16 @@ def test_definitions_about_samples_need_no_law(own):
 
 
 def test_what_is_missing_is_said(own):
-    rec = fl.Recording(T, *own, bound=1e-6)
-    with pytest.raises(ArgumentError, match=r"os-3 is about a law: expected verify\('os-3', recording, law="):
-        fl.verify("os-3", rec)
-    with pytest.raises(ArgumentError, match=r"expected law=\.\.\., or the scale d and the range r"):
-        fl.verify("alpha-flocking", rec)
-    with pytest.raises(ArgumentError, match="not about motion"):
-        fl.verify("E1", rec, law=LAW)
-    with pytest.raises(ArgumentError, match="law and d or r are given"):
-        fl.verify("os-3", rec, law=LAW, d=7.0)
-    with pytest.raises(ArgumentError, match="a recording: expected"):
-        fl.verify("os-3", rec, law=LAW, q0=Q0)
-    q = own[0].copy()
+    rec, q = fl.Recording(T, *own, bound=1e-6), own[0].copy()
     q[3, 2] = np.nan
-    with pytest.raises(ArgumentError, match="a verdict needs every agent at every sample, and agent 2"):
-        fl.verify("os-3", fl.Recording(T, q, own[1]), law=LAW)
-    with pytest.raises(ArgumentError, match="one sample shows no motion"):
-        fl.verify("os-3", rec.window(0.0, 0.0), law=LAW)
+    for name, given, how, message in (
+        ("os-3", rec, {}, r"os-3 is about a law: expected verify\('os-3', recording, law="),
+        ("alpha-flocking", rec, {}, r"expected law=\.\.\., or the scale d and the range r"),
+        ("E1", rec, {"law": LAW}, "not about motion"),
+        ("os-3", rec, {"law": LAW, "d": 7.0}, "law and d or r are given"),
+        ("os-3", rec, {"law": LAW, "q0": Q0}, "a recording: expected"),
+        ("os-3", fl.Recording(T, q, own[1]), {"law": LAW}, "a verdict needs every agent at every sample, and agent 2"),
+        ("os-3", rec.window(0.0, 0.0), {"law": LAW}, "one sample shows no motion"),
+    ):
+        with pytest.raises(ArgumentError, match=message):
+            fl.verify(name, given, **how)

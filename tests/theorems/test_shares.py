@@ -3,21 +3,16 @@
 import pytest
 from scipy.stats import beta
 
-from flockana.theorems.shares import always, interval, mostly, share
+from flockana.theorems.shares import always, interval, mostly
 
 YES, NO, OPEN = [True], [False], [None]
 
 
-def test_shares_have_exact_intervals():
-    count, size, ends = share(7 * YES + 13 * NO)
-    assert (count, size) == (7, 20)
-    assert ends == interval(7, 20) == pytest.approx((beta.ppf(0.025, 7, 14), beta.ppf(0.975, 8, 13)))
-
-
-def test_undecided_seeds_count_against_the_lower_end_and_for_the_upper_one():
-    count, size, ends = share(7 * YES + 9 * NO + 4 * OPEN)
-    assert (count, size) == (7, 20)
-    assert ends == pytest.approx((beta.ppf(0.025, 7, 14), beta.ppf(0.975, 12, 9)))
+@pytest.mark.parametrize("undecided", [0, 4])  # which count against the lower end and for the upper one
+def test_shares_have_exact_intervals(undecided):
+    above = 8 + undecided
+    ends = beta.ppf(0.025, 7, 14), beta.ppf(0.975, above, 20 - above + 1)
+    assert interval(7, 20, undecided=undecided) == pytest.approx(ends)
 
 
 @pytest.mark.parametrize(
@@ -37,17 +32,14 @@ def test_always(outcomes, status):
 @pytest.mark.parametrize(
     ("outcomes", "status"),
     [
-        (20 * YES, "verified"),
-        (20 * YES + 5 * OPEN, "verified"),
-        (20 * YES + 15 * OPEN, "inconclusive"),
-        (3 * YES, "inconclusive"),
-        (20 * NO, "refuted"),
-        (20 * NO + 5 * OPEN, "refuted"),
+        (20 * YES, "verified"), (20 * YES + 5 * OPEN, "verified"), (20 * YES + 15 * OPEN, "inconclusive"),
+        (3 * YES, "inconclusive"), (20 * NO, "refuted"), (20 * NO + 5 * OPEN, "refuted"),
         (20 * NO + 15 * OPEN, "inconclusive"),
     ],
-)
+)  # fmt: skip
 def test_mostly(outcomes, status):
     claim = mostly("x", outcomes, "it holds", "mostly")
     assert claim.status == status
-    assert claim.computed == {"holds": outcomes.count(True), "of": len(outcomes), "share": share(outcomes)[2]}
+    ends = interval(outcomes.count(True), len(outcomes), undecided=outcomes.count(None))
+    assert claim.computed == {"holds": outcomes.count(True), "of": len(outcomes), "share": ends}
     assert ("undecided" in claim.detail) == (None in outcomes)

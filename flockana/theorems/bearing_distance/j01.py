@@ -42,7 +42,11 @@ def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
     return trees
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum("J1", source="Jond, bearing-distance flocking, Theorem 1, (36)")
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Theorem 1 says that the edge vectors x and their rates converge to zero. x = 0 is a collision and contradicts the
+    goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference.
+    """
     law, q, p = random_forest(_TREES, _SEED)
     seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END))
     lengths, trees = np.linalg.norm(edge_vectors(seen.end.q, law.edges or ()), axis=1), _trees(seen)
@@ -66,15 +70,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             f"at least {least:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]
-
-
-THEOREM = erratum(
-    "J1",
-    statement=(
-        "Theorem 1 says that the edge vectors x and their rates converge to zero. x = 0 is a collision and "
-        "contradicts the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity "
-        "difference."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1, (36)",
-    check=_check,
-)

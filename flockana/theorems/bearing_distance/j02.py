@@ -35,7 +35,17 @@ def _positive_definite() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J2",
+    source="Jond, bearing-distance flocking, Theorem 1, proof",
+    expected={"refuted": "hurwitz positive-definite", "verified": "outside"},
+    corrected=("outside",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The proof assumes that the edge matrices are positive definite and A_cl is Hurwitz. W^s = diag(μ(1 - αr/|x|)) is
+    negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i r_i on every edge.
+    DᵀD_in is not positive definite once a node has five children.
+    """
     import sympy as sp
 
     from flockana.symbolic.spanning_trees import frozen_eigenvalues
@@ -69,17 +79,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         ),
         _positive_definite(),
     ]
-
-
-THEOREM = erratum(
-    "J2",
-    statement=(
-        "The proof assumes that the edge matrices are positive definite and A_cl is Hurwitz. W^s = diag(μ(1 - "
-        "αr/|x|)) is negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i "
-        "r_i on every edge. DᵀD_in is not positive definite once a node has five children."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1, proof",
-    check=_check,
-    expected={"refuted": "hurwitz positive-definite", "verified": "outside"},
-    corrected=("outside",),
-)

@@ -39,15 +39,23 @@ def _pairing(mu: float) -> tuple[float, float]:
     true = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
     best = np.inf
     for gammas in permutations(np.linalg.eigvals(stiffness)):
-        roots = [
-            root for m, g in zip(np.linalg.eigvals(damping), gammas, strict=True) for root in np.roots([1.0, m, g])
-        ]
-        gap = np.abs(np.array(roots)[:, None] - true)
+        pairs = zip(np.linalg.eigvals(damping), gammas, strict=True)
+        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - true)
         best = min(best, float(gap[linear_sum_assignment(gap)].max()))
     return best, float(true.real.max())
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J3",
+    source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
+    expected={"refuted": "printed hurwitz", "verified": "trees"},
+    corrected=("trees",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees both are
+    triangular in one order, and it is right; on an undirected path it is not, and A_cl can be unstable though every
+    edge is longer than desired.
+    """
     from flockana.symbolic.spanning_trees import tree_characteristic
 
     residuals = {str(edges): tree_characteristic(edges).residuals[0] for edges in _TREE_SHAPES}
@@ -75,17 +83,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "triangular in one order",
         ),
     ]
-
-
-THEOREM = erratum(
-    "J3",
-    statement=(
-        "After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees "
-        "both are triangular in one order, and it is right; on an undirected path it is not, and A_cl can be "
-        "unstable though every edge is longer than desired."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
-    check=_check,
-    expected={"refuted": "printed hurwitz", "verified": "trees"},
-    corrected=("trees",),
-)

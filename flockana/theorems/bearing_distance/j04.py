@@ -27,9 +27,8 @@ def _loop() -> Claim:
     D, D_in = incidence(5, _TREE), receivers(5, _TREE)
     w = 0.7 * (1.0 - 1.3 / np.linalg.norm(edge_vectors(q, _TREE), axis=1))
     u = law.acceleration(0.0, q, p)
-    error, undirected = (
-        float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
-    )  # W^a = I on a tree
+    # W^a = I on a tree
+    error, undirected = (float(np.abs(-L * w @ D.T @ q - L @ D.T @ p - u).max()) for L in (D_in, D))
     return of_state("loop", _SAME - error / float(np.abs(u).max()), _ROUNDING).described(
         computed=error,
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",
@@ -39,7 +38,17 @@ def _loop() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J4",
+    source="Jond, bearing-distance flocking, section 4, (28) to (35)",
+    expected={"refuted": "28 identity", "verified": "34 loop"},
+    corrected=("loop",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: together
+    they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds D_in Dᵀ, where D_in
+    keeps the receivers' entries alone.
+    """
     signs = "(28) as printed has the wrong sign before q", "the identity before (34) has the wrong sign, too"
     return [
         _identity("28", "separation = -(d W Dᵀ) p + (d W) q", signs[0], disproof=_PROOF),
@@ -47,17 +56,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right", proof=_PROOF),
         _loop(),
     ]
-
-
-THEOREM = erratum(
-    "J4",
-    statement=(
-        "(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: "
-        "together they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds "
-        "D_in Dᵀ, where D_in keeps the receivers' entries alone."
-    ),
-    source="Jond, bearing-distance flocking, section 4, (28) to (35)",
-    check=_check,
-    expected={"refuted": "28 identity", "verified": "34 loop"},
-    corrected=("loop",),
-)

@@ -26,10 +26,18 @@ def _forms(tolerances: Tolerances) -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    estimated, measured = (
-        runs_from_random_starts(ZoneFlocking(own_velocity=name)) for name in ("estimated", "measured")
-    )
+@erratum(
+    "J8",
+    source="Jond, bearing-distance flocking, (17) and Remark 3",
+    expected={"verified": "forms measured", "refuted": "equivalent holds-together"},
+    corrected=("measured",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Remark 3 calls the bearing form with the estimate (17) equivalent. (17) leaves out the global speed term and both
+    bounds: estimates drift away from the velocities, and the flock disperses.
+    """
+    laws = (ZoneFlocking(own_velocity=name) for name in ("estimated", "measured"))
+    estimated, measured = map(runs_from_random_starts, laws)
     drift = [float(np.linalg.norm(run.extra["estimate"][-1] - run.p[-1], axis=1).mean()) for run in estimated]
     flocks = [int(components(run.n, links(run.q[-1], 5.0)).max()) + 1 for run in estimated]
     connected = [not components(run.n, links(run.q[-1], 5.0)).any() for run in measured]
@@ -49,16 +57,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         ).described(witness={"components by seed": flocks}),
         mostly("measured", connected, "with the true velocity the flock is one component", "odometry repairs it"),
     ]
-
-
-THEOREM = erratum(
-    "J8",
-    statement=(
-        "Remark 3 calls the bearing form with the estimate (17) equivalent. (17) leaves out the global speed term and "
-        "both bounds: estimates drift away from the velocities, and the flock disperses."
-    ),
-    source="Jond, bearing-distance flocking, (17) and Remark 3",
-    check=_check,
-    expected={"verified": "forms measured", "refuted": "equivalent holds-together"},
-    corrected=("measured",),
-)

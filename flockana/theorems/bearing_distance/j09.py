@@ -26,7 +26,15 @@ def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
     return float((20.0 - head_on.q[:, 0, 0]).min()), nearest
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J9",
+    source="Jond, bearing-distance flocking, definition of N_i^s",
+    expected={"refuted": "printed flock", "verified": "corrected"},
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """N_i^s contains the aliens at a_i < d <= s_i: one that comes closer exerts no force and passes through the flock.
+    With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss.
+    """
     (through, annulus), (gap, disc) = (_nearest_alien(name) for name in ("annulus", "disc"))
     stand_off = 6.0 - 3.0 * 5.0 / 5.0  # s − v^d w^ga/w^ss
     clear = sum(d > a for d, a in zip(disc, annulus, strict=True))
@@ -51,15 +59,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
         ).described(witness={"printed": annulus, "corrected": disc}),
     ]
-
-
-THEOREM = erratum(
-    "J9",
-    statement=(
-        "N_i^s contains the aliens at a_i < d <= s_i: one that comes closer exerts no force and passes through the "
-        "flock. With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss."
-    ),
-    source="Jond, bearing-distance flocking, definition of N_i^s",
-    check=_check,
-    expected={"refuted": "printed flock", "verified": "corrected"},
-)

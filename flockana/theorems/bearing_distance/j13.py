@@ -6,7 +6,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, erratum, of_map, of_state
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _R, _C, _A, _V_MAX, _SIDE = 1.5, 3.0, 5.0, 4.0, 50.0
@@ -40,8 +40,7 @@ def _braking(law: ZoneFlocking, distance: float, speed: float) -> float:
 def _head_on(law: ZoneFlocking) -> FloatArray:
     """Distances from the wall over time of an agent that runs head on at it."""
     q, p = np.array([_PLACE]), np.array([_HEADING])
-    distances: FloatArray = _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
-    return distances
+    return _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
 
 
 def _letter() -> Claim:
@@ -102,16 +101,15 @@ def _slow() -> Claim:
     )
 
 
-THEOREM = erratum(
+@erratum(
     "J13",
-    statement=(
-        "The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i "
-        "when slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that the "
-        "longer zone changes nothing in a head-on approach. If (8) measures from the zone's own end, the zone does "
-        "what the paper says."
-    ),
     source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
-    check=lambda tolerances: [_letter(), _clamped(), _reaching(), _slow()],
     expected={"refuted": "letter clamped", "verified": "reaching stand-off"},
     corrected=("reaching", "stand-off"),
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i when
+    slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that the longer zone
+    changes nothing in a head-on approach. If (8) measures from the zone's own end, the zone does what the paper says.
+    """
+    return [_letter(), _clamped(), _reaching(), _slow()]

@@ -23,8 +23,7 @@ def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: fl
     weights = ZoneWeights(separation=separation, speed=0.0, cohesion_gain=cohesion, alignment_gain=4.0)
     law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, dt=dt)
     q, p = np.array([[0.0, 0.0], [start, 0.0]]), np.zeros((2, 2))
-    distances: FloatArray = np.diff(law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, :, 0], axis=1)[:, 0]
-    return distances
+    return np.diff(law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, :, 0], axis=1)[:, 0]
 
 
 def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
@@ -74,7 +73,19 @@ def _pair() -> list[Claim]:
     ]
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "J15",
+    source="Jond, bearing-distance flocking, (6)",
+    expected={"refuted": "printed flock", "verified": "rest sliding alone"},
+    corrected=("rest", "sliding"),
+    ours=("alone",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict
+    cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), which is below c whenever there is cohesion, as long as
+    it is r or more, g_c <= w^ls (c/r - 1). A stronger cohesion, which is off at distances up to r, makes the pair slide
+    at r. (Before that agents come closer still: J12.)
+    """
     least = [min_distance(run.q[-1]) for run in runs_from_random_starts(ZoneFlocking(_RADII), separated_start)]
     return [
         *_pair(),
@@ -85,19 +96,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             f"a settled flock keeps its agents c = {_C:g} m apart",
         ).described(witness={"least distance by seed": least}),
     ]
-
-
-THEOREM = erratum(
-    "J15",
-    statement=(
-        "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
-        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), which is below c whenever there is cohesion, as "
-        "long as it is r or more, g_c <= w^ls (c/r - 1). A stronger cohesion, which is off at distances up to r, "
-        "makes the pair slide at r. (Before that agents come closer still: J12.)"
-    ),
-    source="Jond, bearing-distance flocking, (6)",
-    check=_check,
-    expected={"refuted": "printed flock", "verified": "rest sliding alone"},
-    corrected=("rest", "sliding"),
-    ours=("alone",),
-)

@@ -6,7 +6,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.toolkit import Certificate, Claim, FloatArray, erratum, limit_claim, of_map
+from flockana.theorems.toolkit import Certificate, Claim, FloatArray, Tolerances, erratum, limit_claim, of_map
 
 _ROUNDING = 1e-11  # relative: of a few thousand steps straight on
 _A, _C, _SIDE, _SPEED = 5.0, 3.0, 50.0, 3.0
@@ -106,15 +106,15 @@ def _pairs() -> Claim:
     )
 
 
-THEOREM = erratum(
+@erratum(
     "J16",
-    statement=(
-        "Remark 2 says that in a confined environment separated agents eventually reunite, and that otherwise radii "
-        "of attraction may grow until a flockmate is found. Two agents that head for opposite walls at v^d come to "
-        "rest there and never meet. Others run along the walls, one behind the other, which decides nothing about "
-        "later times. Growing radii bring lone agents back, but leave fragments of two or more agents apart."
-    ),
     source="Jond, bearing-distance flocking, Remark 2",
-    check=lambda tolerances: [_at_walls(), _circling(), _growing_radii(), _pairs()],
     expected={"refuted": "at-walls fragments", "inconclusive": "circling", "verified": "growing"},
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Remark 2 says that in a confined environment separated agents eventually reunite, and that otherwise radii of
+    attraction may grow until a flockmate is found. Two agents that head for opposite walls at v^d come to rest there
+    and never meet. Others run along the walls, one behind the other, which decides nothing about later times. Growing
+    radii bring lone agents back, but leave fragments of two or more agents apart.
+    """
+    return [_at_walls(), _circling(), _growing_radii(), _pairs()]

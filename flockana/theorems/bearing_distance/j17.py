@@ -31,7 +31,11 @@ def first_step(happens: npt.NDArray[np.bool_]) -> float:
     return float(np.argmax(happens)) if happens.any() else float("nan")
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum("J17", source="Jond, bearing-distance flocking, section 5.2", expected={"verified": "delay none nearer"})
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed
+    reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer.
+    """
     (hunted, heeded, near), (hunted_too, at_once, far) = _meeting(_SHORT), _meeting(_DETECTION)
     delay, none = heeded - hunted, at_once - hunted_too
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
@@ -56,15 +60,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"the alien comes to {near:.3g} m of the agent that sees 6 m, to {far:.3g} m of the one that sees 9",
         ),
     ]
-
-
-THEOREM = erratum(
-    "J17",
-    statement=(
-        "Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed "
-        "reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer."
-    ),
-    source="Jond, bearing-distance flocking, section 5.2",
-    check=_check,
-    expected={"verified": "delay none nearer"},
-)

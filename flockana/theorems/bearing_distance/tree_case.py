@@ -6,7 +6,6 @@ from functools import cached_property
 from math import sqrt
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
@@ -61,23 +60,15 @@ class TreeCase:
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
-        A: FloatArray = twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
-        return A
+        return twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return ‖x_e‖ of each edge, shape (..., n − 1)."""
-        lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
-        return lengths
-
-    @property
-    def ends(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        """Tails and heads of the edges."""
-        tails, heads = np.array(self.links, dtype=np.intp).T
-        return tails, heads
+        return np.linalg.norm(edge_vectors(q, self.links), axis=-1)
 
     def edges_of(self, x: FloatArray, error: FloatArray) -> Enclosure:
         """Enclose the length of x_j − x_i over each edge, of vectors that are known to an error each."""
-        tails, heads = self.ends
+        tails, heads = np.array(self.links, dtype=np.intp).T
         apart = np.linalg.norm(x[..., heads, :] - x[..., tails, :], axis=-1)
         return Enclosure.around(apart, error[..., tails] + error[..., heads] + 4.0 * EPS * apart).clip(0.0)
 

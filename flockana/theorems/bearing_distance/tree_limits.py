@@ -43,8 +43,7 @@ def edge_shares(case: TreeCase, end: End) -> FloatArray:
     speeds = np.linalg.norm(end.p - end.p.mean(axis=0), axis=1)
     off = end.p_error + sqrt(end.p.shape[1]) * frame_error(end.p)
     H = 0.5 * Enclosure.around(speeds, off).square().sum() + case.energies(lengths, 0.0 * rates).sum()
-    shares: FloatArray = H.hi * (1.0 + case.n * EPS) / case.barrier
-    return shares
+    return H.hi * (1.0 + case.n * EPS) / case.barrier
 
 
 def _directed(case: TreeCase, start: FloatArray) -> FloatArray:

@@ -41,7 +41,8 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
     singular = np.linalg.svd(A, compute_uv=False)[::-1]
     zeros, kernel, rounding = _kernel(singular, (case.n - 1) * (m - 1))
     slowest = min(0.5 * (a - sqrt(max(a * a - 4.0 * mu, 0.0))) for a, mu in springs) / unit
-    return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), max(rounding, _error(len(A))))
+    error = max(rounding, 64.0 * len(A) ** 2 * EPS / POLYNOMIAL)  # of a determinant far outside the spectrum
+    return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), error)
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
@@ -64,8 +65,7 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
     """Return the matrix A of (x, x') with time in another unit."""
     half = len(A) // 2
     scale = np.concatenate([np.ones(half), np.full(half, unit)])
-    scaled: FloatArray = A * (scale[:, None] * unit) / scale[None, :]
-    return scaled
+    return A * (scale[:, None] * unit) / scale[None, :]
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:
@@ -80,8 +80,3 @@ def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, 
     if int(zero.sum()) != expected or values[0] < -rounding * largest:
         return int(zero.sum()), -1.0, rounding
     return expected, float(values[expected] / largest) if expected < len(values) else 1.0, rounding
-
-
-def _error(size: int) -> float:
-    """Return the relative rounding of a determinant far outside the spectrum."""
-    return 64.0 * size**2 * EPS / POLYNOMIAL

@@ -12,8 +12,7 @@ from flockana.theorems.toolkit import Certificate, Observed, condition, evidence
 
 def _errors(case: TreeCase, seen: Observed) -> np.ndarray:
     """Largest relative length error of an edge at each sample, shape (T,)."""
-    errors: np.ndarray = np.abs(case.lengths(seen.run.q) / case.rho - 1.0).max(axis=1)
-    return errors
+    return np.abs(case.lengths(seen.run.q) / case.rho - 1.0).max(axis=1)
 
 
 def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
@@ -69,7 +68,23 @@ def _exponential(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "zone-1-corrected",
+    title="Bearing-distance Theorem 1 corrected: edges of a tree take their desired lengths",
+    source="Jond, bearing-distance flocking, Theorem 1; corrected by us",
+    law=minimal_law,
+    claims=("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"),
+    references=("jond-2025",),
+    author="corrected",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """On a frozen rooted out-tree with constant ρ_i > 0, μ_i > 0 the equilibria are |x_e| = ρ_e, x' = 0: a product of
+    spheres. At each, the spectrum is, edge by edge, the roots of s² + s + μ once and {0, -1} m - 1 times, with 0
+    semisimple: the manifold is normally hyperbolic, and length and velocity errors converge exponentially near it. On
+    an edge from the root V = |x'|²/2 + μ(|x| - ρ)²/2 falls, and V(0) < μρ²/2 excludes its collision. On an undirected
+    tree with the reciprocal law H = Σ|v - v̄|²/2 + Σ μ(|x| - ρ)²/2 falls and every equilibrium without collision has
+    |x_e| = ρ. Distances of pairs that are not edges are not controlled.
+    """
     needs, case = tree_hypotheses(seen)
     if case is None or unmet(needs):
         return needs, []
@@ -77,31 +92,8 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     spacings = f"ρ from {case.rho.min():g} to {case.rho.max():g}"
     needs.append(condition("each edge has one constant desired length", True, detail=spacings))
     spectrum = tree_spectrum(case, case.on_manifold(seen.run.q[-1]))
-    claims = [
-        _lengths(case, seen, needs),
-        velocity_claim(case, seen, needs, stated="|x_e'| -> 0"),
-        _spectrum(case, seen, spectrum, needs),
-    ]
+    velocities = velocity_claim(case, seen, needs, stated="|x_e'| -> 0")
+    claims = [_lengths(case, seen, needs), velocities, _spectrum(case, seen, spectrum, needs)]
     if case.root is None:
         return needs, [*claims, energy_claim(case, seen, needs, tolerances), edge_claim(case, seen, needs, tolerances)]
     return needs, [*claims, _exponential(case, seen, spectrum, needs), root_claim(case, seen, needs, tolerances)]
-
-
-THEOREM = run_theorem(
-    id="zone-1-corrected",
-    title="Bearing-distance Theorem 1 corrected: edges of a tree take their desired lengths",
-    statement=(
-        "On a frozen rooted out-tree with constant ρ_i > 0, μ_i > 0 the equilibria are |x_e| = ρ_e, x' = 0: a product "
-        "of spheres. At each, the spectrum is, edge by edge, the roots of s² + s + μ once and {0, -1} m - 1 times, "
-        "with 0 semisimple: the manifold is normally hyperbolic, and length and velocity errors converge "
-        "exponentially near it. On an edge from the root V = |x'|²/2 + μ(|x| - ρ)²/2 falls, and V(0) < μρ²/2 excludes "
-        "its collision. On an undirected tree with the reciprocal law H = Σ|v - v̄|²/2 + Σ μ(|x| - ρ)²/2 falls and "
-        "every equilibrium without collision has |x_e| = ρ. Distances of pairs that are not edges are not controlled."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1; corrected by us",
-    law=minimal_law,
-    check=_check,
-    claims=("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"),
-    references=("jond-2025",),
-    author="corrected",
-)

@@ -62,7 +62,19 @@ def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "zone-1-printed",
+    title="Bearing-distance Theorem 1 as printed: edges vanish on a spanning tree",
+    source="Jond, bearing-distance flocking, Theorem 1",
+    law=minimal_law,
+    claims=("equilibrium", "edges", "velocities", "hurwitz"),
+    references=("jond-2025",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """If the interaction graph of the minimal model is a spanning tree, the edge vectors x and their rates converge to
+    zero from any initial condition, since A_cl is Hurwitz. False: x = 0 is collision; at rest with every edge at its
+    desired length nothing moves; A_cl is Hurwitz only where all edges are longer than that.
+    """
     needs, case = tree_hypotheses(seen)
     if case is not None and case.root is None:
         needs[1] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
@@ -74,19 +86,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         velocity_claim(case, seen, needs, stated="x' -> 0 on every edge"),
         _hurwitz(case, seen, needs),
     ]
-
-
-THEOREM = run_theorem(
-    id="zone-1-printed",
-    title="Bearing-distance Theorem 1 as printed: edges vanish on a spanning tree",
-    statement=(
-        "If the interaction graph of the minimal model is a spanning tree, the edge vectors x and their rates converge "
-        "to zero from any initial condition, since A_cl is Hurwitz. False: x = 0 is collision; at rest with every edge "
-        "at its desired length nothing moves; A_cl is Hurwitz only where all edges are longer than that."
-    ),
-    source="Jond, bearing-distance flocking, Theorem 1",
-    law=minimal_law,
-    check=_check,
-    claims=("equilibrium", "edges", "velocities", "hurwitz"),
-    references=("jond-2025",),
-)

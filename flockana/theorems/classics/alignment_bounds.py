@@ -13,8 +13,9 @@ import numpy as np
 from flockana.interactions.weights import RationalWeight
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.sampling import spread_over
-from flockana.theorems.toolkit import Claim, Enclosure, Hypothesis, Observed, limit_claim, positive_room
+from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Observed, limit_claim, positive_room, unmet
 
+_PROOF = "cucker-smale"
 QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
 _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
@@ -48,8 +49,7 @@ class AlignmentRate:
         from scipy.integrate import quad
 
         power = 1.0 - 2.0 * self.weight.decay
-        value: float = quad(lambda w: cosh(w) ** power, start, end, epsabs=0.0, epsrel=1e-12, limit=200)[0]
-        return value
+        return quad(lambda w: cosh(w) ** power, start, end, epsabs=0.0, epsrel=1e-12, limit=200)[0]
 
     def beyond(self, start: float) -> float:
         """Return ∫φ from a number to infinity; infinite for β <= ½."""
@@ -116,39 +116,38 @@ class Guarantee:
         """Hypothesis ‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
         v0 = self.seen.velocity_spread[0]
         if self.integral_to_infinity.lo == inf:
-            return Hypothesis(
-                name, "met", 1.0, f"β = {self.seen.law.continuous.weight.decay:g}: the integral is infinite"
-            )
+            return Hypothesis(name, "met", 1.0, f"β = {self.phi.weight.decay:g}: the integral is infinite")
         detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
         return positive_room(name, self.integral_to_infinity - v0, detail)
 
-    def claims(self, names: tuple[str, str, str], needs: list[Hypothesis], proof: str) -> list[Claim]:
+    def claims(self, needs: list[Hypothesis], limit: str = "velocities") -> Checked:
         """Return the claims that positions spread at most to x_M and velocities match, at a rate and in the limit."""
-        bounded, rate, limit = names
-        return [self._bounded(bounded, needs, proof), self._falls(rate, needs, proof), self._limit(limit, needs, proof)]
+        if unmet(needs):
+            return needs, []
+        return needs, [self._bounded(needs), self._falls(needs), self._limit(limit, needs)]
 
-    def _bounded(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+    def _bounded(self, needs: list[Hypothesis]) -> Claim:
         x, x_m = spread_over(self.seen).max(), self.bound
         known = x_m.mid > 0.0 and x_m.mid < inf
         k = int(self.seen.spread.mid.argmax())
-        return judged(name, 1.0 - x / x_m if known else Enclosure.around(0.0, inf), needs, proof=proof).described(
+        return judged("bounded", 1.0 - x / x_m if known else Enclosure.around(0.0, inf), needs, proof=_PROOF).described(
             computed=float(x.mid),
             stated=f"‖x(t)‖ <= x_M = {x_m.mid:.6g}",
             witness={"time": float(self.seen.t[k])},
             detail=f"‖x‖ is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
         )
 
-    def _falls(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+    def _falls(self, needs: list[Hypothesis]) -> Claim:
         """Return the claim that ‖v‖ falls at the guaranteed rate up to each sample at which it exceeds its error."""
         seen, v, rate = self.seen, self.seen.velocity_spread, self.bound.falling(np.vectorize(self.phi))
         count = seen.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:
-            return undecided(name, "no fall above the error of the run", needs, proof=proof)
+            return undecided("rate", "no fall above the error of the run", needs, proof=_PROOF)
         t = seen.t[1:count] - seen.t[0]
         fall = (v[0] / v[1:count]).log() / t
         margin = fall / rate - 1.0
         k = margin.worst_index
-        return judged(name, margin, needs, proof=proof).described(
+        return judged("rate", margin, needs, proof=_PROOF).described(
             computed=float(fall.mid[k]),
             stated=f"‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
             witness={"time": float(t[k] + seen.t[0])},
@@ -156,10 +155,10 @@ class Guarantee:
             f"{seen.until(count)}",
         )
 
-    def _limit(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
+    def _limit(self, name: str, needs: list[Hypothesis]) -> Claim:
         v, x_m = self.seen.velocity_spread.mid, float(self.bound.mid)
         text = f"‖x‖ never exceeds {x_m:.6g}, so ‖v‖ falls exponentially" if x_m < inf else "x_M cannot be computed"
-        return limit_claim(name, needs, proof=proof).described(
+        return limit_claim(name, needs, proof=_PROOF).described(
             computed=float(v[-1]),
             stated="‖v(t)‖ -> 0, and every q_j - q_i has a limit",
             witness={"time": float(self.seen.t[-1])},

@@ -9,7 +9,46 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Toleran
 from flockana.theorems.toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+def _invariant(
+    seen: Observed, psi: AlignmentRate, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
+) -> Claim:
+    """Return the claim that w + ∫λψ is conserved."""
+    start = float(x.mid[0])
+    passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
+    off = abs((w + passed) / w[0] - 1.0)
+    k = int(off.mid.argmax())
+    return judged("invariant", tolerances.energy - off, needs, proof="cucker-smale").described(
+        computed=float(off.mid[k]),
+        stated=f"w + ∫λψ from x(0) to x is w(0), to {tolerances.energy:g} of it",
+        witness={"time": float(seen.t[k])},
+        detail=f"the invariant is off by {off.mid[k]:.2g} of w(0) at most",
+    )
+
+
+def _side(name: str, need: Hypothesis, needs: Needs, computed: float, stated: str, text: str) -> Claim:
+    """Return the claim for one side of the threshold, vacuous on the other."""
+    if need.status == "unmet":
+        return vacuous(name, need)
+    claim = limit_claim(name, [*needs, need], computed=computed, stated=stated, proof="cucker-smale")
+    return claim.described(detail=f"{need.detail}: {text}")
+
+
+@run_theorem(
+    "cucker-smale-pair",
+    title="Two agents on a line match velocities below a critical relative speed, and separate permanently above it",
+    source="Ours, on Cucker and Smale 2007 and Ha and Liu 2009",
+    law=law_is("the Cucker-Smale law", CuckerSmale),
+    claims=("invariant", "bounded", "parts"),
+    references=("cucker-smale-2007", "ha-liu-2009", "flockana"),
+    author="flockana",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, w + ∫λψ(s) ds
+    from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by n. If w(0) < ∫λψ from
+    x(0) on, velocities match at the distance up to which the integral is w(0); if w(0) is more, as it can be for β > ½
+    only, they separate permanently, at a relative speed of at least w(0) minus the integral: the condition of Ha and
+    Liu cannot be left out.
+    """
     needs = [condition("two agents on a line", (seen.n, seen.m) == (2, 1), detail=f"n = {seen.n}, m = {seen.m}")]
     if unmet(needs):
         return needs, []
@@ -36,46 +75,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _side("bounded", slow, needs, float(x.mid[-1]), match, bounded),
         _side("parts", fast, needs, end, "the two never match and separate", parts),
     ]
-
-
-def _invariant(
-    seen: Observed, psi: AlignmentRate, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
-) -> Claim:
-    """Return the claim that w + ∫λψ is conserved."""
-    start = float(x.mid[0])
-    passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
-    off = abs((w + passed) / w[0] - 1.0)
-    k = int(off.mid.argmax())
-    return judged("invariant", tolerances.energy - off, needs, proof="cucker-smale").described(
-        computed=float(off.mid[k]),
-        stated=f"w + ∫λψ from x(0) to x is w(0), to {tolerances.energy:g} of it",
-        witness={"time": float(seen.t[k])},
-        detail=f"the invariant is off by {off.mid[k]:.2g} of w(0) at most",
-    )
-
-
-def _side(name: str, need: Hypothesis, needs: Needs, computed: float, stated: str, text: str) -> Claim:
-    """Return the claim for one side of the threshold, vacuous on the other."""
-    if need.status == "unmet":
-        return vacuous(name, need)
-    claim = limit_claim(name, [*needs, need], computed=computed, stated=stated, proof="cucker-smale")
-    return claim.described(detail=f"{need.detail}: {text}")
-
-
-THEOREM = run_theorem(
-    id="cucker-smale-pair",
-    title="Two agents on a line match velocities below a critical relative speed, and separate permanently above it",
-    statement=(
-        "Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, w + ∫λψ(s) "
-        "ds from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by n. If w(0) "
-        "< ∫λψ from x(0) on, velocities match at the distance up to which the integral is w(0); if w(0) is more, as "
-        "it can be for β > ½ only, they separate permanently, at a relative speed of at least w(0) minus the "
-        "integral: the condition of Ha and Liu cannot be left out."
-    ),
-    source="Ours, on Cucker and Smale 2007 and Ha and Liu 2009",
-    law=law_is("the Cucker-Smale law", CuckerSmale),
-    check=_check,
-    claims=("invariant", "bounded", "parts"),
-    references=("cucker-smale-2007", "ha-liu-2009", "flockana"),
-    author="flockana",
-)

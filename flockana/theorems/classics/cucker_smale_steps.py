@@ -8,9 +8,8 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.taylor_step import TaylorStep
 from flockana.theorems.classics.alignment_bounds import Guarantee
 from flockana.theorems.hypotheses import condition, positive_room
-from flockana.theorems.toolkit import Checked, Enclosure, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Checked, Enclosure, Hypothesis, Observed, Tolerances, run_theorem
 
-_CLAIMS = ("bounded", "rate", "velocities")
 _ROUNDING = 1e-14  # relative, of a product of three numbers
 
 
@@ -22,31 +21,23 @@ def _law(seen: Observed) -> Hypothesis:
     return condition("steps of the Cucker-Smale law are applied", steps, detail=name)
 
 
-def _short_step(seen: Observed, strength: float) -> Hypothesis:
-    """Return the hypothesis h λ <= 1, under which no step reverses a relative velocity."""
-    most = Enclosure.around(seen.law.dt * strength, _ROUNDING * seen.law.dt * strength)
-    return positive_room("h λ <= 1", 1.0 + 2.0 * _ROUNDING - most, f"h λ = {float(most.mid):.6g}")
-
-
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    guarantee = Guarantee(seen, sqrt(2.0))
-    needs = [_short_step(seen, guarantee.phi.strength), guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
-    return needs, [] if unmet(needs) else guarantee.claims(_CLAIMS, needs, proof="cucker-smale")
-
-
-THEOREM = run_theorem(
-    id="cucker-smale-steps",
+@run_theorem(
+    "cucker-smale-steps",
     title="The Cucker-Smale law in steps of time flocks as the continuous one, if steps are short",
-    statement=(
-        "With steps h of the Cucker-Smale law, p' = p + h u and positions moved by h times p, p' or their mean, let "
-        "h λ <= 1, where λ = nK of plain sums and K of means. If ‖v(0)‖ < ∫φ from ‖x(0)‖ on, as always for β <= ½, "
-        "then ‖x‖ <= x_M at all steps and ‖v‖ <= ‖v(0)‖ (1 - hφ(x_M))^k <= ‖v(0)‖ exp(-φ(x_M) t). In our words, after "
-        "the discrete-time theorem of Cucker and Smale, who bound the step too."
-    ),
     source="Cucker and Smale 2007, discrete time; condition and bounds ours, after Ha and Liu 2009",
     law=_law,
-    check=_check,
-    claims=_CLAIMS,
+    claims=("bounded", "rate", "velocities"),
     references=("cucker-smale-2007", "ha-liu-2009", "flockana"),
     author="flockana",
 )
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With steps h of the Cucker-Smale law, p' = p + h u and positions moved by h times p, p' or their mean, let h λ <=
+    1, where λ = nK of plain sums and K of means. If ‖v(0)‖ < ∫φ from ‖x(0)‖ on, as always for β <= ½, then ‖x‖ <= x_M
+    at all steps and ‖v‖ <= ‖v(0)‖ (1 - hφ(x_M))^k <= ‖v(0)‖ exp(-φ(x_M) t). In our words, after the discrete-time
+    theorem of Cucker and Smale, who bound the step too.
+    """
+    guarantee = Guarantee(seen, sqrt(2.0))
+    most = seen.law.dt * guarantee.phi.strength  # at most 1, no step reverses a relative velocity
+    room = 1.0 + 2.0 * _ROUNDING - Enclosure.around(most, _ROUNDING * most)
+    short = positive_room("h λ <= 1", room, f"h λ = {most:.6g}")
+    return guarantee.claims([short, guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")])

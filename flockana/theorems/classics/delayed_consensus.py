@@ -23,8 +23,7 @@ _SWEEP = 1e-9  # relative: to which a sweep locates a crossing that double roots
 
 
 def _net(n: int, pairs: list[tuple[int, int]]) -> FloatArray:
-    dense: FloatArray = laplacian(n, np.array(pairs, dtype=np.int32)).toarray()
-    return dense
+    return laplacian(n, np.array(pairs, dtype=np.int32)).toarray()
 
 
 def _nets() -> dict[str, tuple[DelaySystem, float]]:
@@ -37,9 +36,8 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
         "star of 5": (_net(5, star), 5.0),
         "complete net of 4": (_net(4, whole), 4.0),
     }
-    flock = delay_system(
-        Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0)), hexagonal_patch(1, Algorithm1().alpha.length)
-    )
+    law = Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0))
+    flock = delay_system(law, hexagonal_patch(1, law.alpha.length))
     top = float(np.linalg.eigvalsh(flock.late[1])[-1])
     nets = {name: (consensus_system(matrix), largest) for name, (matrix, largest) in known.items()}
     free = replace(flock, neutral=consensus_system(flock.late[1]).neutral)  # nothing holds any place, not only rigidly
@@ -117,29 +115,19 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    nets = _nets()
-    return [
-        _margin(nets),
-        _side("below", -1, nets),
-        _side("above", 1, nets),
-        _exact("root-below", -1),
-        _exact("root-above", 1),
-        _average(nets),
-    ]
-
-
-THEOREM = erratum(
+@erratum(
     "delayed-consensus",
     title="Consensus bears a delay below π/(2 λ_n), and none above",
-    statement=(
-        "Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever "
-        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at "
-        "the frequency λ_n. Compared with the delay margin that the library finds for any flock, on nets whose "
-        "spectrum is known, and with the rightmost root just below and just above it."
-    ),
     source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
-    check=_check,
     references=("olfati-saber-murray-2004",),
     expected={"verified": "margin below above root-below root-above average"},
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever it
+    is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at the frequency
+    λ_n. Compared with the delay margin that the library finds for any flock, on nets whose spectrum is known, and with
+    the rightmost root just below and just above it.
+    """
+    nets = _nets()
+    sides, roots = (("below", -1), ("above", 1)), (("root-below", -1), ("root-above", 1))
+    return [_margin(nets), *(_side(*side, nets) for side in sides), *(_exact(*root) for root in roots), _average(nets)]

@@ -16,16 +16,15 @@ _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart
 
 
-def _plain(law: HeadingAveraging) -> Hypothesis:
-    """Return the hypothesis that headings are averaged as numbers, without noise."""
+def _kinds(run: Trajectory) -> list[Hypothesis]:
+    """Return the hypotheses that headings are averaged as numbers, without noise, and that every step is kept."""
+    law, steps = run.law, np.diff(run.t)
     plain = law.average == "headings" and law.noise == 0.0
-    return condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}")
-
-
-def _every_step(run: Trajectory) -> Hypothesis:
-    steps = np.diff(run.t)
-    kept = "heading" in run.extra and bool(np.all(np.abs(steps - run.law.dt) <= _EVERY * run.law.dt))
-    return condition("every step is kept", kept, detail=f"{len(run.t)} samples")
+    kept = "heading" in run.extra and bool(np.all(np.abs(steps - law.dt) <= _EVERY * law.dt))
+    return [
+        condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}"),
+        condition("every step is kept", kept, detail=f"{len(run.t)} samples"),
+    ]
 
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
@@ -57,20 +56,16 @@ def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
-    enough = condition(
-        f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
-    )
+    name = f"n - 1 = {n - 1} jointly connected windows in a row"
+    enough = condition(name, bool(found), detail=f"{len(found)} times in the run")
     slowest = max((b.factor for b in found), default=float("nan"))
+    first = (missed[0].start, missed[0].stop) if missed else None
+    text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
     return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF).described(
         computed=slowest,
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
-        witness={
-            "blocks": len(found),
-            "steps of the first missed": (missed[0].start, missed[0].stop) if missed else None,
-        },
-        detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
-        if found
-        else does_not_hold(enough.name),
+        witness={"blocks": len(found), "steps of the first missed": first},
+        detail=text if found else does_not_hold(name),
     )
 
 
@@ -84,9 +79,23 @@ def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connec
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "jlm-headings",
+    title="Nearest-neighbour averaging: headings agree under joint connectivity",
+    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
+    law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
+    claims=("hull", "contraction", "agreement"),
+    references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
+    ours=("hull", "contraction"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one speed.
+    If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start on, across each
+    of which the agents are linked together, all headings tend to a common one. No heading ever leaves the span of those
+    before, and over n - 1 such intervals the span shrinks by a factor that the nets guarantee.
+    """
     run = seen.run
-    if unmet(needs := [_plain(run.law), _every_step(run)]):
+    if unmet(needs := _kinds(run)):
         return needs, []
     headings = run.extra["heading"]
     nets = [run.law.links(q) for q in run.q[:-1]]
@@ -99,22 +108,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _contraction(headings, averaging.blocks(nets, headings, windows), needs),
         _limit(run, headings[-1], [*needs, lasting], connected),
     ]
-
-
-THEOREM = run_theorem(
-    id="jlm-headings",
-    title="Nearest-neighbour averaging: headings agree under joint connectivity",
-    statement=(
-        "Let each agent's heading become the mean of its own and its neighbours' headings, all agents moving at one "
-        "speed. If there is an infinite sequence of contiguous, non-empty, bounded intervals of time from the start "
-        "on, across each of which the agents are linked together, all headings tend to a common one. No heading ever "
-        "leaves the span of those before, and over n - 1 such intervals the span shrinks by a factor that the nets "
-        "guarantee."
-    ),
-    source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
-    check=_check,
-    law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
-    claims=("hull", "contraction", "agreement"),
-    references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
-    ours=("hull", "contraction"),
-)

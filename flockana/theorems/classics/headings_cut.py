@@ -2,15 +2,15 @@
 
 from fractions import Fraction
 
-from flockana.theorems.toolkit import Claim, erratum, exact
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 _AWAY = Fraction(1, 100)  # of a turn: how far two agents head to either side of the direction of angle 0
 _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turned
 
 
-def averaged(headings: tuple[Fraction, ...], zero: Fraction = Fraction(0)) -> Fraction:
-    """The mean of headings in turns, each counted in [zero, zero + 1), as a direction in [0, 1)."""
-    counted = [zero + (heading - zero) % 1 for heading in headings]
+def averaged(headings: tuple[Fraction, ...]) -> Fraction:
+    """The mean of headings in turns, each counted in [0, 1), as a direction in [0, 1)."""
+    counted = [heading % 1 for heading in headings]
     return (sum(counted, start=Fraction(0)) / len(counted)) % 1
 
 
@@ -55,17 +55,17 @@ def _vectors() -> Claim:
     )
 
 
-THEOREM = erratum(
+@erratum(
     "jlm-cut",
     title="Mean headings depend on where angles are counted from",
-    statement=(
-        "With headings in [0, 2π) the mean of two that differ little across angle 0 points backwards: the linear rule "
-        "is not invariant under rotations of the flock, as a rule of nearest neighbours should be. It is invariant as "
-        "long as no heading passes angle 0; Vicsek's mean of unit vectors always is."
-    ),
     source="ours, on Jadbabaie, Lin and Morse's averages of headings in [0, 2π)",
-    check=lambda tolerances: [_turned(), _away_from_cut(), _vectors()],
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
     expected={"verified": "frame-bound clear-of-cut vectors"},
     author="flockana",
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """With headings in [0, 2π) the mean of two that differ little across angle 0 points backwards: the linear rule is
+    not invariant under rotations of the flock, as a rule of nearest neighbours should be. It is invariant as long as no
+    heading passes angle 0; Vicsek's mean of unit vectors always is.
+    """
+    return [_turned(), _away_from_cut(), _vectors()]

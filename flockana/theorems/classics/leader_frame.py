@@ -35,13 +35,9 @@ def some_informed(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that informed agents share one c1 > 0 and one c2 > 0, and the others have none."""
     pull, match = gains_of(run)
     who = pull > 0.0
-    alike = (
-        who.any() and np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
-    )
-    detail = f"{int(who.sum())} of {run.n} agents are informed"
-    return condition(
-        "some agents are informed, with c1 > 0 and c2 > 0, the same for all of them", bool(alike), detail=detail
-    )
+    alike = np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
+    name = "some agents are informed, with c1 > 0 and c2 > 0, the same for all of them"
+    return condition(name, alike, detail=f"{int(who.sum())} of {run.n} agents are informed")
 
 
 def constant_velocity(run: Trajectory) -> Hypothesis:
@@ -68,11 +64,9 @@ def _seen(run: Trajectory) -> Trajectory:
     gains = replace(law.gains, c1_gamma=tuple(pull.tolist()), c2_gamma=tuple(match.tolist()))
     still = Algorithm2(law.alpha, gains, StaticTarget((0.0,) * run.m))
     feedforward = bool(getattr(law, "feedforward", False))
-    between = (
-        None
-        if run.between is None
-        else Between(**_shifted(law.target, run.between, feedforward), slack=run.between.slack)
-    )
+    between = run.between
+    if between is not None:
+        between = Between(**_shifted(law.target, between, feedforward), slack=between.slack)
     return replace(run, **_shifted(law.target, run, feedforward), law=still, extra={}, between=between)
 
 

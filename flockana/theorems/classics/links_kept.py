@@ -18,9 +18,8 @@ def _joined(seen: Observed) -> Hypothesis:
     """The hypothesis that the links join all agents."""
     ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
     parts = len({*components(seen.n, ends).tolist()})
-    return condition(
-        "the links join all agents", parts == 1, float(1 - parts), f"{parts} component(s), {len(ends)} links"
-    )
+    text = f"{parts} component(s), {len(ends)} links"
+    return condition("the links join all agents", parts == 1, float(1 - parts), text)
 
 
 def longest_link(seen: Observed) -> Enclosure:
@@ -48,7 +47,26 @@ def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "links-kept",
+    title="A tension without bound at the range keeps the links of the start, and velocities agree",
+    source=(
+        "ours, after Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that "
+        "of the start, without the links that both add"
+    ),
+    law=law_is("link-keeping", LinkKeeping),
+    claims=("rate", "balance", "links", "connected", "velocities"),
+    references=("zavlanos-2007", "ji-egerstedt-2007"),
+    author="flockana",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy H = Σ ψ +
+    ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the length at which it
+    alone has H(0), which is below r; if the links join all agents, they do so at all times, and with c > 0 all
+    velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded at contact too, so that
+    neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a first-order rendezvous. This is a
+    part of both results, in our words.
+    """
     law, joined, energy = seen.law, _joined(seen), seen.energy[0]
     longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS)
     level = f"no link is longer than {longest.mid:.5g}, at which one link alone has the energy H(0) = {energy.mid:.5g}"
@@ -61,26 +79,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _below(seen, "connected", Enclosure.of(law.r), whole, [joined]),
         velocities_match(seen, [joined, damped], name="velocities", proof="matched-velocities"),
     ]
-
-
-THEOREM = run_theorem(
-    id="links-kept",
-    title="A tension without bound at the range keeps the links of the start, and velocities agree",
-    statement=(
-        "Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy H = Σ "
-        "ψ + ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the length at "
-        "which it alone has H(0), which is below r; if the links join all agents, they do so at all times, and with c "
-        "> 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded at contact "
-        "too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a first-order "
-        "rendezvous. This is a part of both results, in our words."
-    ),
-    source=(
-        "ours, after Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that "
-        "of the start, without the links that both add"
-    ),
-    check=_check,
-    law=law_is("link-keeping", LinkKeeping),
-    claims=("rate", "balance", "links", "connected", "velocities"),
-    references=("zavlanos-2007", "ji-egerstedt-2007"),
-    author="flockana",
-)

@@ -24,13 +24,28 @@ def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
     return Hypothesis(name, "assumed" if count else "unmet", float(count), text), who
 
 
-def _check(observed: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "su-informed",
+    title="Algorithm 2 with few informed agents: they follow, and so does who is linked to them",
+    source="Su, Wang and Lin 2009, on a minority of informed agents",
+    law=law_is("Algorithm 2", Algorithm2),
+    claims=CLAIMS,
+    leads={"pairs": pairs_apart, "one-instant": pairs_apart},
+    references=("su-2009", "olfati-saber-2006"),
+    corrected=("one-instant",),
+)
+def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
+    """The virtual leader keeps its velocity, a few agents feel it with c1, c2 > 0, the others do not. Let Q be the
+    energy seen from the leader, c1α V + ½ c1 Σ ‖q_i − q_r‖² of the informed + ½ Σ ‖p_i − p_r‖². Then Q never rises; (i)
+    every informed agent stays within sqrt(2 Q(0)/c1) of the leader; (ii) the informed take on its velocity; (iii) so
+    does an uninformed agent with an infinite sequence of contiguous, nonempty, uniformly bounded intervals from t0 on,
+    across each of which a joint path leads from it to an informed one; (iv) with Q(0) < (k+1) c*, at most k distinct
+    pairs collide. (iv) holds at each instant, and for k = 0; over time more pairs can (erratum E13). (iii) is open
+    here: links may be as weak as one likes when they come and go, and a run shows its own end only.
+    """
     run = observed.run
-    needs = [
-        leader_frame.some_informed(run),
-        positive(observed, c1_alpha="c1α", c2_alpha="c2α"),
-        leader_frame.constant_velocity(run),
-    ]
+    gains, steady = positive(observed, c1_alpha="c1α", c2_alpha="c2α"), leader_frame.constant_velocity(run)
+    needs = [leader_frame.some_informed(run), gains, steady]
     if unmet(needs):
         return needs, []
     seen = leader_frame.as_the_leader_sees(observed)
@@ -45,26 +60,3 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]
-
-
-THEOREM = run_theorem(
-    id="su-informed",
-    title="Algorithm 2 with few informed agents: they follow, and so does who is linked to them",
-    statement=(
-        "The virtual leader keeps its velocity, a few agents feel it with c1, c2 > 0, the others do not. Let Q be the "
-        "energy seen from the leader, c1α V + ½ c1 Σ ‖q_i − q_r‖² of the informed + ½ Σ ‖p_i − p_r‖². Then Q never "
-        "rises; (i) every informed agent stays within sqrt(2 Q(0)/c1) of the leader; (ii) the informed take on its "
-        "velocity; (iii) so does an uninformed agent with an infinite sequence of contiguous, nonempty, uniformly "
-        "bounded intervals from t0 on, across each of which a joint path leads from it to an informed one; (iv) "
-        "with Q(0) < (k+1) c*, at most k distinct pairs collide. (iv) holds at each instant, and for k = 0; over time "
-        "more pairs can (erratum E13). (iii) is open here: links may be as weak as one likes when they come and go, "
-        "and a run shows its own end only."
-    ),
-    source="Su, Wang and Lin 2009, on a minority of informed agents",
-    law=law_is("Algorithm 2", Algorithm2),
-    check=_check,
-    claims=CLAIMS,
-    leads={"pairs": pairs_apart, "one-instant": pairs_apart},
-    references=("su-2009", "olfati-saber-2006"),
-    corrected=("one-instant",),
-)

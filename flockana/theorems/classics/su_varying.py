@@ -81,12 +81,24 @@ def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
     return [attraction(replace(seen.law, gains=gains), q, p, off=off, p_off=p_off).certificate]
 
 
-def _check(observed: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "su-varying",
+    title="A virtual leader of varying velocity: the centre of mass converges if all agents know its acceleration",
+    source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
+    law=law_is("Algorithm 2", Algorithm2, composed=True),
+    claims=CLAIMS,
+    references=("su-2009", "olfati-saber-2006"),
+)
+def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
+    """All agents feel the leader with c1, c2 > 0, and know its acceleration. Then q_c − q_r and p_c − p_r decay
+    exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a leader at
+    rest, so that also all velocities match the leader's, every agent stays within sqrt(2 Q(0)/c1) of it, and none
+    collide below c*; the positions of single agents do not converge to it. Algorithm 2 itself, without the
+    acceleration, leaves a lag.
+    """
     run = observed.run
-    needs = [
-        condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent),
-        _is_feedforward(run),
-    ]
+    alike = condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
+    needs = [alike, _is_feedforward(run)]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
@@ -102,21 +114,3 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
         stays_within(seen, needs, name="distance", proof=PROOF),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]
-
-
-THEOREM = run_theorem(
-    id="su-varying",
-    title="A virtual leader of varying velocity: the centre of mass converges if all agents know its acceleration",
-    statement=(
-        "All agents feel the leader with c1, c2 > 0, and know its acceleration. Then q_c − q_r and p_c − p_r decay "
-        "exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a "
-        "leader at rest, so that also all velocities match the leader's, every agent stays within sqrt(2 Q(0)/c1) of "
-        "it, and none collide below c*; the positions of single agents do not converge to it. Algorithm 2 itself, "
-        "without the acceleration, leaves a lag."
-    ),
-    source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
-    law=law_is("Algorithm 2", Algorithm2, composed=True),
-    check=_check,
-    claims=CLAIMS,
-    references=("su-2009", "olfati-saber-2006"),
-)

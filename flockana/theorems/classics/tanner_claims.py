@@ -42,10 +42,8 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
     what: dict[str, Any] = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
-    return [
-        velocities_match(seen, needs, name=names[0], proof=MATCHED),
-        decays_to_zero(seen, names[1], needs, series=force, proof=forces, **what),
-    ]
+    critical = decays_to_zero(seen, names[1], needs, series=force, proof=forces, **what)
+    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), critical]
 
 
 def out_of_range(seen: Observed) -> Enclosure:

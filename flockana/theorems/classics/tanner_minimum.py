@@ -19,8 +19,21 @@ def _own_block() -> Any:
     return [sp.simplify(sp.diff(total - own, a, b)) for a in places[0] for b in places[0]]
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """Three agents, all joined, at rest on a line at spacing √3/2 d: no force acts, and the middle is on a hill."""
+@erratum(
+    "tanner-minimum",
+    source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
+    references=("tanner-2007", "flockana"),
+    expected={"refuted": "printed", "verified": "corrected second-order"},
+    corrected=("corrected", "second-order"),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The theorem on fixed networks says that the flock approaches a state that minimises the potentials of all agents.
+    Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and √3/2 d apart, stay
+    there, and the potential of the one in the middle falls to either side. But that state is unstable: at a minimum of
+    the total energy each agent's own potential is least to second order, so that the printed claim fails for a thin set
+    of starts. With many links agents are off the minima of single pairs even in a stable limit.
+    """
+    # Three agents, all joined, at rest on a line at spacing √3/2 d: no force acts, and the middle is on a hill.
     import sympy as sp
 
     s, y = sp.symbols("s y", positive=True)
@@ -44,21 +57,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "potential: where the total is least each agent's own is, to second order",
         ),
     ]
-
-
-THEOREM = erratum(
-    "tanner-minimum",
-    statement=(
-        "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of all "
-        "agents. Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and √3/2 "
-        "d apart, stay there, and the potential of the one in the middle falls to either side. But that state is "
-        "unstable: at a minimum of the total energy each agent's own potential is least to second order, so that the "
-        "printed claim fails for a thin set of starts. With many links agents are off the minima of single pairs even "
-        "in a stable limit."
-    ),
-    source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
-    check=_check,
-    references=("tanner-2007", "flockana"),
-    expected={"refuted": "printed", "verified": "corrected second-order"},
-    corrected=("corrected", "second-order"),
-)

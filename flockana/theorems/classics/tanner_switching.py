@@ -25,7 +25,21 @@ def _connected(seen: Observed) -> Hypothesis:
     return Hypothesis(name, "assumed", None, "connected at every sample; its energy does not guarantee more")
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "tanner-switching",
+    title="A net of proximity that stays connected flocks, though its forces jump",
+    source="Tanner, Jadbabaie and Pappas 2007, on switching networks; the sufficient condition is ours",
+    law=law_is("the law on a net of proximity", ProximityFlocking),
+    claims=("energy", "no-collision", "velocities", "critical"),
+    references=("tanner-2007",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let agents steer by u_i = -Σ (p_i - p_j) - Σ ∇V_ij over those nearer than R, V being unbounded at contact, with
+    one minimum, and constant from R on, where its gradient may jump; solutions are Filippov's. If the net is connected
+    at all times, velocities become the same, no two agents collide, and the flock tends to a state in which no force
+    acts. That it stays connected is certain if H(0) < (n - 1) V(R): in a disconnected net at least n - 1 pairs are
+    beyond R.
+    """
     if unmet(needs := [_connected(seen)]):
         return needs, []
     return needs, [
@@ -33,21 +47,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         no_collision(seen, *np.triu_indices(seen.n, 1), "tanner", []),
         *comes_to_rest(seen, needs, ("velocities", "critical")),
     ]
-
-
-THEOREM = run_theorem(
-    id="tanner-switching",
-    title="A net of proximity that stays connected flocks, though its forces jump",
-    statement=(
-        "Let agents steer by u_i = -Σ (p_i - p_j) - Σ ∇V_ij over those nearer than R, V being unbounded at contact, "
-        "with one minimum, and constant from R on, where its gradient may jump; solutions are Filippov's. If the net "
-        "is connected at all times, velocities become the same, no two agents collide, and the flock tends to a state "
-        "in which no force acts. That it stays connected is certain if H(0) < (n - 1) V(R): in a disconnected net at "
-        "least n - 1 pairs are beyond R."
-    ),
-    source="Tanner, Jadbabaie and Pappas 2007, on switching networks; the sufficient condition is ours",
-    law=law_is("the law on a net of proximity", ProximityFlocking),
-    check=_check,
-    claims=("energy", "no-collision", "velocities", "critical"),
-    references=("tanner-2007",),
-)

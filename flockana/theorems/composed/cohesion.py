@@ -61,27 +61,23 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "cohesion",
+    title="Agents that a γ-agent pulls stay near it",
+    source="ours, on Olfati-Saber 2006, Theorem 3(i)",
+    law=law_is("Algorithm 2 or 3", Algorithm2, Algorithm3, composed=True),
+    claims=("bound",),
+    references=("olfati-saber-2006", "flockana"),
+    author="flockana",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Where no term adds energy, the potential of each agent's own pull is at most H(0) minus the least energy of all
+    pairs: with a linear pull ‖q_i − q_r‖ <= sqrt(2 H(0)/c1γ_i) of a γ-agent at rest, or of the centre of mass where one
+    gain pulls all and the energy is that of the shape; with a bounded pull of length ℓ sqrt(2 H(0)/c1γ_i + (H(0)/(c1γ_i
+    ℓ))²).
+    """
     pulls = seen.law.target is not None and bool(np.max(gains_of(seen)) > 0.0)
     if unmet(needs := [condition("c1γ > 0 of an agent", pulls, detail="" if pulls else "the γ-agent pulls nobody")]):
         return needs, []
     needs += nothing_adds_energy(seen) + ([] if seen.law.alpha is None else least_is_known(seen))
     return needs, [stays_within(seen, needs)]
-
-
-THEOREM = run_theorem(
-    id="cohesion",
-    title="Agents that a γ-agent pulls stay near it",
-    statement=(
-        "Where no term adds energy, the potential of each agent's own pull is at most H(0) minus the least energy of "
-        "all pairs: with a linear pull ‖q_i − q_r‖ <= sqrt(2 H(0)/c1γ_i) of a γ-agent at rest, or of the centre of "
-        "mass where one gain pulls all and the energy is that of the shape; with a bounded pull of length ℓ sqrt(2 "
-        "H(0)/c1γ_i + (H(0)/(c1γ_i ℓ))²)."
-    ),
-    source="ours, on Olfati-Saber 2006, Theorem 3(i)",
-    law=law_is("Algorithm 2 or 3", Algorithm2, Algorithm3, composed=True),
-    check=_check,
-    claims=("bound",),
-    references=("olfati-saber-2006", "flockana"),
-    author="flockana",
-)

@@ -11,6 +11,7 @@ never grows to more than six times itself on the way (measured, at random Λ and
 allowed there.
 """
 
+from functools import partial
 from math import inf, sqrt
 
 import numpy as np
@@ -51,9 +52,7 @@ def hold(
         return _UNKNOWN
     room = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
     windows = [*(w for w in law.interaction.d1 * basins.WINDOWS if w < room), room]
-    leaving, lipschitz = basins.barrier(
-        curvature, distance, windows, lambda window: _lipschitz(law, q, window), off=off
-    )
+    leaving, lipschitz = basins.barrier(curvature, distance, windows, partial(_lipschitz, law, q), off=off)
     stability = 1.0 if dt is None else _stability(law, q, stiffest, dt)
     height = basins.excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
     return basins.Basin(height, leaving, distance + off, curvature, stability)

@@ -12,8 +12,13 @@ _SAME = 1e-9  # relative: two forces that differ by less are the same
 _ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """The forces on three agents before and after the axes are turned, as printed and as corrected."""
+@erratum("L1", source="Li, Yuan and Liu, (7) and (9)")
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product of
+    two vectors is undefined; by components it depends on the axes. The paper presumably means the scalar force once and
+    n once.
+    """
+    # The forces on three agents before and after the axes are turned, as printed and as corrected.
     pair = DeadZoneInteraction(k1=0.0)
     q = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
@@ -24,8 +29,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         rho = lengths(delta)
         n = delta / np.sqrt(1.0 + pair.eta * rho**2)[:, :, None]
         f = np.where(rho > 0.0, pair.action(np.where(rho > 0.0, rho, 8.0)), 0.0)
-        u: FloatArray = np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)
-        return u
+        return np.einsum("ij,ijc->ic", f, n) * n.sum(axis=1)
 
     law = DeadZoneFlocking(pair)
 
@@ -45,15 +49,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"with f once and n once the force turns with the axes, to {corrected_change:.2g}"
         ),
     ]
-
-
-THEOREM = erratum(
-    "L1",
-    statement=(
-        "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
-        "of two vectors is undefined; by components it depends on the axes. The paper presumably means the scalar "
-        "force once and n once."
-    ),
-    source="Li, Yuan and Liu, (7) and (9)",
-    check=_check,
-)

@@ -9,8 +9,12 @@ from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
 _ROUNDING = 1e-12  # relative, of a force of two agents
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """The force on two agents nearer than d1 with either direction of n, and when they meet under the printed one."""
+@erratum("L2", source="Li, Yuan and Liu, (6)-(8)")
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into
+    each other. The paper presumably means q_j - q_i throughout.
+    """
+    # The force on two agents nearer than d1 with either direction of n, and when they meet under the printed one.
     from scipy.integrate import quad
 
     pair, start = DeadZoneInteraction(k1=0.0), 3.0
@@ -29,14 +33,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"with n = q_j - q_i the same agents' force is {attraction:.4g} of that of a contact: it repels"
         ),
     ]
-
-
-THEOREM = erratum(
-    "L2",
-    statement=(
-        "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall "
-        "into each other. The paper presumably means q_j - q_i throughout."
-    ),
-    source="Li, Yuan and Liu, (6)-(8)",
-    check=_check,
-)

@@ -4,8 +4,12 @@ from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """φ_z grows as 1/ρ² and its potential as −ln ρ where two agents meet: by algebra."""
+@erratum("L3", source="Li, Yuan and Liu, section III")
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only
+    logarithmically, because n ~ ρ.
+    """
+    # φ_z grows as 1/ρ² and its potential as −ln ρ where two agents meet: by algebra.
     import sympy as sp
 
     from flockana.symbolic.dead_zone import K_R, RHO, derive_potential, repulsion
@@ -25,14 +29,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail="the potential in closed form, for η > 0 and η = 0, grows only logarithmically at 0, as n ~ ρ",
         ),
     ]
-
-
-THEOREM = erratum(
-    "L3",
-    statement=(
-        "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
-        "logarithmically, because n ~ ρ."
-    ),
-    source="Li, Yuan and Liu, section III",
-    check=_check,
-)

@@ -9,8 +9,17 @@ from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, judged, observed
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """The energy of neighbours and the saturated energy along a run in which two agents come into range."""
+@erratum(
+    "L5",
+    source="Li, Yuan and Liu, Theorem 1, energy",
+    expected={"refuted": "printed", "verified": "corrected across-the-switch"},
+    corrected=("corrected", "across-the-switch"),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """H summed over neighbours jumps up by ψ(r) whenever a pair comes into range. With the potential saturated at r,
+    dH̄/dt = -k₂ pᵀL̂p across all switches.
+    """
+    # The energy of neighbours and the saturated energy along a run in which two agents come into range.
     from flockana.symbolic.dead_zone import saturated_energy_identity
 
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))  # so that the switch is located
@@ -32,16 +41,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         ),
         balance(seen, [], tolerances, name="across-the-switch"),
     ]
-
-
-THEOREM = erratum(
-    "L5",
-    statement=(
-        "H summed over neighbours jumps up by ψ(r) whenever a pair comes into range. With the potential saturated at "
-        "r, dH̄/dt = -k₂ pᵀL̂p across all switches."
-    ),
-    source="Li, Yuan and Liu, Theorem 1, energy",
-    check=_check,
-    expected={"refuted": "printed", "verified": "corrected across-the-switch"},
-    corrected=("corrected", "across-the-switch"),
-)

@@ -7,8 +7,17 @@ from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, spectra
 _ROUNDING = 1e-11  # m: of the root of a force
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """n equidistant points span n − 1 dimensions; and two agents rest at d1, not at r_b."""
+@erratum(
+    "L8",
+    source="Li, Yuan and Liu, (1) and the principles of section III",
+    expected={"refuted": "printed balance-distance", "verified": "contact"},
+    corrected=("contact",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - δ,
+    not at the balance distance r_b.
+    """
+    # n equidistant points span n − 1 dimensions; and two agents rest at d1, not at r_b.
     import sympy as sp
     from scipy.optimize import brentq
 
@@ -33,16 +42,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"two agents rest {pair.d1 - contact:.2g} below r_b - δ = {pair.d1:g}, on the ramp of repulsion",
         ),
     ]
-
-
-THEOREM = erratum(
-    "L8",
-    statement=(
-        "All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - "
-        "δ, not at the balance distance r_b."
-    ),
-    source="Li, Yuan and Liu, (1) and the principles of section III",
-    check=_check,
-    expected={"refuted": "printed balance-distance", "verified": "contact"},
-    corrected=("contact",),
-)

@@ -100,8 +100,22 @@ def _fraction() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one."""
+@erratum(
+    "L9",
+    source="Li, Yuan and Liu, sections IV and VI",
+    expected={
+        "refuted": "printed fraction",
+        "verified": "energy one-leader different-leaders acceleration acceleration-needed",
+    },
+    ours=("energy",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders whose
+    acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these terms does so
+    while each agent has a path in the net to a pinned one and groups stay out of each other's range; pinning a fraction
+    of the agents does not suffice.
+    """
+    # Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one.
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
@@ -125,21 +139,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             f"and {late[1]:g}",
         ),
     ]
-
-
-THEOREM = erratum(
-    "L9",
-    statement=(
-        "Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders "
-        "whose acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these "
-        "terms does so while each agent has a path in the net to a pinned one and groups stay out of each other's "
-        "range; pinning a fraction of the agents does not suffice."
-    ),
-    source="Li, Yuan and Liu, sections IV and VI",
-    check=_check,
-    expected={
-        "refuted": "printed fraction",
-        "verified": "energy one-leader different-leaders acceleration acceleration-needed",
-    },
-    ours=("energy",),
-)

@@ -148,11 +148,6 @@ class Components:
         error = (n + 16.0) * EPS * (extent + self.r) + bent + 2.0 * off
         return float((nearest - self.r - radius[a] - radius[b]).min()) / self.r, error / self.r
 
-    @property
-    def parting(self) -> bool:
-        """Whether the components certainly separate."""
-        return self.separation.certain
-
     @cached_property
     def separation(self) -> Certificate:
         """Certificate that no two components ever meet, and that their centres move apart without bound."""
@@ -169,10 +164,8 @@ class Components:
     @cached_property
     def _velocity_error(self) -> FloatArray:
         """Rounding of the velocity of each component's centre: of a mean, so none of a single agent."""
-        several = [
-            c.p_off + ((c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0) for c in self.members
-        ]
-        return np.array(several)
+        rounding = [(c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0 for c in self.members]
+        return np.array([c.p_off + own for c, own in zip(self.members, rounding, strict=True)])
 
     @property
     def _sizes(self) -> FloatArray:

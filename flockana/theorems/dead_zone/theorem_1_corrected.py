@@ -36,7 +36,20 @@ def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Cla
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "dead-zone-1-corrected",
+    title="Dead-zone flocking corrected: saturated energy, matching within components, explicit distances",
+    source="ours; repairs Li, Yuan and Liu, Theorem 1",
+    claims=("rate", "balance", "components", "distance"),
+    references=("li-dead-zone",),
+    author="corrected",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With the potential of each pair held constant beyond r, H̄ is continuous and dH̄/dt = -k₂ pᵀL̂p <= 0 across all
+    switches; velocities match within each component of the net (measured, not proved; nothing keeps the net connected,
+    as ψ(r) is finite); from distinct starts no distance falls below 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which
+    is positive but exponentially small.
+    """
     needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
@@ -48,20 +61,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _components(seen, case.final_components(seen, law), needs),
         case.no_collision(seen, law, case.distance_bound(seen, law), needs, name="distance"),
     ]
-
-
-THEOREM = run_theorem(
-    id="dead-zone-1-corrected",
-    title="Dead-zone flocking corrected: saturated energy, matching within components, explicit distances",
-    statement=(
-        "With the potential of each pair held constant beyond r, H̄ is continuous and dH̄/dt = -k₂ pᵀL̂p <= 0 across all "
-        "switches; velocities match within each component of the net (measured, not proved; nothing keeps the net "
-        "connected, as ψ(r) is finite); from distinct starts no distance falls below "
-        "1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which is positive but exponentially small."
-    ),
-    source="ours; repairs Li, Yuan and Liu, Theorem 1",
-    check=_check,
-    claims=("rate", "balance", "components", "distance"),
-    references=("li-dead-zone",),
-    author="corrected",
-)

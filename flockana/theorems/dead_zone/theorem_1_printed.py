@@ -14,7 +14,7 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
     """Return 1 − R/r of the limit, and its evidence; None where unknown."""
     if end.count > 1:
         apart = end.separation
-        return Enclosure.around(-apart.margin, apart.error) if end.parting else None, apart.text
+        return Enclosure.around(-apart.margin, apart.error) if apart.certain else None, apart.text
     (whole,), r = end.members, end.r
     caught = whole.basin.certificate
     if whole.size == 1 or caught.certain:
@@ -62,7 +62,19 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "dead-zone-1-printed",
+    title="Dead-zone flocking as printed: cohesion, falling energy, one velocity, no collision",
+    source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
+    claims=("cohesion", "energy", "velocity", "collision"),
+    references=("li-dead-zone",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """From finite initial energy, agents form cohesive flocks with no agent farther than r from its virtual leader; the
+    energy does not rise, the flock ends in a local minimum and velocities match; no two agents collide. No leader
+    appears in the law: its centre of mass is taken instead. Connectivity is not implied (L4), the energy of neighbours
+    jumps (L5), velocities match within components only (L7); the last claim is true (L6).
+    """
     needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
@@ -73,19 +85,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         case.velocities_match(seen, end, needs, name="velocity"),
         case.no_collision(seen, law, Enclosure.of(0.0), needs, name="collision"),
     ]
-
-
-THEOREM = run_theorem(
-    id="dead-zone-1-printed",
-    title="Dead-zone flocking as printed: cohesion, falling energy, one velocity, no collision",
-    statement=(
-        "From finite initial energy, agents form cohesive flocks with no agent farther than r from its virtual leader; "
-        "the energy does not rise, the flock ends in a local minimum and velocities match; no two agents collide. No "
-        "leader appears in the law: its centre of mass is taken instead. Connectivity is not implied (L4), the energy "
-        "of neighbours jumps (L5), velocities match within components only (L7); the last claim is true (L6)."
-    ),
-    source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
-    check=_check,
-    claims=("cohesion", "energy", "velocity", "collision"),
-    references=("li-dead-zone",),
-)

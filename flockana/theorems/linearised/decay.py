@@ -86,24 +86,17 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
     error = max(each.exponent_error for each in ranges.values())
     bend = sqrt(1.0 + alpha.eps * alpha.d**2) / alpha.d**2  # σ₁'s argument is 1 where ‖q_ij‖_σ is off by 1
-    limits = "; ".join(
-        f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
-    )
+    limits = [f"{name}: 1 % at {x.limit(0.01):.2g} d, 10 % at {x.limit(0.1):.2g} d" for name, x in ranges.items()]
     return spectral("range", margin, error).described(
         computed={
-            name: {key.replace("_", " "): getattr(each, key) for key in _RANGE_FIELDS} for name, each in ranges.items()
+            name: {key.replace("_", " "): getattr(x, key) for key in _RANGE_FIELDS} for name, x in ranges.items()
         },
         stated="a run leaves its linear prediction by a distance that grows as the square of the amplitude",
         witness={"σ₁ bends at": bend, "a link reaches r at": {name: each.margin for name, each in ranges.items()}},
-        detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of {limits}. σ₁ "
-        f"saturates where a link is off by {bend:.2g} d, and that ends the linear range, long before a link reaches r",
+        detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of "
+        f"{'; '.join(limits)}. σ₁ saturates where a link is off by {bend:.2g} d, and that ends the linear range, long "
+        "before a link reaches r",
     )
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    flocks = lattice_equilibria()
-    ranges = {name: linear_range(flocks[name], name=name) for name in RANGES}
-    return [*_agreement(decay_table(flocks), tolerances), _range(ranges, AlphaInteraction())]
 
 
 def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
@@ -122,7 +115,39 @@ def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
 
 
-def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
+_NAMES = ("decay", "random")
+
+
+@erratum(
+    "linearised-decay",
+    title="The linearisation is accurate near lattices",
+    source="ours; the statement is textbook knowledge",
+    expected={"verified": "decay random range"},
+    author="flockana",
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Near a stable equilibrium a flock moves as its linearisation says: a small perturbation along the slowest mode
+    dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method), and the distance from the linear prediction
+    grows as the square of the perturbation. Checked on hexagonal patches, an FCC site, and a hexagon at a wall.
+    """
+    flocks = lattice_equilibria()
+    ranges = {name: linear_range(flocks[name], name=name) for name in RANGES}
+    return [*_agreement(decay_table(flocks), tolerances), _range(ranges, AlphaInteraction())]
+
+
+@run_theorem(
+    "linearised-decay-terminal",
+    title="The linearisation is accurate where a run ends",
+    source="ours; the statement is textbook knowledge",
+    claims=_NAMES,
+    reason="no stable equilibrium to return to",
+    author="flockana",
+)
+def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Near a stable equilibrium a flock moves as its linearisation says: a small perturbation along the slowest mode
+    dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method). Checked at the equilibrium that the run's
+    last state is near to.
+    """
     linear, why = _terminal(seen)
     stable = linear is not None and bool(linear.modes) and linear.stable
     given = [condition("an equilibrium near the last state is stable", stable, detail=why)]
@@ -133,34 +158,3 @@ def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
     except ArgumentError as error:  # it has no shape, or hardly any damping
         return given, [undecided(name, f"no rate was measured: {error}") for name in _NAMES]
     return given, _agreement([rates], tolerances)
-
-
-_NAMES = ("decay", "random")
-_STATEMENT = (
-    "Near a stable equilibrium a flock moves as its linearisation says: a small perturbation along the slowest mode "
-    "dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method)"
-)
-
-THEOREM = (
-    erratum(
-        "linearised-decay",
-        title="The linearisation is accurate near lattices",
-        statement=_STATEMENT
-        + ", and the distance from the linear prediction grows as the square of the perturbation. Checked on hexagonal "
-        "patches, an FCC site, and a hexagon at a wall.",
-        source="ours; the statement is textbook knowledge",
-        check=_check,
-        expected={"verified": "decay random range"},
-        author="flockana",
-    ),
-    run_theorem(
-        id="linearised-decay-terminal",
-        title="The linearisation is accurate where a run ends",
-        statement=_STATEMENT + ". Checked at the equilibrium that the run's last state is near to.",
-        source="ours; the statement is textbook knowledge",
-        check=_check_terminal,
-        claims=_NAMES,
-        reason="no stable equilibrium to return to",
-        author="flockana",
-    ),
-)

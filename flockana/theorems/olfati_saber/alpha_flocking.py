@@ -1,7 +1,6 @@
 """Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
 
 from dataclasses import dataclass
-from functools import partial
 from math import floor
 
 import numpy as np
@@ -121,7 +120,7 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     return _always("cohesive", part, seen.radius, sampling.radius_over(seen), bound)
 
 
-def _check(seen: Observed, tolerances: Tolerances, *, strict: bool = False) -> Checked:
+def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked:
     window, part = _window(seen, tolerances)
     if unmet(needs := [has_lattice(seen), window]):
         return needs, []
@@ -129,29 +128,29 @@ def _check(seen: Observed, tolerances: Tolerances, *, strict: bool = False) -> C
     return needs, [*own, *_common(part, tolerances)]
 
 
-THEOREM = (
-    run_theorem(
-        id="alpha-flocking",
-        title="The run is α-flocking (Definition 5)",
-        statement=(
-            "Over [t0, tf] the net keeps a giant component, the group stays cohesive, Ẽ <= ε₁ and K̃ <= ε₂. The source "
-            "gives no numbers for 'giant', 'cohesive', ε₁, ε₂; those used are in the tolerances. One "
-            "sample is no window."
-        ),
-        source="Olfati-Saber 2006, Definition 5",
-        check=_check,
-        enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
-        claims=("giant", "cohesive", "deviation", "mismatch"),
-        leads={"giant": bridge},
-    ),
-    run_theorem(
-        id="alpha-flocking-strict",
-        title="The run is strictly α-flocking (Definition 5)",
-        statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
-        source="Olfati-Saber 2006, Definition 5, strict form",
-        check=partial(_check, strict=True),
-        enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
-        claims=("flock", "deviation", "mismatch"),
-        leads={"flock": bridge},
-    ),
+@run_theorem(
+    "alpha-flocking",
+    title="The run is α-flocking (Definition 5)",
+    source="Olfati-Saber 2006, Definition 5",
+    enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
+    claims=("giant", "cohesive", "deviation", "mismatch"),
+    leads={"giant": bridge},
 )
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Over [t0, tf] the net keeps a giant component, the group stays cohesive, Ẽ <= ε₁ and K̃ <= ε₂. The source gives
+    no numbers for 'giant', 'cohesive', ε₁, ε₂; those used are in the tolerances. One sample is no window.
+    """
+    return _checked(seen, tolerances, strict=False)
+
+
+@run_theorem(
+    "alpha-flocking-strict",
+    title="The run is strictly α-flocking (Definition 5)",
+    source="Olfati-Saber 2006, Definition 5, strict form",
+    enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
+    claims=("flock", "deviation", "mismatch"),
+    leads={"flock": bridge},
+)
+def strictly(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂."""
+    return _checked(seen, tolerances, strict=True)

@@ -151,7 +151,22 @@ def _needs(seen: Observed) -> list[Hypothesis]:
     return needs if unmet(needs) else [*needs, stays_together(seen)]
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "any-potential",
+    title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
+    source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
+    claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
+    references=("olfati-saber-2006", "flockana"),
+    author="flockana",
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let ψ be C¹ on (0, r], constant from r on and at least L, a_ij >= 0, and E = H - c1α L n(n-1)/2. Under Algorithm
+    2 with c1γ, c2γ > 0 R <= sqrt(2 E(0)/c1γ), velocities match, and forces tend to 0. Velocities match and forces tend
+    to 0 also under Algorithm 1 with c1α, c2α > 0 and a_ij > 0 below r, in a flock that stays connected, as it does if
+    E(0) < (n-1) c1α (ψ(r) - L). At most E/c* pairs coincide at one time, c* = c1α (ψ(0) - L), and none ever do if E(0)
+    < c*, or if ψ is unbounded at contact.
+    """
     if unmet(needs := _needs(seen)):
         return needs, []
     apart, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
@@ -173,22 +188,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         one_instant,
         collisions.no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
     ]
-
-
-THEOREM = run_theorem(
-    id="any-potential",
-    title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
-    statement=(
-        "Let ψ be C¹ on (0, r], constant from r on and at least L, a_ij >= 0, and E = H - c1α L n(n-1)/2. Under "
-        "Algorithm 2 with c1γ, c2γ > 0 R <= sqrt(2 E(0)/c1γ), velocities match, and forces tend to 0. Velocities "
-        "match and forces tend to 0 also under Algorithm 1 with c1α, c2α > 0 and a_ij > 0 below r, in a flock that "
-        "stays connected, as it does if E(0) < (n-1) c1α (ψ(r) - L). At most E/c* pairs coincide at one time, c* = "
-        "c1α (ψ(0) - L), and none ever do if E(0) < c*, or if ψ is unbounded at contact."
-    ),
-    source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
-    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
-    check=_check,
-    claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
-    references=("olfati-saber-2006", "flockana"),
-    author="flockana",
-)

@@ -36,7 +36,8 @@ def attraction(
     curvature, stiffest = basins.curvatures(stiffness, rigid_motions(q))
     distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
     if distance >= basins.gyration(q):  # there is no turning to speak of: all agents are at one place
-        curvature, stiffest = basins.curvatures(stiffness, _translations(q))
+        translations = np.tile(np.eye(q.shape[1]), (len(q), 1)) / sqrt(len(q))
+        curvature, stiffest = basins.curvatures(stiffness, translations)
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
     connected = everywhere or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
     if distance + off == inf or not connected:
@@ -52,13 +53,6 @@ def final_basin(seen: Observed) -> basins.Basin:
     q, p, q_error, p_error = seen.end
     off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
     return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
-
-
-def _translations(q: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the translations, shape (n m, m)."""
-    n, m = q.shape
-    basis: FloatArray = np.tile(np.eye(m), (n, 1)) / sqrt(n)
-    return basis
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
@@ -87,8 +81,7 @@ def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatA
     phi, slope, bend = _action(alpha, (root - 1.0) / alpha.eps)
     bowed = 3.0 * (slope * slant - alpha.eps * s * phi / root.square()) * steep
     across = slope * slant / root - alpha.eps * s * phi * steep
-    norm: FloatArray = (abs(bend * slant * slant * slant + bowed) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
-    return norm
+    return (abs(bend * slant * slant * slant + bowed) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
 
 
 def _action(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:

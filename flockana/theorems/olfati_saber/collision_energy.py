@@ -23,32 +23,27 @@ def _needs(run: Observed) -> list[Hypothesis]:
     return [has_pair, positive(run, c1_alpha="c1α"), *nothing_adds_energy(run), *least_is_known(run)]
 
 
-def _check(run: Observed, tolerances: Tolerances) -> Checked:
-    if unmet(needs := _needs(run)):
-        return needs, []
-    pairs = meeting(run)
-    above = energy_at_start(run) - pairs.floor
-    bounds = {name: below_multiple(above, pairs.c_star, k) for name, k in _MULTIPLES.items()}
-    return [*needs, *bounds.values()], [
-        no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()
-    ]
-
-
-THEOREM = run_theorem(
-    id="collision-energy",
+@run_theorem(
+    "collision-energy",
     title="No collision below c*; above it there are some",
-    statement=(
-        "The energy of Algorithms 1 and 2 in the moving frame never rises, and a coincident pair alone holds c* = c1α "
-        "ψ_α(0). So below c* no two agents ever meet, whether or not the flock stays together. The bound is sharp: "
-        "two agents that approach head on can meet below 2 c*. The same holds for every composition whose terms add "
-        "no energy, if the least energy of all other pairs is subtracted from H(0) and c* is the excess of a "
-        "coincident pair over a pair's least energy."
-    ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, composed=True),
-    check=_check,
     enclosed=enclosed_by("collision_energy"),
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
     ours=("twice",),
 )
+def theorem(run: Observed, tolerances: Tolerances) -> Checked:
+    """The energy of Algorithms 1 and 2 in the moving frame never rises, and a coincident pair alone holds c* = c1α
+    ψ_α(0). So below c* no two agents ever meet, whether or not the flock stays together. The bound is sharp: two agents
+    that approach head on can meet below 2 c*. The same holds for every composition whose terms add no energy, if the
+    least energy of all other pairs is subtracted from H(0) and c* is the excess of a coincident pair over a pair's
+    least energy.
+    """
+    if unmet(needs := _needs(run)):
+        return needs, []
+    pairs = meeting(run)
+    above = energy_at_start(run) - pairs.floor
+    bounds = {name: below_multiple(above, pairs.c_star, k) for name, k in _MULTIPLES.items()}
+    claims = [no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()]
+    return [*needs, *bounds.values()], claims

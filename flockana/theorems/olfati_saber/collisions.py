@@ -29,9 +29,8 @@ IndexArray = npt.NDArray[np.intp]
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Return contacts of a run: pairs whose interpolated paths come within the contact distance."""
     tol = tolerances.contact * run.law.alpha.length
-    return run.cached(
-        f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0])
-    )
+    key = f"contacts within {tol!r}"
+    return run.cached(key, lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0]))
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:

@@ -75,11 +75,8 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     if unmet(needs := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
         return needs, []
     case, needs = from_tube.TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
-    low, barrier, matching = (
-        _below_c_star(tube),
-        _below_barrier(tube),
-        ("ii", "K̃ -> 0", "velocities match in the moving frame"),
-    )
+    low, barrier = _below_c_star(tube), _below_barrier(tube)
+    matching = "ii", "K̃ -> 0", "velocities match in the moving frame"
     proof = "any-potential-limits" if tube.status == "complete" else None
     return [*needs, low, barrier], [
         without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
@@ -143,13 +140,11 @@ def _cohesive(case: from_tube.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
         largest = float(tube.cohesion_radius().max())
         bound = (2 * tube.energy(0) / gain).nonnegative_part().sqrt() if gain > 0 else arb(1e300)
         margin = arb(bound.lower()) - largest
+    caught = f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} at all times"
     return from_tube.decided("i", margin, needs, proof="cohesion").described(
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
-        detail=f"cohesion radius R <= {largest:.5g} {case.until}"
-        if case.basin is None
-        else f"cohesion radius R <= {largest:.5g} "
-        f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} at all times",
+        detail=f"cohesion radius R <= {largest:.5g} {case.until if case.basin is None else caught}",
     )
 
 

@@ -7,7 +7,6 @@ interval, and rest that was seen is assumed.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
@@ -40,8 +39,7 @@ def _between(t: FloatArray) -> FloatArray:
     """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
     middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
     halves = np.stack([middle - half, middle + half], axis=1)
-    nodes: FloatArray = halves[:, :, None] + half[:, None, None] * _NODES
-    return nodes
+    return halves[:, :, None] + half[:, None, None] * _NODES
 
 
 def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
@@ -70,20 +68,12 @@ def _describe_rest(moves: bool, any_p_r: bool, p_r: FloatArray) -> str:
     return f"q_r is fixed, p_r = {p_r.tolist()}{though}"
 
 
-@dataclass(frozen=True)
-class Slip:
-    """Largest difference over a run between a declared velocity and the one that the positions show."""
-
-    off: float  # Largest mean difference over an interval
-    error: float  # Of the quadrature, and rounding
-
-
-def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
-    """Return the difference between a declared velocity and the one that the γ-agent's positions show."""
+def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> tuple[float, float]:
+    """Return the largest difference of a declared velocity from that of the γ-agent's positions, and its error."""
     target, t = run.law.target, _sample_times(run)
     h = np.diff(t)
     if h.size == 0:
-        return Slip(0.0, float("inf"))
+        return 0.0, float("inf")
     q_r = np.array([target.state(float(time))[0] for time in t])
     nodes = _between(t)
     coarse = (0.5 * (t[:-1] + t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
@@ -92,14 +82,13 @@ def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
     rounding = 4.0 * EPS * np.abs(q_r).max() / h + 8.0 * EPS * np.abs(fine).max()
     error = np.linalg.norm(fine - rough, axis=1) + rounding
     worst = int(np.argmax(off - error))
-    return Slip(float(off[worst]), float(error[worst]))
+    return float(off[worst]), float(error[worst])
 
 
 def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
     """Return the mean of a velocity over intervals from its Gauss nodes on the last axis."""
     values = np.array([velocity(float(time)) for time in nodes.ravel()]).reshape(*nodes.shape, -1)
-    mean: FloatArray = np.einsum("...kc,k->...c", values, _WEIGHTS)
-    return mean
+    return np.einsum("...kc,k->...c", values, _WEIGHTS)
 
 
 def consistent(run: Trajectory) -> Hypothesis:
@@ -113,9 +102,9 @@ def declared_rate_is_true(run: Trajectory) -> Hypothesis:
 
 
 def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
-    difference, allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
-    if difference.off + difference.error <= allowed:
-        return Hypothesis(name, "met", -difference.off, error=difference.error)
-    if difference.off - difference.error <= allowed:
-        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to decide", difference.error)
-    return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}", difference.error)
+    (off, error), allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
+    if off + error <= allowed:
+        return Hypothesis(name, "met", -off, error=error)
+    if off - error <= allowed:
+        return Hypothesis(name, "assumed", -off, "the samples are too sparse to decide", error)
+    return Hypothesis(name, "unmet", -off, f"{what} is off by up to {off:.3g}", error)

@@ -7,23 +7,19 @@ from flockana.theorems.leads import strained
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
 
 
-def _check(run: Observed, tolerances: Tolerances) -> Checked:
-    needs = alpha_gain(run)
-    return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]
-
-
-THEOREM = run_theorem(
-    id="lattice-limit-printed",
+@run_theorem(
+    "lattice-limit-printed",
     title="The flock converges to an α-lattice, as the summaries print it",
-    statement=(
-        "Under Algorithms 1 and 2 almost every solution converges to an α-lattice. False (E3): a strict minimum of V "
-        "with strained links has an open basin, and λJ strains every lattice of Algorithm 2. A run refutes it where "
-        "it has come to rest at such a minimum."
-    ),
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
-    check=_check,
     claims=("lattice",),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"lattice": strained},
 )
+def theorem(run: Observed, tolerances: Tolerances) -> Checked:
+    """Under Algorithms 1 and 2 almost every solution converges to an α-lattice. False (E3): a strict minimum of V with
+    strained links has an open basin, and λJ strains every lattice of Algorithm 2. A run refutes it where it has come to
+    rest at such a minimum.
+    """
+    needs = alpha_gain(run)
+    return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]

@@ -21,18 +21,10 @@ if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
 
 
-def _rests(tube: Tube) -> Hypothesis:
-    """Return the hypothesis that the γ-agent is static."""
-    moves = bool(tube.law.target.harmonic.terms[1].any())
-    detail = "it moves" if moves else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
-    return condition("the γ-agent is static", not moves, detail=detail)
-
-
 def _declared_velocity(tube: Tube) -> FloatArray:
     """Return p_r, which is constant on a straight path."""
     terms = tube.law.target.harmonic.terms
-    declared: FloatArray = terms[1] + terms[4]
-    return declared
+    return terms[1] + terms[4]
 
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
@@ -108,7 +100,9 @@ def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)
         slow, since = _slow_enough(tube, flow)
-        rests = _rests(tube)
+        moves = bool(tube.law.target.harmonic.terms[1].any())
+        detail = "it moves" if moves else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
+        rests = condition("the γ-agent is static", not moves, detail=detail)
         needs = [common_gains(tube), rests, slow, _stays_outside(tube)]
         if tube.status != "complete":
             reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"

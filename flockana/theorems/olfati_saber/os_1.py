@@ -28,7 +28,23 @@ def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesi
     return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=any_potential.LIMITS)
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "os-1",
+    title="Algorithm 1: lattice, matched velocities, no collision",
+    source="Olfati-Saber 2006, Theorem 1",
+    law=law_is("Algorithm 1", Algorithm1, formulas=True),
+    enclosed=enclosed_by("os_1"),
+    claims=("i", "ii", "iii", "iii-barrier"),
+    leads={"i": strained},
+    ours=("iii-barrier",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, (i)
+    almost every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the moving frame,
+    and (iii) if c < c* = ψ_α(0), no two agents ever collide. Our addition: the hypothesis is met if H(0) < (n-1) c1α
+    ψ_α(r_α), as in a disconnected net at least n - 1 pairs are out of range; and (ii) and (iii) hold for every pair
+    potential that `any-potential` admits.
+    """
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
     if unmet(needs := [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]):
         return needs, []
@@ -42,23 +58,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
     ]
     return [*needs, *bounded, low, barrier], any_potential.attribute_claims(seen, claims)
-
-
-THEOREM = run_theorem(
-    id="os-1",
-    title="Algorithm 1: lattice, matched velocities, no collision",
-    statement=(
-        "With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, "
-        "(i) almost every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the "
-        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide. Our addition: the hypothesis is met "
-        "if H(0) < (n-1) c1α ψ_α(r_α), as in a disconnected net at least n - 1 pairs are out of range; and (ii) and "
-        "(iii) hold for every pair potential that `any-potential` admits."
-    ),
-    source="Olfati-Saber 2006, Theorem 1",
-    law=law_is("Algorithm 1", Algorithm1, formulas=True),
-    check=_check,
-    enclosed=enclosed_by("os_1"),
-    claims=("i", "ii", "iii", "iii-barrier"),
-    leads={"i": strained},
-    ours=("iii-barrier",),
-)

@@ -42,7 +42,25 @@ def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list
     ]
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "os-3",
+    title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
+    source="Olfati-Saber 2006, Theorem 3",
+    law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
+    enclosed=enclosed_by("os_3"),
+    claims=("i", "ii", "ii-converges", "ii-semidefinite", "iii", *_COLLISIONS),
+    leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
+    corrected=("ii-semidefinite", "iv-instant"),
+    ours=("iv-barrier",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With c1γ, c2γ > 0 and finite K(v(0)), J(x(0)): (i) the group stays cohesive, (ii) almost every solution converges
+    to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if H_λ(0) < (k+1) c*, at most k
+    distinct pairs can collide. (iv) holds per instant, and for k = 0; over time more pairs can collide (erratum E13).
+    Proved of (ii): each solution converges to one equilibrium, and almost every one to an equilibrium with ∇²U_λ >= 0;
+    a strict minimum is certified by its basin. (i), (iii) and (iv) hold for every pair potential that `any-potential`
+    admits.
+    """
     gains, potential = positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), any_potential.potential_needs(seen)
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
@@ -68,25 +86,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         collisions.no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
     return [*given, none, barrier], any_potential.attribute_claims(seen, claims)
-
-
-THEOREM = run_theorem(
-    id="os-3",
-    title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
-    statement=(
-        "With c1γ, c2γ > 0 and finite K(v(0)), J(x(0)): (i) the group stays cohesive, (ii) almost every solution "
-        "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if H_λ(0) < (k+1) "
-        "c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time more pairs can "
-        "collide (erratum E13). Proved of (ii): each solution converges to one equilibrium, and almost every one to "
-        "an equilibrium with ∇²U_λ >= 0; a strict minimum is certified by its basin. (i), (iii) and (iv) hold for "
-        "every pair potential that `any-potential` admits."
-    ),
-    source="Olfati-Saber 2006, Theorem 3",
-    law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
-    check=_check,
-    enclosed=enclosed_by("os_3"),
-    claims=("i", "ii", "ii-converges", "ii-semidefinite", "iii", *_COLLISIONS),
-    leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
-    corrected=("ii-semidefinite", "iv-instant"),
-    ours=("iv-barrier",),
-)

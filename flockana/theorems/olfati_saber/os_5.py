@@ -242,26 +242,18 @@ _STATEMENT = (
     "most ℓ cross, some two of their agents are within ℓ/√2 of each other. "
     f"Distances within {GUARD:g} r of r, or within the rounding of the positions, count as r."
 )
-_REFERENCES = ("olfati-saber-2006", "harborth-1974")
-THEOREM = (
-    Theorem(
-        id="os-5",
-        title="α-lattices: no crossing, few links, not complete",
-        statement=_STATEMENT,
-        source="Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
-        kind="configuration",
-        check=check,
-        references=_REFERENCES,
-        ours=_OURS,
-    ),
-    run_theorem(
-        id="os-5-terminal",
-        title="Theorem 5 on the last state of a run",
-        statement=f"Checked on the last state of a run. {_STATEMENT}",
-        source="Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
-        check=_check_terminal,
-        claims=CLAIMS,
-        references=_REFERENCES,
-        ours=_OURS,
-    ),
+_SAME: dict[str, Any] = {
+    "source": "Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
+    "references": ("olfati-saber-2006", "harborth-1974"),
+    "ours": _OURS,
+}
+theorem = Theorem(
+    "os-5", "α-lattices: no crossing, few links, not complete", _STATEMENT, kind="configuration", check=check, **_SAME
 )
+on_last_state = run_theorem(
+    "os-5-terminal",
+    title="Theorem 5 on the last state of a run",
+    statement=f"Checked on the last state of a run. {_STATEMENT}",
+    claims=CLAIMS,
+    **_SAME,
+)(_check_terminal)

@@ -15,8 +15,7 @@ def condition_76(run: Trajectory) -> FloatArray:
     """Return T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample; condition (76) asks for >= 0."""
     any_p_r = np.array([run.law.target.state(t)[1] for t in run.t])
     kinetic = 0.5 * np.sum(run.p**2, axis=(1, 2))
-    slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, any_p_r)
-    return slack
+    return kinetic - 0.5 * np.einsum("tim,tm->t", run.p, any_p_r)
 
 
 def _condition(seen: Observed) -> tuple[Hypothesis, int]:
@@ -47,30 +46,23 @@ def start_of_condition(seen: Observed) -> int:
     return min(_condition(seen)[1], len(seen.t) - 2)
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "os-6",
+    title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
+    source="Olfati-Saber 2006, Theorem 6",
+    law=law_is("Algorithm 3", Algorithm3, one_gain=True),
+    enclosed=enclosed_by("os_6", "obstacles_enclosed"),
+    claims=("rate", "balance"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for t >=
+    t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, where H
+    counts every pair once (erratum E2). The source omits that the agents must be outside the obstacles: inside a sphere
+    the second term can be positive. The condition is checked at the samples, up to the end of the run only.
+    """
     run = seen.run
     slow_enough, since = _condition(seen)
     needs = [common_gains(seen), target_rests(run, any_p_r=True), slow_enough, stays_outside(seen)]
     rate, proof = declared_rate_is_true(run), proved(seen, "theorem6")
-    return [*needs, rate], [
-        never_rises(seen, needs, since=since, proof=proof),
-        balance(seen, [*needs, rate], tolerances, proof=proof),
-    ]
-
-
-THEOREM = run_theorem(
-    id="os-6",
-    title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
-    statement=(
-        "With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for "
-        "t >= t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, "
-        "where H counts every pair once (erratum E2). The source omits that the agents must be outside the obstacles: "
-        "inside a sphere the second term can be positive. The condition is checked at the samples, up to the end of "
-        "the run only."
-    ),
-    source="Olfati-Saber 2006, Theorem 6",
-    law=law_is("Algorithm 3", Algorithm3, one_gain=True),
-    check=_check,
-    enclosed=enclosed_by("os_6", "obstacles_enclosed"),
-    claims=("rate", "balance"),
-)
+    balanced = balance(seen, [*needs, rate], tolerances, proof=proof)
+    return [*needs, rate], [never_rises(seen, needs, since=since, proof=proof), balanced]

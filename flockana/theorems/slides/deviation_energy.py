@@ -13,25 +13,6 @@ _ROUNDING = 1e-13  # relative, of an energy of two agents
 PROOF = "deviation-energy"
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """Check a pair of the paper's law within range, at the range, and passing through coincidence."""
-    alpha = AlphaInteraction()
-    d, r = alpha.d, alpha.r
-
-    def deviation(x: float) -> float:
-        return deviation_energy([[0.0], [x]], d, r)
-
-    def potential(x: float) -> float:
-        return alpha.potential_energy(np.array([[0.0], [x]]))
-
-    return [
-        _jump("jump", deviation, r, 2.0 / 3.0 * (r - d) ** 2, "E"),
-        _corner("corner", deviation, 8.0 / 3.0 * d, (d, d), "E"),
-        _jump("potential-continuous", potential, r, 0.0, "V"),
-        _corner("potential-smooth", potential, 0.0, (alpha.c_star / d, d), "V"),
-    ]
-
-
 def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, symbol: str) -> Claim:
     """Return the jump of an energy at the range."""
     within, at = energy(r * (1.0 - _NEAR)), energy(r)
@@ -63,14 +44,29 @@ def _corner(
     )
 
 
-THEOREM = erratum(
+@erratum(
     "deviation-energy",
     title="The deviation energy is not smooth, V is",
-    statement=(
-        "The deviation energy E(q) jumps by ⅔(r − d)² where a pair comes into range and has a corner where two agents "
-        "coincide; the potential V(q) of the same pair is continuously differentiable at both."
-    ),
     source="slides, smooth potentials: 'deviation energy is nonsmooth'",
-    check=_check,
     expected={"verified": "jump corner potential-continuous potential-smooth"},
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The deviation energy E(q) jumps by ⅔(r − d)² where a pair comes into range and has a corner where two agents
+    coincide; the potential V(q) of the same pair is continuously differentiable at both.
+    """
+    # Check a pair of the paper's law within range, at the range, and passing through coincidence.
+    alpha = AlphaInteraction()
+    d, r = alpha.d, alpha.r
+
+    def deviation(x: float) -> float:
+        return deviation_energy([[0.0], [x]], d, r)
+
+    def potential(x: float) -> float:
+        return alpha.potential_energy(np.array([[0.0], [x]]))
+
+    return [
+        _jump("jump", deviation, r, 2.0 / 3.0 * (r - d) ** 2, "E"),
+        _corner("corner", deviation, 8.0 / 3.0 * d, (d, d), "E"),
+        _jump("potential-continuous", potential, r, 0.0, "V"),
+        _corner("potential-smooth", potential, 0.0, (alpha.c_star / d, d), "V"),
+    ]

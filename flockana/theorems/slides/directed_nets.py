@@ -1,5 +1,7 @@
 """Directed nets, which the slides allow but do not treat: properties of Algorithms 1 to 3 that hold, and that fail."""
 
+from functools import partial
+
 import numpy as np
 
 from flockana.environment.obstacles import Sphere
@@ -9,7 +11,7 @@ from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import erratum, judged, of_state
 from flockana.theorems.slides.claims_on_energy import rises
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Trajectory, observed, stacked
+from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
@@ -52,25 +54,20 @@ def _momentum() -> Claim:
     )
 
 
-def _following() -> list[Claim]:
-    """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
-    speed = 1.0
-    return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [speed]], (0.0, 30.0), rtol=1e-10), speed)
-
-
 def _own_energy(run: Trajectory) -> FloatArray:
     """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
     apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
-    own: FloatArray = run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
-    return own
+    return run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
+
+
+def _following() -> list[Claim]:
+    """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
+    return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [1.0]], (0.0, 30.0), rtol=1e-10), 1.0)
 
 
 def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     law, run = seen.law, seen.run
-    energy = seen.series(
-        lambda run: np.array([law.law.energy(0.0, q, p) for q, p in zip(run.q, run.p, strict=True)]),
-        floor=seen.floors.work,
-    )
+    energy = seen.series(lambda run: list(map(partial(law.law.energy, 0.0), run.q, run.p)), floor=seen.floors.work)
     own, rise = seen.series(_own_energy, floor=seen.floors.work), energy[-1] - energy[0]
     climbed, size = rises(own), float(own.mid[0])
     swerve = seen.series(lambda run: np.abs(run.p[:, 1, 0] - speed), floor=seen.floors.speed)
@@ -104,17 +101,17 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     ]
 
 
-THEOREM = erratum(
+@erratum(
     "directed-nets",
     title="Directed nets: what holds of Algorithms 1 to 3 and what fails",
-    statement=(
-        "Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, "
-        "all round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H "
-        "may rise. An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − "
-        "p_j‖², and follows it."
-    ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
-    check=lambda tolerances: [_undirected(), _momentum(), *_following()],
     expected={"verified": "undirected momentum-lost energy-rises follower leader"},
     author="flockana",
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, all
+    round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H may rise.
+    An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − p_j‖², and follows
+    it.
+    """
+    return [_undirected(), _momentum(), *_following()]

@@ -7,33 +7,24 @@ from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_cl
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
-def _rising_run() -> Claim:
-    """Two agents at rest, 8 apart: they fall towards each other, and the printed energy climbs."""
-    seen = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))
-    return run_claim(seen, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents")
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "E1",
+    source="slides, collective dynamics",
+    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½."""
     from flockana.symbolic import algorithm1_identity, e1_counterexample, e1_identity
 
+    falling = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))  # and the printed energy climbs
     return [
         equal("printed", e1_identity(m=2).residual, disproof=PROOF).described(
             stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p",
             detail="with the printed H a term -dV/dt remains, which has no definite sign",
         ),
         state_claim(e1_counterexample()),
-        _rising_run(),
+        run_claim(falling, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents"),
         equal("corrected", algorithm1_identity(m=2).residual, proof=PROOF).described(
             stated="d/dt (V + ½ Σ‖p_i‖²) = -c2α pᵀL̂p", detail="with ½ the identity is exact, for every n"
         ),
     ]
-
-
-THEOREM = erratum(
-    "E1",
-    statement="The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½.",
-    source="slides, collective dynamics",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
-)

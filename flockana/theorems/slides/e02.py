@@ -8,16 +8,18 @@ from flockana.theorems.slides.energy_printed import pair_energy
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
-def _rising_run() -> Claim:
-    """Two agents too close that approach further, a sphere beside them, the γ-agent at rest between them."""
-    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
-    seen = observed(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
-    return run_claim(seen, pair_energy, "two agents beside a sphere")
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "E2",
+    source="slides, Algorithm 3",
+    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½."""
     from flockana.symbolic.theorem6 import e2_counterexample, e2_identity, theorem6_identity
 
+    # two agents too close that approach further, a sphere beside them, the γ-agent at rest between them
+    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
+    seen = observed(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
     stated = "dH/dt = -c2α pᵀL̂p + c2β ΣΣ b ⟨p, p̂ - p⟩ - c2γ Σ⟨p, p - p_r⟩"
     return [
         equal("printed", e2_identity(m=2).residual, disproof=PROOF).described(
@@ -25,19 +27,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt remains, which has no definite sign",
         ),
         state_claim(e2_counterexample()),
-        _rising_run(),
+        run_claim(seen, pair_energy, "two agents beside a sphere"),
         equal("corrected", theorem6_identity(m=2).residual, proof=PROOF).described(
             stated=f"{stated} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
             detail="with every pair once the identity is exact, for every n and any walls and spheres",
         ),
     ]
-
-
-THEOREM = erratum(
-    "E2",
-    statement="The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½.",
-    source="slides, Algorithm 3",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
-)

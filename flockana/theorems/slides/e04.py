@@ -130,23 +130,18 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    alpha = AlphaInteraction()
-    return [_implication(alpha), _reached(alpha), _none(alpha), _barrier(alpha), _together(alpha)]
-
-
-THEOREM = erratum(
+@erratum(
     "E4",
-    statement=(
-        "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
-        "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 "
-        "on a line, 26 in space). The barrier min{V : two agents coincide} is a bound that does not become vacuous; "
-        "it is found numerically. The hypothesis of Theorem 1 on all solutions is met for energies below (n-1) "
-        "ψ_α(r_α): by lattices of up to 3 agents on a line, 5 in the plane and 6 in space."
-    ),
     source="slides, Theorem 1(iii)",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"verified": "printed found vacuous barrier together"},
     ours=("found", "vacuous", "barrier", "together"),
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) to
+    the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 on a line,
+    26 in space). The barrier min{V : two agents coincide} is a bound that does not become vacuous; it is found
+    numerically. The hypothesis of Theorem 1 on all solutions is met for energies below (n-1) ψ_α(r_α): by lattices of
+    up to 3 agents on a line, 5 in the plane and 6 in space.
+    """
+    alpha = AlphaInteraction()
+    return [_implication(alpha), _reached(alpha), _none(alpha), _barrier(alpha), _together(alpha)]

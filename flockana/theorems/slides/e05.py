@@ -101,7 +101,18 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
     ]
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "E5",
+    source="Lecture slides, Theorem 5",
+    expected={"refuted": "printed-13 printed-8", "verified": "uncrossed-13 uncrossed-8 six"},
+    corrected=("uncrossed-13", "uncrossed-8"),
+    ours=("six",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A
+    face-centred cubic site and its twelve neighbours have 36 links, more than 3n - 6 = 33; eight sites with 17 links
+    are not planar either. All fragments of six sites are planar.
+    """
     total, bad = non_planar_fragments(_FRAGMENT)
     return [
         *_counterexample("13", fcc_star(_D), STAR, tolerances),
@@ -113,19 +124,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
         ),
     ]
-
-
-THEOREM = erratum(
-    "E5",
-    statement=(
-        "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A "
-        "face-centred cubic site and its twelve neighbours have 36 links, more than 3n - 6 = 33; eight sites with 17 "
-        "links are not planar either. All fragments of six sites are planar."
-    ),
-    source="Lecture slides, Theorem 5",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"refuted": "printed-13 printed-8", "verified": "uncrossed-13 uncrossed-8 six"},
-    corrected=("uncrossed-13", "uncrossed-8"),
-    ours=("six",),
-)

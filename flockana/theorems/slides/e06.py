@@ -14,7 +14,17 @@ def link_counts() -> dict[int, tuple[int, int, int]]:
     return {n: (count, 3 * n - 6, harborth(n)) for n, count in counts.items()}
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
+@erratum(
+    "E6",
+    source="Lecture slides, Theorem 5",
+    references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
+    expected={"refuted": "printed", "verified": "corrected sharp"},
+    ours=("sharp",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """Theorem 5(ii) is printed without a condition on n, and fails for n = 2 (1 link, 3n - 6 = 0). It holds for n >= 3;
+    the sharp bound ⌊3n - √(12n - 3)⌋ (Harborth) holds for every n and is reached by hexagonal spirals.
+    """
     table = link_counts()
     exceeding = [n for n, (count, printed, _) in table.items() if count > printed]
     count, printed, _ = min((table[n] for n in range(3, _MOST + 1)), key=lambda row: row[1] - row[0])
@@ -39,17 +49,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"hexagonal spirals of 1 to {_MOST} agents have Harborth's number of links, every one",
         ),
     ]
-
-
-THEOREM = erratum(
-    "E6",
-    statement=(
-        "Theorem 5(ii) is printed without a condition on n, and fails for n = 2 (1 link, 3n - 6 = 0). It holds for "
-        "n >= 3; the sharp bound ⌊3n - √(12n - 3)⌋ (Harborth) holds for every n and is reached by hexagonal spirals."
-    ),
-    source="Lecture slides, Theorem 5",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
-    expected={"refuted": "printed", "verified": "corrected sharp"},
-    ours=("sharp",),
-)

@@ -18,54 +18,39 @@ def _components(*sizes: int) -> FloatArray:
     return np.concatenate(rows)[:, None]
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """The slides' own examples: components of 1, 1, 1, 1 and 96 agents, and five of 20 each."""
-    uneven, even = _components(1, 1, 1, 1, 96), _components(20, 20, 20, 20, 20)
-    printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
-    few, both = "components of 1, 1, 1, 1 and 96 agents", "five components of 20 agents"
-    nodes, edges = giant_share(even, 1.5), printed_edge_share(100, links(even, 1.5))
-    text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, as all components are alike"
-    return [
-        _share(
-            "printed",
-            printed,
-            few,
-            f"by the printed formula, the share of edges in the giant component, C* is {printed:g}, not 0.96",
-        ),
-        _share("corrected", true, few, f"the share of nodes is {true:g}, the example's number"),
-        _relative("connectivity-1", connectivity(uneven, 1.5), few),
-        _relative("connectivity-2", connectivity(even, 1.5), both),
-        _share("share-2", nodes, both, text, stated=20),
-    ]
-
-
-def _share(name: str, share: float, witness: str, detail: str, *, stated: int = 96) -> Claim:
-    """Return the claim that a share of the hundred agents is the source's, as a whole number."""
-    return _number(name, share, 100, stated, f"{stated / 100.0:g}", witness, detail)
-
-
-def _relative(name: str, share: float, witness: str) -> Claim:
-    """Return the claim that C is 95/99: both nets have five components, and C cannot tell them apart."""
-    detail = f"C = {round(99.0 * share)}/99 for {witness}: five components, whatever their sizes"
-    return _number(name, share, 99, 95, "95/99", witness, detail)
-
-
-def _number(name: str, share: float, of: int, count: int, stated: str, witness: str, detail: str) -> Claim:
+def _share(name: str, share: float, count: int, of: int, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a given number of a total."""
+    stated = f"{count / of:g}" if of == 100 else f"{count}/{of}"
     proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
-    off = abs(round(of * share) - count)
-    return by_count(name, off, computed=share, stated=stated, witness=witness, detail=detail, **proof)
+    claim = by_count(name, abs(round(of * share) - count), **proof)
+    return claim.described(computed=share, stated=stated, witness=witness, detail=detail)
 
 
-THEOREM = erratum(
+@erratum(
     "E7",
-    statement=(
-        "The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents "
-        "have no edges, so that formula gives 1; the example counts nodes. C = 95/99 there and for five components of "
-        "20 agents, where C* = 0.2, as printed."
-    ),
     source="slides, 'more accurate measure of connectivity'",
-    check=_check,
-    references=("geschwender-2016", "olfati-saber-2006"),
     expected={"refuted": "printed", "verified": "corrected connectivity-1 connectivity-2 share-2"},
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents have
+    no edges, so that formula gives 1; the example counts nodes. C = 95/99 there and for five components of 20 agents,
+    where C* = 0.2, as printed.
+    """
+    # The slides' own examples.
+    few, uneven = "components of 1, 1, 1, 1 and 96 agents", _components(1, 1, 1, 1, 96)
+    both, even = "five components of 20 agents", _components(20, 20, 20, 20, 20)
+    ranks = {few: connectivity(uneven, 1.5), both: connectivity(even, 1.5)}  # which cannot tell the two apart
+    printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
+    nodes, edges = giant_share(even, 1.5), printed_edge_share(100, links(even, 1.5))
+    wrong = f"by the printed formula, the share of edges in the giant component, C* is {printed:g}, not 0.96"
+    text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, as all components are alike"
+    five = "five components, whatever their sizes"
+    return [
+        _share("printed", printed, 96, 100, few, wrong),
+        _share("corrected", true, 96, 100, few, f"the share of nodes is {true:g}, the example's number"),
+        *(
+            _share(f"connectivity-{k}", C, 95, 99, where, f"C = {round(99.0 * C)}/99 for {where}: {five}")
+            for k, (where, C) in enumerate(ranks.items(), 1)
+        ),
+        _share("share-2", nodes, 20, 100, both, text),
+    ]

@@ -9,16 +9,6 @@ from flockana.theorems.toolkit import Claim, Tolerances, by_count, erratum
 _PROOF = "net-measures"
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """A path of three agents: connected, so C must be 1."""
-    q = [[0.0], [1.0], [2.0]]
-    printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
-    return [
-        _rank("printed", printed, 3, f"rank(A)/n is {printed:.4g} on a connected path", disproof=_PROOF),
-        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}", proof=_PROOF),
-    ]
-
-
 def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Claim:
     """Return the claim that a connected net has the measure 1: by the rank that it comes from, a whole number."""
     return by_count(name, full - round(full * share), **proof).described(
@@ -26,13 +16,15 @@ def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Clai
     )
 
 
-THEOREM = erratum(
-    "E8",
-    statement=(
-        "The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A "
-        "path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1."
-    ),
-    source="MSN project, data collection",
-    check=_check,
-    references=("isola-2024", "olfati-saber-2006"),
-)
+@erratum("E8", source="MSN project, data collection", references=("isola-2024", "olfati-saber-2006"))
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A
+    path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1.
+    """
+    # A path of three agents: connected, so C must be 1.
+    q = [[0.0], [1.0], [2.0]]
+    printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
+    return [
+        _rank("printed", printed, 3, f"rank(A)/n is {printed:.4g} on a connected path", disproof=_PROOF),
+        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}", proof=_PROOF),
+    ]

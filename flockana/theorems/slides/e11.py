@@ -19,20 +19,25 @@ from flockana.theorems.claims import judged, undecided
 from flockana.theorems.errata import printed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
-from flockana.theorems.toolkit import Certificate, Enclosure, Observed, condition, law_is, limit_claim
+from flockana.theorems.toolkit import Certificate, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _SAFE, _FACTOR = 1.2, 1.3  # where the search for one ring starts, of `natural_ratio`, and its steps
 _HALVINGS = 3
 
 
-def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
-    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
-    pressed = pulled_law(paper_pair(law), ratio)
-    limit = gradient_flow(pressed, perturbed(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
+def resting_place(alpha: AlphaInteraction, ratio: float, q: FloatArray) -> FloatArray:
+    """Return where a start rests downhill at this c1γ/c1α."""
+    limit = gradient_flow(pulled_law(alpha, ratio), q)
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
-    return coincident_pairs(limit.q, CONTACT * law.alpha.length) > 0
+    return limit.q
+
+
+def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
+    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
+    start = perturbed(hexagonal_patch(rings, law.alpha.length), law.alpha.length)
+    return coincident_pairs(resting_place(paper_pair(law), ratio, start), CONTACT * law.alpha.length) > 0
 
 
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
@@ -47,13 +52,6 @@ def _gains(run: Observed) -> Hypothesis:
         return Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
     least = min(gains.c1_alpha, gains.c1_gamma)
     return condition("c1α > 0 and c1γ > 0", least > 0.0, least)
-
-
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    if unmet(needs := [_gains(seen)]):
-        return needs, []
-    end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
-    return needs, [_printed(seen, end, needs, tolerances), _minimum(seen, end, needs), _thresholds(seen.law)]
 
 
 def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
@@ -111,18 +109,21 @@ def _thresholds(law: Algorithm2) -> Claim:
     )
 
 
-THEOREM = run_theorem(
-    id="E11",
+@run_theorem(
+    "E11",
     title=printed("E11"),
-    statement=(
-        "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
-        "that falls with n, agents coincide permanently, in a strict local minimum of U_λ."
-    ),
     source="slides, summary of Theorem 3; both student projects",
     law=law_is("Algorithm 2", Algorithm2),
-    check=_check,
     claims=("printed", "minimum", "threshold"),
     reason="not so: {name}",
     references=("geschwender-2016", "isola-2024", "notebook-r2"),
     ours=("minimum", "threshold"),
 )
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α that
+    falls with n, agents coincide permanently, in a strict local minimum of U_λ.
+    """
+    if unmet(needs := [_gains(seen)]):
+        return needs, []
+    end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
+    return needs, [_printed(seen, end, needs, tolerances), _minimum(seen, end, needs), _thresholds(seen.law)]

@@ -49,7 +49,22 @@ def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: 
     )
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "E12",
+    title=printed("E12"),
+    source="MSN project, conclusion, cases 3 and 4",
+    claims=("predicted", "consistent", "printed"),
+    reason="no γ-agent with a wrong p_r to follow",
+    references=("isola-2024", "olfati-saber-2006"),
+    ours=("predicted", "consistent"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It explains the
+    sine by the reversal of the γ-agent's velocity (for the circle see E15). Both have one cause: the centre of mass is
+    a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 of dq_r/dt. At its gains the ratio is
+    then 0.852; with the true p_r it is 1.109. These are the ratios of the flow; the project's own program, which moves
+    one agent after another in place, gives 0.825 with 19 agents (E15).
+    """
     if unmet(needs := _hypotheses(seen.run)):
         return needs, []
     run, law = seen.run, seen.law
@@ -71,22 +86,3 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
             f"p_r that was handed over, at {handed.mid:.4f}",
         ),
     ]
-
-
-THEOREM = run_theorem(
-    id="E12",
-    title=printed("E12"),
-    statement=(
-        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It explains "
-        "the sine by the reversal of the γ-agent's velocity (for the circle see E15). Both have one cause: the centre "
-        "of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 of dq_r/dt. At its "
-        "gains the ratio is then 0.852; with the true p_r it is 1.109. These are the ratios of the flow; the "
-        "project's own program, which moves one agent after another in place, gives 0.825 with 19 agents (E15)."
-    ),
-    source="MSN project, conclusion, cases 3 and 4",
-    check=_check,
-    claims=("predicted", "consistent", "printed"),
-    reason="no γ-agent with a wrong p_r to follow",
-    references=("isola-2024", "olfati-saber-2006"),
-    ours=("predicted", "consistent"),
-)

@@ -25,27 +25,23 @@ def _enclosed(run: Trajectory) -> str | None:
     return "distinct-pairs" if its_own else None
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "E13",
+    title=printed("E13"),
+    source="slides, Theorem 3(iv)",
+    law=law_is("Algorithm 2", Algorithm2),
+    claims=("printed", "corrected"),
+    references=("geschwender-2016", "olfati-saber-2006"),
+    leads={"printed": pairs_apart, "corrected": pairs_apart},
+    corrected=("corrected",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Theorem 3(iv) says that with H_λ(0) < (k+1) c* at most k distinct pairs could collide. Energy bounds only the
+    pairs that coincide at the same instant; one agent can run through several others, one after the other.
+    """
     if unmet(needs := alpha_gain(seen)):
         return needs, []
     return needs, [
         distinct_pairs(seen, needs, tolerances, name="printed", disproof=_enclosed(seen.run)),
         pairs_at_one_instant(seen, needs, tolerances, name="corrected", proof="collisions"),
     ]
-
-
-THEOREM = run_theorem(
-    id="E13",
-    title=printed("E13"),
-    statement=(
-        "Theorem 3(iv) says that with H_λ(0) < (k+1) c* at most k distinct pairs could collide. Energy bounds only the "
-        "pairs that coincide at the same instant; one agent can run through several others, one after the other."
-    ),
-    source="slides, Theorem 3(iv)",
-    law=law_is("Algorithm 2", Algorithm2),
-    check=_check,
-    claims=("printed", "corrected"),
-    references=("geschwender-2016", "olfati-saber-2006"),
-    leads={"printed": pairs_apart, "corrected": pairs_apart},
-    corrected=("corrected",),
-)

@@ -10,24 +10,6 @@ from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, equal,
 _SHIFT = 10.0  # of d
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    from flockana.symbolic.reynolds import reynolds_form
-
-    printed, true = reynolds_form(printed=True), reynolds_form()
-    return [
-        equal("printed", list(printed.residuals)).described(
-            stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
-            detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
-        ),
-        _example(),
-        equal("corrected", list(true.residuals)).described(
-            stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
-            detail="for any numbers of positive and negative friends, by sympy",
-        ),
-        _state(),
-    ]
-
-
 def _three() -> tuple[AlphaInteraction, FloatArray]:
     """Three agents in a row: the middle one has a negative friend behind it and a positive one ahead."""
     alpha = AlphaInteraction()
@@ -74,15 +56,29 @@ def _state() -> Claim:
     )
 
 
-THEOREM = erratum(
+@erratum(
     "E14",
-    statement=(
-        "The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive "
-        "friends and the push from that of the negative ones. The term −S_i q_i is lost, and the force depends on the "
-        "origin. The correct form is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i)."
-    ),
     source="slides, Algorithm 1 against Reynolds' rules",
-    check=_check,
     expected={"refuted": "printed translation", "verified": "corrected state"},
     corrected=("corrected", "state"),
 )
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive
+    friends and the push from that of the negative ones. The term −S_i q_i is lost, and the force depends on the origin.
+    The correct form is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i).
+    """
+    from flockana.symbolic.reynolds import reynolds_form
+
+    printed, true = reynolds_form(printed=True), reynolds_form()
+    return [
+        equal("printed", list(printed.residuals)).described(
+            stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
+            detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
+        ),
+        _example(),
+        equal("corrected", list(true.residuals)).described(
+            stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
+            detail="for any numbers of positive and negative friends, by sympy",
+        ),
+        _state(),
+    ]

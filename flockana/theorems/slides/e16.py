@@ -5,13 +5,12 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.errors import SolverError
 from flockana.equilibria.collapse import perturbed, pulled_law
-from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.theorems.olfati_saber.attraction import attraction
+from flockana.theorems.slides.e11 import resting_place
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, stacked
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's
@@ -23,15 +22,7 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 @lru_cache(maxsize=1)
 def _compressed_rest() -> FloatArray:
     """Return where a hexagonal patch of 61 agents rests at the project's coefficients."""
-    return _rest(perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d), _RATIO)
-
-
-def _rest(q: FloatArray, ratio: float) -> FloatArray:
-    """Return where a start rests downhill under the project's pair law."""
-    limit = gradient_flow(pulled_law(_ALPHA, ratio), q)
-    if not limit.converged:
-        raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
-    return limit.q
+    return resting_place(_ALPHA, _RATIO, perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d))
 
 
 def _measured(q: FloatArray, ratio: float, contact: float) -> TerminalState:
@@ -43,7 +34,7 @@ def _least_strain(n: int, contact: float) -> Enclosure:
     rng = np.random.default_rng(0)
     starts = [perturbed(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
     starts += [rng.uniform(-_ALPHA.d, _ALPHA.d, (n, 2)) for _ in range(_STARTS - 1)]
-    ends = [_measured(_rest(q, 1.0), 1.0, contact) for q in starts]
+    ends = [_measured(resting_place(_ALPHA, 1.0, q), 1.0, contact) for q in starts]
     # two agents move apart by √2 of the distance to the minimum at most
     return stacked([Enclosure.around(end.strain, sqrt(2.0) * end.distance) for end in ends]).min()
 
@@ -54,8 +45,20 @@ def _pair_ratio(strain: float) -> float:
     return float(-2.0 * _ALPHA.phi_alpha(_ALPHA.sigma_norm(s)) / sqrt(1.0 + _ALPHA.eps * s**2))
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    """Flocks of 2 to 7 agents at c1γ = c1α, and 61 agents at the project's own coefficients."""
+@erratum(
+    "E16",
+    source="MSN project, Alpha Agent and Gamma Agent",
+    references=("isola-2024", "olfati-saber-2006"),
+    expected={"verified": "necessary insufficient"},
+    ours=("insufficient",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """The MSN project says that the α coefficients "must be greater than the gamma coefficients for algorithm 2 to work
+    correctly" (Alpha Agent). Where they are not, no flock that was tried rests as a lattice. It does not suffice: at
+    the project's own 100 : 70 pairs of agents coincide permanently in a flock of 61. What counts is the ratio c1γ/c1α
+    against a threshold that falls with n (E11).
+    """
+    # Flocks of 2 to 7 agents at c1γ = c1α, and 61 agents at the project's own coefficients.
     strains = stacked([_least_strain(n, tolerances.contact) for n in _SIZES])
     q = _compressed_rest()
     many = _measured(q, _RATIO, tolerances.contact)
@@ -76,19 +79,3 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             f"100 agents more: scenario msn-static), with curvature {many.curvature:.3g} of the largest: {basin.text}",
         ),
     ]
-
-
-THEOREM = erratum(
-    "E16",
-    statement=(
-        'The MSN project says that the α coefficients "must be greater than the gamma coefficients for algorithm 2 to '
-        'work correctly" (Alpha Agent). Where they are not, no flock that was tried rests as a lattice. It does not '
-        "suffice: at the project's own 100 : 70 pairs of agents coincide permanently in a flock of 61. What counts is "
-        "the ratio c1γ/c1α against a threshold that falls with n (E11)."
-    ),
-    source="MSN project, Alpha Agent and Gamma Agent",
-    check=_check,
-    references=("isola-2024", "olfati-saber-2006"),
-    expected={"verified": "necessary insufficient"},
-    ours=("insufficient",),
-)

@@ -23,33 +23,27 @@ def _pair_forces(run: Trajectory) -> FloatArray:
 
 def _printed_rate(run: Trajectory) -> FloatArray:
     """Return the rate of the printed energy, with the surplus c1α ⟨∇V, p⟩ that has no sign."""
-    rate: FloatArray = run.energy_rate() - np.sum(_pair_forces(run) * run.p, axis=(1, 2))
-    return rate
+    return run.energy_rate() - np.sum(_pair_forces(run) * run.p, axis=(1, 2))
 
 
 def _cancelling(run: Trajectory) -> FloatArray:
-    size: FloatArray = cancelling(run) + np.sum(lengths(_pair_forces(run)) * lengths(run.p), axis=1)
-    return size
+    return cancelling(run) + np.sum(lengths(_pair_forces(run)) * lengths(run.p), axis=1)
 
 
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+@run_theorem(
+    "energy-printed",
+    title="The energy of Algorithm 3 as printed never rises",
+    source="slides, Algorithm 3",
+    law=law_is("Algorithm 3", Algorithm3),
+    claims=("printed-run",),
+    references=("geschwender-2016", "olfati-saber-2006"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False
+    (E2): the sum counts every pair twice, and the rate of the surplus has no definite sign.
+    """
     needs = [target_rests(seen.run, any_p_r=False), stays_outside(seen)]
     by_samples = run_claim(seen, pair_energy, f"{seen.n} agents", needs)
     if by_samples.status == "refuted":
         return needs, [by_samples]
     return needs, [never_rises(seen, needs, rate=_printed_rate, cancels=_cancelling, name="printed-run")]
-
-
-THEOREM = run_theorem(
-    id="energy-printed",
-    title="The energy of Algorithm 3 as printed never rises",
-    statement=(
-        "With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False "
-        "(E2): the sum counts every pair twice, and the rate of the surplus has no definite sign."
-    ),
-    source="slides, Algorithm 3",
-    law=law_is("Algorithm 3", Algorithm3),
-    check=_check,
-    claims=("printed-run",),
-    references=("geschwender-2016", "olfati-saber-2006"),
-)

@@ -74,9 +74,8 @@ def test_two_agents_inside_at_and_outside_the_spacing(ratio, abscissa):
 def test_no_tree_no_case():
     assert tree_case(MinimalFlocking(), 3) is None
     assert tree_case(MinimalFlocking(edges=((0, 1), (1, 2), (2, 0))), 3) is None
-    assert (
-        tree_case(MinimalFlocking(edges=both_ways([(0, 1), (1, 2), (2, 0)]), spacing=1.0, normalised=False), 3) is None
-    )
+    ring = both_ways([(0, 1), (1, 2), (2, 0)])
+    assert tree_case(MinimalFlocking(edges=ring, spacing=1.0, normalised=False), 3) is None
     assert tree_case(MinimalFlocking(edges=((0, 1),)), 3) is None  # agent 2 stands apart
 
 

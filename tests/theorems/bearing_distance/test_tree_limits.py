@@ -49,13 +49,9 @@ def energies_of(case, q, p):
 def test_no_edge_ever_has_more_energy_than_the_certificate_allows(seed):
     rng = np.random.default_rng(seed)
     n, m = int(rng.integers(3, 6)), int(rng.integers(1, 4))
-    law = MinimalFlocking(
-        edges=random_out_tree(n, rng),
-        spacing=tuple(rng.uniform(0.5, 2.0, n)),
-        mu=rng.uniform(0.3, 3.0, (n, n)),
-        sigma=rng.uniform(0.5, 2.0, (n, n)),
-        normalised=False,
-    )
+    edges, spacing = random_out_tree(n, rng), tuple(rng.uniform(0.5, 2.0, n))
+    mu, sigma = rng.uniform(0.3, 3.0, (n, n)), rng.uniform(0.5, 2.0, (n, n))
+    law = MinimalFlocking(edges=edges, spacing=spacing, mu=mu, sigma=sigma, normalised=False)
     case = tree_case(law, n)
     q, p = random_state(case, rng, m, 10.0 ** rng.uniform(-12.0, -4.0))
     shares = edge_shares(case, state(q, p))
@@ -103,10 +99,8 @@ def test_a_wrong_spectrum_is_told():
     assert tree_spectrum(case, q).margin > 0.0
     case.mu[2] *= 1.0001
     assert tree_spectrum(case, q).margin < 0.0
-    path, triangle = (
-        MinimalFlocking(edges=both_ways(links), spacing=1.0, normalised=False)
-        for links in (((0, 1), (1, 2)), ((0, 1), (1, 2), (0, 2)))
-    )
+    nets = ((0, 1), (1, 2)), ((0, 1), (1, 2), (0, 2))
+    path, triangle = (MinimalFlocking(edges=both_ways(links), spacing=1.0, normalised=False) for links in nets)
     case, q = tree_case(path, 3), np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
     assert tree_spectrum(case, q).margin > 0.0
     assert tree_spectrum(replace(case, law=triangle), q).margin < 0.0

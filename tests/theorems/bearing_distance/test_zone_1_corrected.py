@@ -10,6 +10,7 @@ from flockana.theorems.bearing_distance.tree_case import characteristic_residual
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, state
 from flockana.theorems.bearing_distance.tree_spectrum import Spectrum
 from flockana.theorems.observed import Observed
+from tests.theorems.made_up import statuses
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 CORRECTED = ("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision")
@@ -39,12 +40,8 @@ def undirected():
 def test_as_printed_it_is_refuted_with_its_counterexample(directed):
     verdict = verify("zone-1-printed", directed)
     assert verdict.status == "refuted"
-    assert {c.name: c.status for c in verdict.claims} == {
-        "equilibrium": "refuted",
-        "edges": "refuted",
-        "velocities": "verified",
-        "hurwitz": "refuted",
-    }
+    wrong = dict.fromkeys(("equilibrium", "edges", "hurwitz"), "refuted")
+    assert statuses(verdict) == wrong | {"velocities": "verified"}
     assert all(h.status == "met" for h in verdict.hypotheses)
     # the witness, run anew, stays where it is, with every edge one unit long
     q = np.array(verdict.claim("equilibrium").witness["q"])
@@ -68,14 +65,6 @@ def test_as_corrected_it_holds_on_directed_trees(m, seed):
     assert verdict.status == "verified"
     assert verdict.claim("spectrum").computed["zero modes"] == 5 * (m - 1)
     assert verdict.claim("lengths").computed < 1e-6
-
-
-def test_unequal_spacings_and_weights_are_covered():
-    mu = np.outer([1.0, 0.5, 2.0, 3.0, 1.5], np.ones(5))
-    run = run_on(TREE, spacing=(1.0, 0.7, 1.3, 2.0, 1.1), mu=mu, end=100.0)
-    assert verify("zone-1-corrected", run).status == "verified"
-    lengths = np.linalg.norm(edge_vectors(run.q[-1], TREE), axis=1)
-    np.testing.assert_allclose(lengths, [0.7, 1.3, 2.0, 1.1], rtol=1e-6)
 
 
 def test_as_corrected_it_holds_on_undirected_trees(undirected):

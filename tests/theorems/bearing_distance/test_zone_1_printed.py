@@ -31,12 +31,9 @@ def test_an_edge_at_rest_keeps_what_its_stretch_leaves(share):
     assert still.computed == pytest.approx(2.0, abs=1e-5)
 
 
-def test_an_edge_with_energy_enough_may_vanish():
+def test_an_edge_with_energy_enough_may_vanish_and_of_two_the_one_that_keeps_more_refutes():
     assert at_rest(4.0 + 1e-3).claim("edges").status == "inconclusive"
     assert at_rest(6.1).claim("edges").status == "inconclusive"
-
-
-def test_of_two_edges_the_one_that_keeps_more_refutes():
     edges = at_rest(2.5, 2.0).claim("edges")
     assert edges.margin == pytest.approx(0.25 - 1.0, abs=1e-6)
     assert edges.computed == pytest.approx([2.0, 2.5])

@@ -31,10 +31,8 @@ def test_a_pair_swings_about_its_spacing_with_the_frequency_of_two_mu(seen):
     period = 2.0 * pi / sqrt(6.0)
     assert claim.status == "verified"
     assert claim.stated == {"period": pytest.approx(period, rel=1e-14), "amplitude": 0.5}
-    assert claim.computed == {
-        "period": pytest.approx(period, rel=1e-10),
-        "amplitude at the end": pytest.approx(0.5, rel=1e-9),
-    }
+    end = pytest.approx(0.5, rel=1e-9)
+    assert claim.computed == {"period": pytest.approx(period, rel=1e-10), "amplitude at the end": end}
     assert claim.witness == {"q(0)": [[0.0, 0.0], [2.5, 0.0]], "p(0)": "0"}
     assert "with amplitude 0.5" in claim.detail
     assert (run.t[0], run.t[-1]) == (0.0, pytest.approx(20.0 * period, rel=1e-14))
@@ -68,9 +66,8 @@ def test_a_path_keeps_its_energy_until_it_is_aligned(seen):
     drift = max(abs(h / alone.energy()[0] - 1.0) for h in alone.energy())
     for run in (alone, aligned):
         assert (run.t[0], run.t[-1], run.n) == (0.0, 60.0, 5)
-        assert (np.abs(run.q[0, 0]) <= 2.0).all()
-        assert (np.abs(np.diff(run.q[0], axis=0)) <= 2.0).all()
-        assert (np.abs(run.p[0]) <= 1.0).all()
+        assert max(np.abs(run.q[0, 0]).max(), np.abs(np.diff(run.q[0], axis=0)).max()) <= 2.0
+        assert np.abs(run.p[0]).max() <= 1.0
         centre = run.q[0].mean(axis=0) + np.multiply.outer(run.t, run.p[0].mean(axis=0))
         np.testing.assert_allclose(run.q.mean(axis=1), centre, atol=1e-8)
     assert claim.status == "verified"

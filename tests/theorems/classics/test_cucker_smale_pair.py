@@ -23,31 +23,23 @@ def pair(start, speed, *, mean=False, decay=1.0, way=1.0, far=0.0, until=0.1):
 @pytest.mark.parametrize("mean", [True, False])
 @pytest.mark.parametrize("start", [0.5, -2.0])
 def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
-    integral_to_infinity = PSI[mean] * (pi / 2.0 - atan(start))
-    slow, _ = pair(start, 0.4 * integral_to_infinity, mean=mean, way=way)
-    bounded = slow.claim("bounded")
-    assert slow.claim("parts").status == "vacuous"
-    assert (bounded.status, bounded.proof) == ("verified", "cucker-smale")
-    assert bounded.needs[-1].margin == pytest.approx(0.6 * integral_to_infinity, rel=1e-10)
-    assert bounded.needs[-1].error == pytest.approx(1e-11 * integral_to_infinity, rel=1e-3)
-    end = tan(atan(start) + 0.4 * integral_to_infinity / PSI[mean])
-    assert f"x along w tends to {end:.6g}, " in bounded.detail
-    fast, run = pair(start, 1.5 * integral_to_infinity, mean=mean, way=way)
-    parts = fast.claim("parts")
-    assert fast.claim("bounded").status == "vacuous"
-    assert (parts.status, parts.proof) == ("verified", "cucker-smale")
-    assert parts.needs[-1].margin == pytest.approx(0.5 * integral_to_infinity, rel=1e-10)
-    assert parts.needs[-1].error == pytest.approx(1e-11 * integral_to_infinity, rel=1e-3)
+    integral_to_infinity, told = PSI[mean] * (pi / 2.0 - atan(start)), {}
+    for share, said, not_so, room in ((0.4, "bounded", "parts", 0.6), (1.5, "parts", "bounded", 0.5)):
+        verdict, run = pair(start, share * integral_to_infinity, mean=mean, way=way)
+        claim = told[said] = verdict.claim(said)
+        assert verdict.claim(not_so).status == "vacuous"
+        assert (claim.status, claim.proof) == ("verified", "cucker-smale")
+        assert claim.needs[-1].margin == pytest.approx(room * integral_to_infinity, rel=1e-10)
+        assert claim.needs[-1].error == pytest.approx(1e-11 * integral_to_infinity, rel=1e-3)
+    end, parts = tan(atan(start) + 0.4 * integral_to_infinity / PSI[mean]), told["parts"]
+    assert f"x along w tends to {end:.6g}, " in told["bounded"].detail
     assert parts.computed == pytest.approx(way * float(run.p[-1, 1, 0] - run.p[-1, 0, 0]), rel=1e-7)
     assert f"at the end and never below {0.5 * integral_to_infinity:.6g}" in parts.detail
 
 
-def test_at_the_integral_itself_it_is_open():
+def test_at_the_integral_itself_it_is_open_and_a_weight_that_falls_slowly_matches_all():
     verdict, _ = pair(0.5, 6.0 * (pi / 2.0 - atan(0.5)) * (1.0 + 1e-12))
     assert {verdict.claim(name).status for name in ("bounded", "parts")} <= {"inconclusive", "vacuous"}
-
-
-def test_a_weight_that_falls_slowly_matches_all():
     bounded = pair(0.5, 1e3, decay=0.5)[0].claim("bounded")
     assert (bounded.status, bounded.needs[-1].status, bounded.needs[-1].margin) == ("verified", "met", inf)
 

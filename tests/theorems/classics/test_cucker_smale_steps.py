@@ -23,10 +23,8 @@ def test_short_steps_flock(scheme, h, mean, said):
     """λ = nK = 6 of plain sums, 2 of means."""
     verdict = verify("cucker-smale-steps", run(scheme, h, mean=mean))
     need = hypothesis(verdict, "h λ")
-    assert (need.status, need.margin) == (
-        "met" if said == "verified" else "unmet",
-        pytest.approx(1.0 - h * (2.0 if mean else 6.0)),
-    )
+    assert need.status == ("met" if said == "verified" else "unmet")
+    assert need.margin == pytest.approx(1.0 - h * (2.0 if mean else 6.0))
     assert statuses(verdict) == dict.fromkeys(CLAIMS, said)
 
 

@@ -57,14 +57,11 @@ def test_what_the_nets_do_not_leave_of_a_spread_is_missed(left, missed):
     assert claim.witness["steps of the first missed"] == ((0, 1) if missed else None)
 
 
-def test_two_that_never_hear_each_other_are_in_no_window():
+def test_two_that_do_not_hear_each_other_are_in_no_window_and_may_meet_after_the_run():
     verdict = verdict_of([[3.0, 0.1]] * 3, [APART] * 3)
     assert statuses(verdict) == {"hull": "verified", "contraction": "vacuous", "agreement": "vacuous"}
     assert hypothesis(verdict, "at all later times").status == "unmet"  # the second is ahead, and they head apart
     assert "0 windows seen, of 0 steps at most" in hypothesis(verdict, "at all later times").detail
-
-
-def test_what_comes_after_the_run_may_not_be_known():
     verdict = verdict_of([[0.1, 3.0]] * 3, [APART] * 3)
     assert hypothesis(verdict, "at all later times").status == "assumed"
     assert verdict.claim("agreement").status == "inconclusive"

@@ -56,12 +56,8 @@ def test_positions_and_velocities_are_less_those_of_the_leader():
 def test_of_a_leader_on_a_circle_its_acceleration_is_taken_off_if_all_are_told(feedforward):
     """R (cos ωt, sin ωt): at t = 0 at R along x, with R ω along y, and −R ω² along x."""
     radius, omega = 9.0, 0.05
-    own = compose(
-        pair=AlphaInteraction(),
-        consensus=9.0,
-        navigation=CircleTarget((0.0, 0.0), radius, omega / (2.0 * np.pi)),
-        feedforward=feedforward,
-    )
+    circle = CircleTarget((0.0, 0.0), radius, omega / (2.0 * np.pi))
+    own = compose(pair=AlphaInteraction(), consensus=9.0, navigation=circle, feedforward=feedforward)
     seen = seen_by_leader(made_up(own, np.zeros((1, 2, 2)), t=[0.0]))
     assert seen.q[0] == pytest.approx(np.tile([-radius, 0.0], (2, 1)), abs=1e-12)
     assert seen.p[0] == pytest.approx(np.tile([0.0, -radius * omega], (2, 1)), abs=1e-12)

@@ -9,19 +9,10 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import least_distance, spread_over
 
 
-@pytest.mark.parametrize("off", [-2e-8, -3e-9, -1e-9, 1e-9])
-def test_a_pair_at_rest_near_its_distance_refutes_nothing(off):
-    run = simulate(FixedNetFlocking(edges=((0, 1),)), [[0.0], [1.0 + off]], [[0.0], [0.0]], (0.0, 2.0))
-    verdict = verify("tanner-fixed", run)
-    assert verdict.claim("no-collision").status != "refuted"
-
-
 def test_the_error_of_few_samples_holds_what_many_find():
     law, q, p = FixedNetFlocking(edges=((0, 1),)), [[0.0, 0.0], [1.2, 0.0]], [[0.0, 0.0], [0.0, 0.1]]
-    few, many = (
-        verify("tanner-fixed", simulate(law, q, p, (0.0, 2.0), t_eval=times)).claim("no-collision")
-        for times in ([0.0, 2.0], np.linspace(0.0, 2.0, 101))
-    )
+    runs = (simulate(law, q, p, (0.0, 2.0), t_eval=times) for times in ([0.0, 2.0], np.linspace(0.0, 2.0, 101)))
+    few, many = (verify("tanner-fixed", run).claim("no-collision") for run in runs)
     assert many.error < 1e-3 < few.margin - many.margin
     assert few.margin - few.error <= many.margin
     assert few.status == many.status == "verified"

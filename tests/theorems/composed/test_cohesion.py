@@ -1,15 +1,12 @@
 """The general theorems on compositions: energy, cohesion, collisions, and where each says nothing."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from flockana import CircleTarget, LinearTarget, Sphere, StaticTarget, compose, pair_law, simulate, verify
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana import CircleTarget, LinearTarget, Sphere, StaticTarget, compose, simulate, verify
+from flockana.interactions import AlphaInteraction, DeadZoneInteraction
 from flockana.theorems.composed.cohesion import bound
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.meeting import meeting
 from tests.theorems.made_up import hexagon, statuses
 
 PAIR, HERE = AlphaInteraction(), StaticTarget((0.0, 0.0))
@@ -83,26 +80,6 @@ def test_a_moving_leader_of_a_few_does_work():
 def test_below_the_energy_of_a_meeting_nobody_meets(name):
     verdict = verify("collision-energy", run_of(p=0.0 * P, **FALLING[name]))
     assert verdict.claim("below").status in ("verified", "vacuous")
-    pair = simulate(
-        compose(**FALLING[name] | {"obstacles": ()}), [[0.0, 0.0], [7.2, 0.0]], np.zeros((2, 2)), (0.0, 3.0)
-    )
+    law = compose(**FALLING[name] | {"obstacles": ()})
+    pair = simulate(law, [[0.0, 0.0], [7.2, 0.0]], np.zeros((2, 2)), (0.0, 3.0))
     assert verify("collision-energy", pair).claim("below").status == "verified"
-
-
-def test_drag_does_not_forbid_every_meeting():
-    """Head on and fast, two agents of a composition pass through each other: only the bound below c* holds."""
-    law = compose(pair=PAIR, gradient=1.0, drag=0.05)
-    run = simulate(law, [[0.0], [8.0]], [[30.0], [-30.0]], (0.0, 1.0))
-    assert verify("collision-energy", run).claim("below").status == "vacuous"
-
-
-def test_thrust_makes_the_collision_bound_vacuous():
-    assert verify("collision-energy", run_of(pair=PAIR, speed=(1.0, 1.0))).status == "vacuous"
-    assert verify("collision-energy", run_of(drag=1.0)).status == "vacuous"
-
-
-def test_a_meeting_s_energy_counts_from_the_least_of_a_pair():
-    """ψ(0) = 3, the least −5 at the distance 1, 3 beyond: 8 c1 for a meeting, −5 c1 for each of three pairs."""
-    pair = pair_law("8*(s - 1)**2 - 5", adjacency=0, range=2.0, length=1.0)
-    law = SimpleNamespace(alpha=pair, gains=Gains(c1_alpha=2.0))
-    assert meeting(SimpleNamespace(law=law, n=3)) == (16.0, -30.0)

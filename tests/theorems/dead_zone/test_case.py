@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
-from flockana.theorems.dead_zone.case import (
-    dead_zone_law,
-    distance_bound,
-    final_components,
-    hypotheses,
-    settling,
-    velocities_match,
-)
-from flockana.theorems.dead_zone.case import no_collision as no_collision_of
+from flockana.theorems.dead_zone import case
 from flockana.theorems.toolkit import Enclosure, Observed
 from tests.theorems.made_up import made_up as made_up_run
 
@@ -28,7 +20,7 @@ def made_up(*args, **kwargs):
 
 
 def no_collision(seen, bound):
-    return no_collision_of(seen, LAW, Enclosure.of(bound), [], name="distance")
+    return case.no_collision(seen, LAW, Enclosure.of(bound), [], name="distance")
 
 
 def passing(law, beside):
@@ -89,13 +81,10 @@ def test_agents_that_coincide_refute_a_bound_and_decide_nothing_without_one(boun
     assert claim.margin <= 0.0
 
 
-def test_one_agent_has_no_distances():
+def test_one_agent_has_no_distances_and_far_from_the_origin_they_are_less_exact():
     for bound in (0.0, 1.0):
         claim = no_collision(made_up(LAW, np.zeros((2, 1, 2))), bound)
         assert (claim.margin, claim.error, claim.status) == (1.0, 0.0, "verified")
-
-
-def test_far_from_the_origin_a_distance_is_less_exact():
     run = passing(STEPS, 3.0).run
     near, far = (no_collision(made_up(STEPS, run.q + x, run.p), 1.0).error for x in (0.0, 1e9))
     assert near < 1e-14
@@ -104,7 +93,7 @@ def test_far_from_the_origin_a_distance_is_less_exact():
 
 def test_the_bound_is_that_of_the_energy_at_the_start():
     q, p = np.array([[[0.0], [5.0]]] * 2), np.array([[[-3.0], [3.0]]] * 2)
-    bound = distance_bound(made_up(LAW, q, p), LAW)
+    bound = case.distance_bound(made_up(LAW, q, p), LAW)
     exact = LAW.interaction.least_distance(9.0 + float(LAW.interaction.psi(5.0)))
     assert bound.lo < exact < bound.hi
     assert bound.half_width == pytest.approx(1e-9 * exact, rel=1e-3, abs=0.0)
@@ -115,13 +104,13 @@ def test_the_law_is_that_of_its_steps_and_no_other():
         pass
 
     q = np.array([[[0.0], [5.0]]] * 2)
-    assert dead_zone_law(made_up(LAW, q)) is LAW
-    assert dead_zone_law(made_up(STEPS, q)) is LAW
-    assert dead_zone_law(made_up(DeadZoneFlocking(Other()), q)) is None
-    assert dead_zone_law(made_up(Algorithm1(), q)) is None
-    assert [h.status for h in hypotheses(made_up(LAW, q))] == ["met", "met"]
-    assert hypotheses(made_up(LAW, q))[1].margin == 5.0
-    assert [h.status for h in hypotheses(made_up(Algorithm1(), 0.0 * q))] == ["unmet", "unmet"]
+    assert case.dead_zone_law(made_up(LAW, q)) is LAW
+    assert case.dead_zone_law(made_up(STEPS, q)) is LAW
+    assert case.dead_zone_law(made_up(DeadZoneFlocking(Other()), q)) is None
+    assert case.dead_zone_law(made_up(Algorithm1(), q)) is None
+    assert [h.status for h in case.hypotheses(made_up(LAW, q))] == ["met", "met"]
+    assert case.hypotheses(made_up(LAW, q))[1].margin == 5.0
+    assert [h.status for h in case.hypotheses(made_up(Algorithm1(), 0.0 * q))] == ["unmet", "unmet"]
 
 
 @pytest.mark.parametrize("speed", [0.25, 3.0])
@@ -129,29 +118,21 @@ def test_two_that_part_keep_half_the_square_of_their_speed(speed):
     """16 apart, 1 beyond the range of 15, and each at its own velocity for ever: the lesser of 1/15 and the drift."""
     q, p = np.array([[0.0], [16.0]]), np.array([[-speed], [speed]])
     run = made_up(LAW, [q - p, q, q + p], [0.5 * p, p, p])
-    end = final_components(run, LAW)
+    end = case.final_components(run, LAW)
     gap = (16.0 + 2.0 * speed - 15.0) / 15.0
-    claim = velocities_match(run, end, [], name="velocity")
+    claim = case.velocities_match(run, end, [], name="velocity")
     assert claim.status == "refuted"
     assert claim.margin == pytest.approx(-min(gap, 0.5 * speed**2 / LAW.scales.speed**2), rel=1e-9)
     assert claim.computed == pytest.approx(0.5 * speed**2, rel=1e-12)
     assert claim.witness == {"time": 2.0, "K̃ at the start": pytest.approx(0.125 * speed**2)}
-    assert settling(end).margin == pytest.approx(min(gap, 1.0), rel=1e-9)
-
-
-def test_two_that_may_meet_again_decide_nothing():
-    q, p = np.array([[0.0], [16.0]]), np.array([[1.0], [-1.0]])
-    run = made_up(LAW, [q, q], [p, p])
-    end = final_components(run, LAW)
-    assert velocities_match(run, end, [], name="velocity").status == "inconclusive"
-    assert settling(end).margin == -1.0  # 15 short of being 0 apart
+    assert case.settling(end).margin == pytest.approx(min(gap, 1.0), rel=1e-9)
 
 
 def test_one_component_settles_if_its_energy_cannot_break_it():
     """Two agents at rest in the dead zone, where only k₁ pulls: their energy is less than ψ(r)."""
     q = np.array([[[0.0], [5.0]]] * 2)
     run = made_up(LAW, q)
-    claim = velocities_match(run, final_components(run, LAW), [], name="velocity")
+    claim = case.velocities_match(run, case.final_components(run, LAW), [], name="velocity")
     share = float(LAW.interaction.psi(5.0)) / LAW.interaction.far_potential
     assert claim.status == "verified"
     assert claim.margin == pytest.approx(1.0 - share, rel=1e-9)

@@ -3,15 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.theorems.dead_zone.motions import advance, parting_pair
-
-
-def test_two_part_at_12_from_14():
-    law, q, p = parting_pair()
-    assert law == DeadZoneFlocking()
-    np.testing.assert_array_equal(q, [[0.0, 0.0], [14.0, 0.0]])
-    np.testing.assert_array_equal(p, [[-6.0, 0.0], [6.0, 0.0]])
 
 
 @pytest.mark.parametrize(("dt", "t_end", "steps"), [(0.01, 10.0, 1000), (0.01, 13.0, 1500), (0.004, 4.0, 1000)])
@@ -21,8 +13,3 @@ def test_the_last_of_many_steps(dt, t_end, steps):
     found = advance(law, q, p, dt, t_end)
     np.testing.assert_array_equal(found[0], states[0][-1])
     np.testing.assert_array_equal(found[1], states[1][-1])
-
-
-def test_before_a_block_of_steps_is_due_nothing_moves():
-    law, q, p = parting_pair()
-    np.testing.assert_array_equal(advance(law, q, p, 0.01, 2.0), (q, p))

@@ -11,20 +11,11 @@ def test_parts_tell_receding_from_approaching():
     law = DeadZoneFlocking()
     q = np.array([[0.0, 0.0], [3.5, 0.0], [50.0, 0.0], [53.5, 0.0]])
     away, back = (np.array([[-s, 0.0], [-s, 0.2], [s, 0.0], [s, 0.0]]) for s in (1.0, -1.0))
-    assert (
-        components_of(q, away, law).count,
-        components_of(q, away, law).parting,
-        components_of(q, back, law).parting,
-    ) == (2, True, False)
+    leaving, meeting = components_of(q, away, law), components_of(q, back, law)
+    assert (leaving.count, leaving.separation.certain, meeting.separation.certain) == (2, True, False)
     assert components_of(q, away, law).mismatch == pytest.approx(0.5 * 2 * 0.01 / 2)
-    assert not components_of(q[:2], away[:2], law).parting
-    assert not components_of(q, 0.0 * q, law).parting  # they stay apart, but at one velocity
-
-
-def test_parts_may_pass_each_other_beyond_range_only():
-    law, p = DeadZoneFlocking(), np.array([[1.0, 0.0], [-1.0, 0.0]])
-    for offset, certain in ((15.1, True), (14.9, False)):
-        assert components_of(np.array([[0.0, 0.0], [100.0, offset]]), p, law).parting is certain
+    assert not components_of(q[:2], away[:2], law).separation.certain
+    assert not components_of(q, 0.0 * q, law).separation.certain  # they stay apart, but at one velocity
 
 
 def test_centres_that_recede_do_not_part_what_can_still_reach_out():
@@ -35,7 +26,7 @@ def test_centres_that_recede_do_not_part_what_can_still_reach_out():
     law = DeadZoneFlocking(k2=0.0)
     q = np.array([[0.0, 0.0], [14.0, 0.0], [40.0, 0.0]])
     p = np.array([[-13.0, 0.0], [12.0, 0.0], [0.2, 0.0]])
-    assert (components_of(q, p, law).count, components_of(q, p, law).parting) == (2, False)
+    assert (components_of(q, p, law).count, components_of(q, p, law).separation.certain) == (2, False)
     run = simulate(law, q, p, (0.0, 4.0))
     assert np.linalg.norm(run.q[:, 2] - run.q[:, 1], axis=1).min() < 15.0
     assert verify("dead-zone-1-printed", run.window(0.0, 0.5)).claim("velocity").status == "inconclusive"
@@ -50,7 +41,7 @@ def test_a_pair_is_bound_by_its_energy(share, distance, certain):
     q = np.array([[-4.0, 0.0], [4.0, 0.0], [0.0, distance]])
     speed = np.sqrt(share * law.interaction.far_potential - law.interaction.psi(8.0))  # each of the two: ½(s² + s²)
     p = np.array([[speed, 0.0], [-speed, 0.0], [0.0, 1.0]])
-    assert components_of(q, p, law).parting is certain
+    assert components_of(q, p, law).separation.certain is certain
 
 
 @pytest.mark.parametrize(("distance", "certain"), [(29.9, False), (30.1, True)])
@@ -58,7 +49,7 @@ def test_a_chain_is_bound_by_its_pairs_out_of_range(distance, certain):
     """n = 3 with its ends 16 apart: H is 1.1 psi(r), so M = 1, and B = 15 (2 + 1)/3."""
     q = np.array([[-8.0, 0.0], [0.0, 0.0], [8.0, 0.0], [0.0, distance]])
     p = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
-    assert components_of(q, p, DeadZoneFlocking()).parting is certain
+    assert components_of(q, p, DeadZoneFlocking()).separation.certain is certain
 
 
 def test_what_parts_for_ever_does():
@@ -67,8 +58,8 @@ def test_what_parts_for_ever_does():
     law = item.law.law
     run = simulate(item.law, item.q0, item.p0, (0.0, 800.0), t_eval=[0.0, 400.0, 800.0])
     middle, end = (components_of(q, p, law) for q, p in zip(run.q[1:], run.p[1:], strict=True))
-    assert middle.parting
-    assert (end.count, end.parting) == (middle.count, True)
+    assert middle.separation.certain
+    assert (end.count, end.separation.certain) == (middle.count, True)
 
 
 def test_parts_with_one_velocity_may_turn_to_meet_for_all_that_rounding_tells():
@@ -83,4 +74,4 @@ def test_parts_with_one_velocity_may_turn_to_meet_for_all_that_rounding_tells():
     blur = 2.0 * 4.0 * np.finfo(float).eps * 1.0  # two means of two agents each
     expected = 50.0 * 4.0 * blur / 1e-9 / law.interaction.r
     assert components_of(q, slow, law).apart.error == pytest.approx(expected, rel=1e-6)
-    assert not any(components_of(q, p, law).parting for p in (np.full((4, 2), 1.0), ulp))
+    assert not any(components_of(q, p, law).separation.certain for p in (np.full((4, 2), 1.0), ulp))

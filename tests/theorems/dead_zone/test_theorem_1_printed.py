@@ -20,13 +20,10 @@ def of_line(*places, speeds=None, law=LAW):
     return judged("dead-zone-1-printed", made_up(law, [q, q + p], [p, p]))
 
 
-def test_one_agent_is_its_own_centre():
+def test_one_agent_is_its_own_centre_which_is_known_less_well_far_from_the_origin():
     claim = of_line(3.0).claim("cohesion")
     assert (claim.status, claim.margin, claim.computed) == ("verified", pytest.approx(1.0, abs=1e-14), 0.0)
-
-
-def test_far_from_the_origin_the_centre_is_known_less_well():
-    """Of one agent by some roundings of a place in its frame, of r = 15."""
+    # Of one agent by some roundings of a place in its frame, of r = 15
     for place in (0.0, 3.0, 1e6):
         claim, eps = of_line(place).claim("cohesion"), np.finfo(float).eps
         known = 2.0 * 5.0 * eps * place / 15.0  # the last state, and the centre again
@@ -42,16 +39,13 @@ def test_two_at_their_contact_are_half_of_it_away():
     assert claim.margin == pytest.approx(1.0 - (0.5 * CONTACT + reach) / 15.0, rel=1e-12)
 
 
-def test_two_whose_energy_binds_them_are_nowhere_beyond_half_of_the_range():
+def test_two_whose_energy_binds_them_are_nowhere_beyond_half_of_the_range_and_else_nothing_is_known():
     """In the dead zone no minimum is near; none of their one pair gets out of range, so (n − 1 + 0) r/n."""
     claim = of_line(0.0, 5.0).claim("cohesion")
     assert (claim.status, claim.margin) == ("verified", pytest.approx(0.5, rel=1e-12))
     assert claim.computed == pytest.approx(2.5)
-
-
-def test_two_that_might_leave_are_not_known():
-    claim = of_line(0.0, 5.0, speeds=(-4.0, 4.0)).claim("cohesion")
-    assert claim.status == "inconclusive"
+    assert of_line(0.0, 5.0, speeds=(-4.0, 4.0)).claim("cohesion").status == "inconclusive"
+    assert of_line(0.0, 18.0, speeds=(1.0, -1.0)).claim("cohesion").status == "inconclusive"
 
 
 @pytest.mark.parametrize("speed", [0.5, 2.0])
@@ -60,10 +54,6 @@ def test_two_that_part_refute_cohesion_by_their_clearance_or_their_drift(speed):
     assert claim.status == "refuted"
     assert claim.margin == pytest.approx(-min((1.0 + 2.0 * speed) / 15.0, 0.5 * (speed / LAW.scales.speed) ** 2))
     assert claim.witness["components"] == 2
-
-
-def test_two_beyond_range_that_approach_decide_nothing():
-    assert of_line(0.0, 18.0, speeds=(1.0, -1.0)).claim("cohesion").status == "inconclusive"
 
 
 FLAT = DeadZoneFlocking(DeadZoneInteraction(r=10.0, r_b=8.0, delta=4.5, k1=0.0))  # no pull up to its range: ψ̄(r) = 0
@@ -90,20 +80,14 @@ def test_the_energy_of_neighbours_rises_as_a_pair_comes_into_range(law, places, 
     assert ("nothing jumps" in claim.detail) == (law is FLAT)
 
 
-def test_at_the_range_itself_it_is_not_known_whether_a_pair_comes_in():
+def test_pairs_at_the_range_itself_and_at_one_place():
     assert of_line(0.0, 15.0).claim("energy").status == "inconclusive"
-
-
-def test_the_agents_must_start_at_distinct_places():
     verdict = of_line(1.0, 1.0)
     assert {claim.status for claim in verdict.claims} == {"vacuous"}
     assert verdict.hypotheses[1].status == "unmet"
 
 
 def test_the_last_claim_is_of_the_least_distance_over_the_length_of_the_law():
-    claim = of_line(0.0, 5.0, 12.0).claim("collision")
-    assert claim.margin == pytest.approx(5.0 / LAW.scales.length, rel=1e-9)
-    other = replace(LAW, interaction=replace(LAW.interaction, r_b=9.0))
-    assert of_line(0.0, 5.0, 12.0, law=other).claim("collision").margin == pytest.approx(
-        5.0 / other.scales.length, rel=1e-9
-    )
+    for law in (LAW, replace(LAW, interaction=replace(LAW.interaction, r_b=9.0))):
+        claim = of_line(0.0, 5.0, 12.0, law=law).claim("collision")
+        assert claim.margin == pytest.approx(5.0 / law.scales.length, rel=1e-9)

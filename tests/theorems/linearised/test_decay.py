@@ -43,15 +43,12 @@ def test_a_bond_decays_as_its_spring_and_damper_say():
     assert (found.name, found.law, found.n, found.m) == ("bond", "Algorithm1", 2, 1)
 
 
-def test_the_slope_of_a_decaying_swing_is_exact():
+def test_the_slope_of_a_decaying_swing_is_exact_and_the_mismatch_relative_to_the_centre():
     """K̃ = e^(−2σt)(1 + b cos 2ωt) has the slope −2σ over its half periods, however deep it swings."""
     rate, half = 0.7, 0.25
     t = np.arange(5 * module._SAMPLES + 1) * half / module._SAMPLES
     mismatch = np.exp(-2.0 * rate * t) * (1.0 + 0.999 * np.cos(2.0 * np.pi * t / half))
     np.testing.assert_allclose(logarithmic_slopes(mismatch, half), -2.0 * rate, rtol=1e-12)
-
-
-def test_the_mismatch_is_relative_to_the_centre():
     assert velocity_mismatch(np.array([[[1.0], [3.0]], [[5.0], [5.0]]])).tolist() == [1.0, 0.0]
 
 

@@ -73,22 +73,6 @@ def test_what_lies_nearer_to_its_bound_than_the_run_is_known_is_open(claim, boun
     assert found.margin == pytest.approx(off * first.computed, rel=1e-2)
 
 
-def test_cohesion_is_growth_over_the_window():
-    q = np.array([[0.0], [5.0]])
-    run = made_up(LAW, [q, q, 1.2 * q, 1.6 * q], t=np.arange(4.0))  # at rest at each
-    tolerances = Tolerances(settle=0.0, deviation=1.0)
-    assert judged("alpha-flocking", run, tolerances).claim("cohesive").status == "refuted"
-    shorter = run.window(0.0, 2.0)
-    assert judged("alpha-flocking", shorter, tolerances).claim("cohesive").status == "verified"
-
-
-def test_the_transient_is_left_out():
-    q = np.array([[0.0], [7.0]])
-    run = made_up(LAW, [10.0 * q, q, q], t=(0.0, 1.0, 2.0))
-    assert judged("alpha-flocking", run).status == "verified"
-    assert judged("alpha-flocking", run, Tolerances(settle=0.0)).status == "refuted"
-
-
 def test_one_sample_is_no_window():
     q = hexagonal_patch(1, 7.0)
     for times in ([2.0], [0.0, 2.0]):  # the second has one sample in its second half

@@ -35,11 +35,8 @@ def shaken(seed, n=7, size=0.02, speed=0.02):
 
 @given(seeds, st.integers(2, 8), st.integers(1, 3), st.floats(-6.0, -0.7).map(lambda x: 10.0**x), st.data())
 def test_the_hessian_never_changes_faster_than_the_constant_says(seed, n, m, window, data):
-    alpha = data.draw(
-        st.sampled_from(
-            [AlphaInteraction(), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0), AlphaInteraction(7.0, 8.4, 5.0, 0.9)]
-        )
-    )
+    some = AlphaInteraction(), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0), AlphaInteraction(7.0, 8.4, 5.0, 0.9)
+    alpha = data.draw(st.sampled_from(some))
     law, rng = Algorithm1(alpha), np.random.default_rng(seed)
     q = alpha.d * rng.uniform(0.0, 1.0, (n, m)) * n ** (1.0 / m)
     q[1] = q[0] + data.draw(st.sampled_from([0.0, alpha.r, alpha.d, 0.5 * alpha.r])) * np.eye(m)[0]
@@ -116,11 +113,8 @@ def test_what_is_not_held_is_not_caught(law, q):
     assert margin(law, q) == -1.0
 
 
-def test_a_strict_minimum_with_coincident_agents_catches():
+def test_agents_that_coincide_at_a_strict_minimum_and_one_agent_are_caught():
     assert margin(LAW1, rhombus_with_double_agent(7.0)) > 0.99
-
-
-def test_one_agent_has_no_relative_motion():
     assert margin(LAW1, [[3.0, 1.0]], [[9.0, 0.0]]) == 1.0
 
 

@@ -17,17 +17,6 @@ def verdict_of(law, *places, p=None):
     return judged("collision-energy", made_up(law, [q, q], p))
 
 
-@pytest.mark.parametrize("speed", [39.0, 40.0, 56.0, 57.0])
-def test_the_energy_of_the_start_against_c_star_and_twice_it(speed):
-    """Two agents at the distance d have the squares of their speeds alone; c* is 1571.5."""
-    verdict = verdict_of(Algorithm1(), 0.0, 7.0, p=np.array([[[speed], [-speed]]] * 2))
-    needed = 30.0 * AlphaInteraction().c_star
-    for text, times in (("c*", 1.0), ("2 c*", 2.0)):
-        found = hypothesis(verdict, f"H(0) < {text}")
-        assert found.margin == pytest.approx(times * needed - speed**2, rel=1e-9)
-        assert found.status == ("met" if speed**2 < times * needed else "unmet")
-
-
 @pytest.mark.parametrize("speed", [0.0, 3.0, 11.0, 15.0, 30.0])
 @pytest.mark.parametrize("places", [(0.0, 1.0), (0.0, 2.0), (0.0, 1.5, 3.5)])
 def test_of_another_pair_law_the_least_of_all_pairs_is_taken_off(places, speed):

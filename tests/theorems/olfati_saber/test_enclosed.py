@@ -5,7 +5,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, verify
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, enclose, verify
 from tests.theorems.made_up import hypothesis, statuses
 
 LAW = Algorithm1()
@@ -45,9 +45,8 @@ def test_two_coincide_with_c_star_exactly(name, speed):
 
 
 def test_one_agent_meets_nobody():
-    law = Algorithm2(target=StaticTarget((0.0,)))
-    verdict = verify("os-3", enclose(law, [[3.0]], [[0.0]], SPAN))
-    barrier = hypothesis(verdict, "min{V")
+    tube = enclose(Algorithm2(target=StaticTarget((0.0,))), [[3.0]], [[0.0]], SPAN)
+    barrier = hypothesis(verify("os-3", tube), "min{V")
     assert (barrier.status, barrier.detail) == ("met", "there is one agent")
 
 
@@ -77,13 +76,10 @@ def test_a_flock_that_is_apart_does_not_stay_together(distance):
 
 
 def test_what_has_the_energy_to_part_has_a_neighbour_in_the_set_that_does():
-    """Two have 30 ψ_α(r) at rest out of range, and no less apart: a faster start has that much more, a slower less."""
+    """Two have 30 ψ_α(r) at rest out of range, and no less apart: a faster start has that much more."""
     far = 30.0 * float(LAW.alpha.energy_at(np.array([9.0]))[0])
-    slow, fast = (
-        hypothesis(verify("os-1", tube_of(0.0, 7.0, speed=sqrt(share * far))), "cohesive dynamic flock")
-        for share in (0.9, 1.25)
-    )
-    assert (slow.status, fast.status) == ("met", "unmet")
+    fast = hypothesis(verify("os-1", tube_of(0.0, 7.0, speed=sqrt(1.25 * far))), "cohesive dynamic flock")
+    assert fast.status == "unmet"
     assert fast.margin == pytest.approx(-0.25 * far, rel=1e-9)
     assert fast.detail == "Ω_c holds a disconnected state at rest"
 
@@ -97,14 +93,6 @@ def test_how_far_the_energy_lets_agents_go(gain):
     assert claim.computed == pytest.approx(3.5, rel=1e-3)
     assert claim.margin == pytest.approx(sqrt(2.0) * 3.5 - claim.computed, rel=1e-9)
     assert claim.stated == f"R <= sqrt(2 H_λ(0)/c1γ) = {sqrt(2.0) * 3.5:.5g}"
-
-
-@pytest.mark.parametrize("tolerance", [1e-6, 0.2])
-def test_without_a_basin_the_limit_is_open(tolerance):
-    verdict = verify("os-1", tube_of(0.0, 7.0), tolerances=Tolerances(lattice=tolerance))
-    claim = verdict.claim("i")
-    assert (claim.status, claim.stated) == ("inconclusive", f"|link - d|/d <= {tolerance:g} in the limit")
-    assert "no certified basin was given" in claim.detail
 
 
 @pytest.mark.parametrize(("speed", "least"), [(39.0, 0), (40.0, 1), (56.0, 1), (57.0, 2)])
@@ -128,9 +116,5 @@ def test_two_that_cannot_part_stay_together(speed, said):
 def test_what_is_proved_of_every_start_needs_no_basin():
     law = Algorithm2(target=StaticTarget((0.0,)))
     verdict = verify("os-3", tube_of(0.0, 7.0, 15.0, speed=1.0, law=law))
-    assert [statuses(verdict)[name] for name in ("ii", "ii-converges", "ii-semidefinite", "iii")] == [
-        "inconclusive",
-        "verified",
-        "verified",
-        "verified",
-    ]
+    assert statuses(verdict)["ii"] == "inconclusive"
+    assert {statuses(verdict)[name] for name in ("ii-converges", "ii-semidefinite", "iii")} == {"verified"}

@@ -76,11 +76,8 @@ class TestTheSign:
     """dH/dt is a sum of terms of one sign, or one of differences: the margin is what is left of their magnitude."""
 
     def test_without_damping_or_motion_nothing_can_raise_it(self):
-        undamped = Algorithm1(gains=Gains(c2_alpha=0.0))
-        for run in (
-            simulate(undamped, *hexagon(), (0.0, 1.0)),
-            simulate(LAW, [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0)),
-        ):
+        undamped = simulate(Algorithm1(gains=Gains(c2_alpha=0.0)), *hexagon(), (0.0, 1.0))
+        for run in (undamped, simulate(LAW, [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0))):
             claim = never_rises(Observed.of(run), [])
             assert (claim.status, claim.margin) == ("verified", 1.0)
 
@@ -128,13 +125,11 @@ class Lying(StaticTarget):
         return np.array([np.sin(t), 0.0]), np.zeros(2)
 
 
-class TestTheGammaAgent:
-    def test_one_that_lies_about_its_rate_takes_the_balance_with_it(self):
-        law = Algorithm3(target=Lying((0.0, 0.0)))
-        run = simulate(law, [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 3.0))
-        verdict = verify("energy", run)
-        assert hypothesis(verdict, "declared rate").status == "unmet"
-        assert statuses(verdict) == {"rate": "vacuous", "balance": "vacuous"}
+def test_a_gamma_agent_that_lies_about_its_rate_takes_the_balance_with_it():
+    run = simulate(Algorithm3(target=Lying((0.0, 0.0))), [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 3.0))
+    verdict = verify("energy", run)
+    assert hypothesis(verdict, "declared rate").status == "unmet"
+    assert statuses(verdict) == {"rate": "vacuous", "balance": "vacuous"}
 
 
 @dataclass(frozen=True)

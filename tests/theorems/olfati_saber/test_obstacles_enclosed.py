@@ -6,21 +6,11 @@ import numpy as np
 import pytest
 from flint import arb
 
-from flockana import (
-    Algorithm3,
-    AlphaInteraction,
-    BetaInteraction,
-    Gains,
-    LinearTarget,
-    Sphere,
-    StaticTarget,
-    enclose,
-    simulate,
-    verify,
-)
+from flockana import Algorithm3, AlphaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose, simulate, verify
 from flockana.certified.flow import Flow
 from flockana.certified.laws import flow_of
 from flockana.certified.total_energy import powers_during, total_energy, work
+from flockana.interactions import BetaInteraction
 from tests.theorems.made_up import statuses
 
 LAW = Algorithm3(
@@ -104,9 +94,7 @@ def test_the_energy_in_other_units_of_length_is_that_of_the_law():
     alpha, beta = AlphaInteraction(unit=1.5), BetaInteraction(d=3.0, r=4.0, eps=0.2, unit=2.0)
     law = Algorithm3(alpha=alpha, beta=beta, target=StaticTarget((4.0, 2.0)), obstacles=(Sphere((0.0, 0.0), 1.0),))
     q, p = START
-    ball = total_energy(
-        law, [[arb(x) for x in row] for row in q.tolist()], [[arb(x) for x in row] for row in p.tolist()]
-    )
+    ball = total_energy(law, *([[arb(x) for x in row] for row in z.tolist()] for z in START))
     assert float(ball) == pytest.approx(law.energy(0.0, q, p), rel=1e-10)
 
 

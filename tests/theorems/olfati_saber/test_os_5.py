@@ -5,22 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, Law, Tolerances, simulate, verify
-from flockana.lattice import (
-    bcc,
-    crossings,
-    fcc,
-    harborth,
-    hcp,
-    hexagonal_spiral,
-    honeycomb,
-    line,
-    links,
-    max_ratio,
-    simple_cubic,
-    square,
-    triangular,
-)
+from flockana import Algorithm1, Law, Tolerances, lattice, simulate, verify
 from flockana.theorems.olfati_saber import os_5
 from flockana.theorems.olfati_saber.os_5 import CLAIMS, Net, uncrossed
 from flockana.theorems.theorem import Hypothesis
@@ -40,79 +25,58 @@ PLANE = expected(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "build", [lambda: hexagonal_spiral(37, D), lambda: square(5, 6, D), lambda: honeycomb(3, 4, D)]
-)
-def test_planar_lattices(build):
-    verdict = verify("os-5", q=build(), d=D, r=R)
+@pytest.mark.parametrize("q", [lattice.hexagonal_spiral(37, D), lattice.square(5, 6, D), lattice.honeycomb(3, 4, D)])
+def test_planar_lattices(q):
+    verdict = verify("os-5", q=q, d=D, r=R)
     assert statuses(verdict) == PLANE
     assert verdict.status == "verified"
     assert all(h.status == "met" for h in verdict.hypotheses)
 
 
-@pytest.mark.parametrize("name", ["square", "triangular"])
-def test_at_the_largest_ratio_second_neighbours_are_no_links(name):
-    q = {"square": square(6, 6, D), "triangular": triangular(36, D)}[name]
-    found = statuses(verify("os-5", q=q, d=D, r=D * max_ratio(name)))
-    assert found == PLANE | {"extension": "vacuous"}  # r/√2 >= d
+SPACE = lattice.fcc(2, 2, 2, D), lattice.hcp(3, 2, 2, D), lattice.simple_cubic(3, 3, 3, D)
 
 
-@pytest.mark.parametrize(
-    ("q", "kappa"),
-    [(fcc(2, 2, 2, D), 1.2), (hcp(3, 2, 2, D), 1.2), (bcc(3, 3, 3, D), 1.1), (simple_cubic(3, 3, 3, D), 1.2)],
-)
+@pytest.mark.parametrize(("q", "kappa"), [*((q, 1.2) for q in SPACE), (lattice.bcc(3, 3, 3, D), 1.1)])
 def test_in_space_edges_do_not_cross_whatever_the_graph(q, kappa):
-    verdict = verify("os-5", q=q, d=D, r=kappa * D)
-    graph = verdict.claim("i-graph").status
-    assert statuses(verdict) == expected(
-        i="verified", i_graph=graph, iii="verified", extension="verified", extension_lengths="verified"
-    )
-    assert graph == "refuted"
+    true = dict.fromkeys(("i", "iii", "extension", "extension-lengths"), "verified")
+    assert statuses(verify("os-5", q=q, d=D, r=kappa * D)) == expected(i_graph="refuted") | true
 
 
 def test_on_a_line_only_iii_and_the_extension_speak():
-    assert statuses(verify("os-5", q=line(5, D), d=D, r=R)) == expected(
-        iii="verified", extension="verified", extension_lengths="verified"
-    )
-    assert statuses(verify("os-5", q=line(2, D), d=D, r=R)) == expected(
-        extension="verified", extension_lengths="verified"
-    )
+    said = expected(extension="verified", extension_lengths="verified")
+    assert statuses(verify("os-5", q=lattice.line(5, D), d=D, r=R)) == said | {"iii": "verified"}
+    assert statuses(verify("os-5", q=lattice.line(2, D), d=D, r=R)) == said
 
 
 @pytest.mark.parametrize(("n", "iii"), [(3, "vacuous"), (4, "verified")])
 def test_iii_needs_more_than_a_simplex(n, iii):
-    verdict = verify("os-5", q=hexagonal_spiral(n, D), d=D, r=R)
+    verdict = verify("os-5", q=lattice.hexagonal_spiral(n, D), d=D, r=R)
     assert verdict.claim("iii").status == iii
     if n == 4:
         assert verdict.claim("iii").computed == 1
         i, j = verdict.claim("iii").witness
-        assert [min(i, j), max(i, j)] not in links(hexagonal_spiral(4, D), R).tolist()
+        assert [min(i, j), max(i, j)] not in lattice.links(lattice.hexagonal_spiral(4, D), R).tolist()
 
 
 def test_ii_needs_three_agents_and_says_so():
-    verdict = verify("os-5", q=hexagonal_spiral(2, D), d=D, r=R)
-    assert (verdict.claim("ii").status, verdict.claim("ii").computed, verdict.claim("ii").margin) == (
-        "vacuous",
-        1,
-        -0.5,
-    )
+    verdict = verify("os-5", q=lattice.hexagonal_spiral(2, D), d=D, r=R)
+    claim = verdict.claim("ii")
+    assert (claim.status, claim.computed, claim.margin) == ("vacuous", 1, -0.5)
     assert verdict.claim("ii-sharp").status == "verified"
 
 
 def test_margins_are_the_distances_from_the_bounds():
-    verdict = verify("os-5", q=hexagonal_spiral(20, D), d=D, r=R)
-    assert verdict.claim("ii").margin == 54 - harborth(20) + 0.5
+    verdict = verify("os-5", q=lattice.hexagonal_spiral(20, D), d=D, r=R)
+    assert verdict.claim("ii").margin == 54 - lattice.harborth(20) + 0.5
     assert verdict.claim("ii-sharp").margin == 0.5
-    by_name = {h.name: h.margin for h in verdict.hypotheses}
+    by_name, apart = {h.name: h.margin for h in verdict.hypotheses}, "all pairs are farther apart than "
     assert by_name["κ = r/d > 1"] == pytest.approx(0.2)
-    assert by_name["all pairs are farther apart than r/√2"] == pytest.approx(7.0 - 8.4 / np.sqrt(2.0))
-    assert by_name["all pairs are farther apart than ℓ/√2, ℓ the longest link"] == pytest.approx(
-        7.0 - 7.0 / np.sqrt(2.0)
-    )
+    assert by_name[f"{apart}r/√2"] == pytest.approx(7.0 - 8.4 / np.sqrt(2.0))
+    assert by_name[f"{apart}ℓ/√2, ℓ the longest link"] == pytest.approx(7.0 - 7.0 / np.sqrt(2.0))
 
 
 def test_a_strained_lattice_leaves_the_printed_theorem_vacuous_and_the_extension_not():
-    q = hexagonal_spiral(37, D) + np.random.default_rng(0).uniform(-0.2, 0.2, (37, 2))
+    q = lattice.hexagonal_spiral(37, D) + np.random.default_rng(0).uniform(-0.2, 0.2, (37, 2))
     verdict = verify("os-5", q=q, d=D, r=R)
     assert statuses(verdict) == expected(extension="verified", extension_lengths="verified", extension_links="verified")
     unmet = [h for h in verdict.hypotheses if h.status == "unmet"]
@@ -122,7 +86,7 @@ def test_a_strained_lattice_leaves_the_printed_theorem_vacuous_and_the_extension
 
 
 def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form():
-    verdict = verify("os-5", q=square(2, 2, D), d=D, r=1.5 * D)
+    verdict = verify("os-5", q=lattice.square(2, 2, D), d=D, r=1.5 * D)
     claim = verdict.claim("extension-quantitative")
     assert statuses(verdict) == expected(extension_quantitative="verified")
     assert claim.margin == 1.0  # none of the pairs fails
@@ -132,18 +96,16 @@ def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form(
 
 
 def test_coincident_agents_are_not_distinct():
-    q = np.concatenate([hexagonal_spiral(7, D), [[0.0, 0.0]]])
+    q = np.concatenate([lattice.hexagonal_spiral(7, D), [[0.0, 0.0]]])
     verdict = verify("os-5", q=q, d=D, r=R)
-    assert [h.name for h in verdict.hypotheses if h.status == "unmet"][:2] == [
-        "distinct positions",
-        "q is an α-lattice",
-    ]
+    unmet = [h.name for h in verdict.hypotheses if h.status == "unmet"]
+    assert unmet[:2] == ["distinct positions", "q is an α-lattice"]
     assert statuses(verdict) == expected(extension_quantitative="verified")
 
 
 def test_the_crossings_of_a_collapsed_flock_are_counted_in_full():
     q = np.random.default_rng(0).normal(size=(40, 2))
-    verdict, count = verify("os-5", q=q, d=D, r=R), len(crossings(q, links(q, R)))
+    verdict, count = verify("os-5", q=q, d=D, r=R), len(lattice.crossings(q, lattice.links(q, R)))
     assert count > 10_000
     for name in ("i", "extension", "extension-lengths", "extension-quantitative"):
         assert verdict.claim(name).computed == count
@@ -172,29 +134,6 @@ def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
     assert (longest - 2.0 * shortest >= -1e-12 * longest).all()
 
 
-@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]), st.floats(0.3, 1.3))
-def test_the_extension_holds_of_every_net(seed, m, density):
-    """Points that keep r/√2 of each other, at random: never a crossing. And every crossing obeys the other form."""
-    rng = np.random.default_rng(seed)
-    q = rng.uniform(0.0, R * density * 40 ** (1.0 / m), (40, m))
-    verdict = verify("os-5", q=q, d=D, r=R)
-    assert verdict.claim("extension-quantitative").status in ("verified", "vacuous")
-    kept: list[np.ndarray] = []
-    for point in q:
-        if all(np.linalg.norm(point - other) > R / np.sqrt(2.0) * (1.0 + 1e-9) for other in kept):
-            kept.append(point)
-    assert verify("os-5", q=kept, d=D, r=R).claim("extension").status == "verified"
-    assert "refuted" not in [c.status for c in verify("os-5", q=kept, d=D, r=R * density).claims]
-
-
-def test_the_threshold_of_the_extension_is_sharp():
-    """Just below r/√2 the square's diagonals are links, and cross."""
-    side = R / np.sqrt(2.0)
-    for factor, count in ((1.0 - 1e-9, 1), (1.0 + 1e-9, 0)):
-        q = square(2, 2, side * factor)
-        assert len(crossings(q, links(q, R))) == count
-
-
 def test_in_space_only_a_clearance_above_rounding_is_believed():
     """Two links of 7 within 1e-14 of each other: nobody knows whether they cross."""
     q = D * np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, -0.5, 1e-14], [0.0, 0.5, 1e-14]])
@@ -209,28 +148,26 @@ def test_in_space_only_a_clearance_above_rounding_is_believed():
     assert (claim.margin, claim.contradicts) == (-1.0, "theorem5-crossings")
 
 
-class TestTerminal:
-    def test_a_run_is_judged_by_its_last_state(self):
-        rng = np.random.default_rng(1)
-        q0 = hexagonal_spiral(7, D) + rng.uniform(-0.3, 0.3, (7, 2))
-        run = simulate(Algorithm1(), q0, np.zeros_like(q0), (0.0, 20.0))
-        assert statuses(verify("os-5-terminal", run)) == PLANE
-        assert verify("os-5-terminal", run).claim("i").error > 0.0
-        still = verify("os-5", q=run.q[-1], d=D, r=R)
-        assert statuses(still) == PLANE
-        early = statuses(verify("os-5-terminal", run.window(0.0, 0.01)))
-        assert early == expected(extension="verified", extension_lengths="verified", extension_links="verified")
+def test_a_run_is_judged_by_its_last_state():
+    q0 = lattice.hexagonal_spiral(7, D) + np.random.default_rng(1).uniform(-0.3, 0.3, (7, 2))
+    run = simulate(Algorithm1(), q0, np.zeros_like(q0), (0.0, 20.0))
+    verdict = verify("os-5-terminal", run)
+    assert statuses(verdict) == statuses(verify("os-5", q=run.q[-1], d=D, r=R)) == PLANE
+    assert verdict.claim("i").error > 0.0
+    early = statuses(verify("os-5-terminal", run.window(0.0, 0.01)))
+    assert early == expected(extension="verified", extension_lengths="verified", extension_links="verified")
 
-    def test_a_law_without_a_range(self):
-        class Free(Law):
-            """No interaction."""
 
-            def flow(self, t, q, p):
-                return np.zeros_like(q), float("nan")
+def test_a_law_without_a_range():
+    class Free(Law):
+        """No interaction."""
 
-        verdict = verify("os-5-terminal", simulate(Free(), np.zeros((2, 2)), np.ones((2, 2)), (0.0, 1.0)))
-        assert statuses(verdict) == expected()
-        assert verdict.hypotheses[0].detail == "Free"
+        def flow(self, t, q, p):
+            return np.zeros_like(q), float("nan")
+
+    verdict = verify("os-5-terminal", simulate(Free(), np.zeros((2, 2)), np.ones((2, 2)), (0.0, 1.0)))
+    assert statuses(verdict) == expected()
+    assert verdict.hypotheses[0].detail == "Free"
 
 
 @pytest.mark.parametrize(("r", "status"), [(D, "unmet"), (np.nextafter(D, 8.0), "met"), (0.9 * D, "unmet")])

@@ -17,13 +17,10 @@ def lost(run):
     return run.energy()[0] - run.energy()
 
 
-def test_an_excess_that_makes_it_rise_refutes_it(seen):
+def test_an_excess_that_makes_it_rise_refutes_it_and_a_fall_verifies_nothing(seen):
     claim = run_claim(seen, lambda run: 10.0 * lost(run), "two agents")
     assert claim.status == "refuted"
     assert claim.computed == pytest.approx(9.0 * lost(seen.run)[-1], rel=1e-9)
-
-
-def test_an_energy_that_falls_is_not_refuted_and_a_sample_of_it_verifies_nothing(seen):
     assert run_claim(seen, lambda run: np.zeros(len(run.t)), "two agents").status == "inconclusive"
 
 
@@ -45,14 +42,10 @@ def test_a_rise_within_what_two_runs_differ_by_is_left_open(seen, size, times, s
     assert claim.status == (status if size > floor else "inconclusive")
 
 
-def test_of_a_failed_run_nothing_is_known(seen):
-    failed = Trajectory(
-        *(getattr(seen.given, name) for name in ("t", "q", "p", "u", "law")), extra=seen.given.extra, status="failed"
-    )
+def test_of_a_failed_run_nothing_is_known_and_an_unmet_hypothesis_makes_it_vacuous(seen):
+    given = seen.given
+    failed = Trajectory(given.t, given.q, given.p, given.u, given.law, extra=given.extra, status="failed")
     assert run_claim(Observed.of(failed), lambda run: 10.0 * lost(run), "two agents").status == "inconclusive"
-
-
-def test_an_unmet_hypothesis_makes_it_vacuous(seen):
     unmet = Hypothesis("the γ-agent is at rest", "unmet")
     assert run_claim(seen, lambda run: 10.0 * lost(run), "two agents", [unmet]).status == "vacuous"
 

@@ -20,9 +20,7 @@ def test_the_picture_leaves_a_gap_at_the_range():
 
     ax = plots.deviation(AlphaInteraction())
     ends = [line for line in ax.lines if line.get_marker() == "o"]
-    assert [(line.get_xdata()[0], line.get_markerfacecolor() == "white") for line in ends] == [
-        (8.4, True),
-        (8.4, False),
-    ]
+    drawn = [(line.get_xdata()[0], line.get_markerfacecolor() == "white") for line in ends]
+    assert drawn == [(8.4, True), (8.4, False)]
     assert ends[0].get_ydata()[0] == pytest.approx((1.4 / 7.0) ** 2)
     assert ends[1].get_ydata()[0] == 0.0

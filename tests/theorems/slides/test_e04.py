@@ -6,19 +6,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, AlphaInteraction, verify
-from flockana.equilibria.barrier import (
-    bound_range,
-    coincident_lattice,
-    collision_barrier,
-    collision_bounds,
-    energy_floor,
-    largest_clique,
-    lattice_reach,
-    least_infeasible_size,
-    turan_pairs,
-)
-from flockana.lattice import harborth, hexagonal_patch
+from flockana import AlphaInteraction
+from flockana.equilibria import barrier as bounds
+from flockana.lattice import harborth
 from flockana.theorems.slides import e04
 
 ALPHA = AlphaInteraction()
@@ -42,14 +32,8 @@ def test_another_largest_lattice_contradicts_the_proof(monkeypatch, reach):
     assert (claim.status, claim.contradicts) == ("inconclusive", "n-max")
 
 
-def test_the_margin_of_the_barrier_is_a_lower_bound(verdict_of):
-    claim = verdict_of("E4").claim("barrier")
-    assert claim.margin == pytest.approx(3.0 * ALPHA.far_potential, rel=1e-9)
-    assert claim.margin < claim.computed[7]["together"] - ALPHA.c_star
-
-
 def test_the_barrier_at_seven_is_a_count_of_links():
-    found = collision_barrier(ALPHA, 7, starts=6)
+    found = bounds.collision_barrier(ALPHA, 7, starts=6)
     # a hexagon without one agent, its centre doubled: 9 + 5 links and the pair itself leave 6 pairs out of range
     assert found.together == pytest.approx(ALPHA.c_star + 6 * ALPHA.far_potential, abs=1e-8)
     assert found.lowest == pytest.approx((21 - harborth(7)) * ALPHA.far_potential, abs=1e-8)
@@ -59,7 +43,7 @@ def test_the_barrier_at_seven_is_a_count_of_links():
 
 
 def test_the_barrier_of_nineteen_is_that_of_a_doubled_inner_agent():
-    found = collision_barrier(ALPHA, 19, starts=2)
+    found = bounds.collision_barrier(ALPHA, 19, starts=2)
     links = harborth(18) + 6 + 1
     assert found.height == pytest.approx(ALPHA.c_star - (links - harborth(19)) * ALPHA.far_potential, abs=1e-7)
     assert found.height == pytest.approx(49.440, abs=5e-4)
@@ -74,19 +58,19 @@ def test_turan_by_brute_force():
             edges = {pair for k, pair in enumerate(pairs) if chosen >> k & 1}
             if not any(all(p in edges for p in combinations(group, 2)) for group in combinations(range(n), clique + 1)):
                 best = chosen.bit_count()
-        assert turan_pairs(n, clique) == best
-    assert all(turan_pairs(n, 3) == n * n // 3 for n in range(3, 40))
+        assert bounds.turan_pairs(n, clique) == best
+    assert all(bounds.turan_pairs(n, 3) == n * n // 3 for n in range(3, 40))
 
 
 def test_the_bracket_of_lengths_that_lower_v():
-    shortest, longest = bound_range(ALPHA)
+    shortest, longest = bounds.bound_range(ALPHA)
     assert (shortest, longest) == (pytest.approx(6.568, abs=5e-4), 8.4)
     assert float(ALPHA.psi_alpha(ALPHA.sigma_norm(shortest))) == pytest.approx(ALPHA.far_potential, rel=1e-9)
 
 
 @pytest.mark.parametrize(("ratio", "m", "most"), [(1.28, 2, 3), (1.42, 2, 4), (1.62, 2, 5), (1.28, 3, 4), (2.5, 1, 3)])
 def test_cliques_are_no_larger_than_known_and_reached(ratio, m, most):
-    assert largest_clique(ratio, m) == most
+    assert bounds.largest_clique(ratio, m) == most
     angle = 2.0 * np.pi * np.arange(most) / most
     shapes = {1: np.arange(most)[:, None], 2: np.column_stack([np.cos(angle), np.sin(angle)])}
     points = shapes.get(m, np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])).astype(float)
@@ -100,27 +84,28 @@ def test_no_random_state_lies_below_the_proved_floor():
         for m in (1, 2, 3):
             clusters = rng.uniform(0.0, 9.0, (4, m))  # near the shape that Turán's graph has
             for q in (rng.uniform(0, 20, (n, m)), clusters[rng.integers(4, size=n)] + rng.normal(0, 0.1, (n, m))):
-                assert ALPHA.potential_energy(q) >= energy_floor(ALPHA, n, m)
+                assert ALPHA.potential_energy(q) >= bounds.energy_floor(ALPHA, n, m)
 
 
 def test_n_max_for_every_parameter_set():
     msn, one = AlphaInteraction(15.0, 18.0, 0.1, 0.1, 3.0, 3.0), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0)
-    assert [(lattice_reach(a), least_infeasible_size(a)) for a in (ALPHA, msn, one)] == [(14, 23), (16, 26), (5, 11)]
-    assert (lattice_reach(ALPHA, 1), least_infeasible_size(ALPHA, 1), lattice_reach(ALPHA, 3)) == (13, 18, None)
-    assert lattice_reach(AlphaInteraction(7.0, 13.0)) is None  # κ > √3: the triangular lattice is none
+    reach, none_from = bounds.lattice_reach, bounds.least_infeasible_size
+    assert [(reach(a), none_from(a)) for a in (ALPHA, msn, one)] == [(14, 23), (16, 26), (5, 11)]
+    assert (reach(ALPHA, 1), none_from(ALPHA, 1), reach(ALPHA, 3)) == (13, 18, None)
+    assert reach(AlphaInteraction(7.0, 13.0)) is None  # κ > √3: the triangular lattice is none
 
 
 def test_collision_bounds_enclose_the_searched_barrier():
     for n in (3, 7):
-        low, high = collision_bounds(ALPHA, n)
-        assert low <= collision_barrier(ALPHA, n, starts=3).together + 1e-9 <= high + 2e-9
-    assert collision_bounds(ALPHA, 1)[0] == np.inf
+        low, high = bounds.collision_bounds(ALPHA, n)
+        assert low <= bounds.collision_barrier(ALPHA, n, starts=3).together + 1e-9 <= high + 2e-9
+    assert bounds.collision_bounds(ALPHA, 1)[0] == np.inf
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("n", [2, 3, 8, 60])
 def test_the_agent_of_most_links_is_doubled(n, m):
-    q = coincident_lattice(ALPHA, n, m)
+    q = bounds.coincident_lattice(ALPHA, n, m)
     near = np.linalg.norm(q[1:, None] - q[None, 1:], axis=2) < ALPHA.r
     np.testing.assert_array_equal(q[0], q[1])
     assert near[0].sum() == near.sum(axis=1).max()
@@ -130,21 +115,9 @@ def test_the_agent_of_most_links_is_doubled(n, m):
 def test_bounds_of_a_large_flock_need_no_table_of_all_pairs():
     tracemalloc.start()
     try:
-        low, high = collision_bounds(ALPHA, 4000)
+        low, high = bounds.collision_bounds(ALPHA, 4000)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
     assert low < high
     assert peak < 16e6  # a truth value for each of all pairs
-
-
-def test_theorem_1_gets_the_sharper_claim():
-    law, q = Algorithm1(), hexagonal_patch(1, 7.0)
-    slow, fast = (v * np.random.default_rng(0).standard_normal(q.shape) for v in (1.0, 30.0))
-    verdict = verify("os-1", law=law, q0=q, p0=slow, t_span=(0.0, 1.0))
-    assert verdict.claim("iii-barrier").status == "verified"
-    verdict = verify("os-1", law=law, q0=q, p0=fast, t_span=(0.0, 0.2))
-    assert verdict.claim("iii-barrier").status == "vacuous"
-    between = verify("os-1", law=law, q0=q, p0=16.5 * slow, t_span=(0.0, 0.2))
-    names = {h.name: h.status for h in between.hypotheses}
-    assert names["H(0) < min{V : two agents coincide}"] in ("assumed", "met", "unmet")

@@ -21,7 +21,7 @@ def test_the_counts_of_the_erratum(verdict_of):
 def test_one_link_too_many_would_refute_the_bound(monkeypatch):
     table = link_counts() | {7: (16, 15, 16)}
     monkeypatch.setattr(e06, "link_counts", lambda: table)
-    printed, corrected, sharp = e06.THEOREM.check(Tolerances())[1]
+    printed, corrected, sharp = e06.theorem.check(Tolerances())[1]
     assert (corrected.status, corrected.margin, corrected.contradicts) == ("inconclusive", -0.5, "theorem5-counts")
     assert printed.witness == {"n": [1, 2, 7]}
     assert sharp.status == "verified"

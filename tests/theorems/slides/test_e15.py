@@ -46,19 +46,15 @@ def test_the_gain_falls_exactly_where_the_margin_says(factor):
     gains = Gains(c1_gamma=70.0, c2_gamma=2.0 * sqrt(70.0))
     values = [predicted_gain(gains, omega, factor=factor) for omega in np.linspace(0.0, 40.0, 400)]
     assert (CentreOfMass(gains, factor).falling >= 1.0) is bool((np.diff(values) < 0.0).all())
-    symbols = GainSymbols(c1_gamma=70, c2_gamma=2 * sp.sqrt(70))
-    assert float(falling_condition(factor, gains=symbols)) == pytest.approx(
-        140.0 * (CentreOfMass(gains, factor).falling - 1.0), rel=1e-9
-    )
+    found = float(falling_condition(factor, gains=GainSymbols(c1_gamma=70, c2_gamma=2 * sp.sqrt(70))))
+    assert found == pytest.approx(140.0 * (CentreOfMass(gains, factor).falling - 1.0), rel=1e-9)
 
 
 @pytest.mark.parametrize("options", [{"away": 4.0}, {"speed": 2.0, "away": -3.0}])
 def test_the_projects_hundred_agents_forget_their_start_and_follow_at_any_speed(options):
     entry = scenario("msn-case4", **options)
     omega = 2 * pi * 0.025 / 0.045 * options.get("speed", 1.0)
-    outside = np.linalg.norm(entry.q0 - (50.0, 50.0), axis=1) > 100.0
-    assert outside.all()
-    assert response_ratio(entry.run())[0] == pytest.approx(
-        predicted_gain(entry.law.gains, omega, factor=0.009), rel=1e-6
-    )
+    assert (np.linalg.norm(entry.q0 - (50.0, 50.0), axis=1) > 100.0).all()
+    gain = predicted_gain(entry.law.gains, omega, factor=0.009)
+    assert response_ratio(entry.run())[0] == pytest.approx(gain, rel=1e-6)
     assert dict(entry.expected) == {"source:circle": "verified"}
