@@ -143,8 +143,7 @@ def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray 
         depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]
         k = int(np.argmin(depth))
         if depth[k] > 0.0:
-            free: FloatArray = here[0]
-            return free
+            return here[0]
         foot = obstacles[k].beta_agents(here, np.zeros_like(here)).q
         step = foot - here
         if not np.isfinite(step).all() or not step.any():  # at a centre, or on the surface: any direction will do

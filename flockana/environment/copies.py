@@ -91,8 +91,7 @@ class Copies:
 
         def acceleration(q: FloatArray, p: FloatArray) -> FloatArray:
             coupled = k1 * (q.mean(axis=0) - q) + k2 * (p.mean(axis=0) - p)
-            pushed: FloatArray = accelerations(self.force, q, p) + coupled
-            return pushed
+            return accelerations(self.force, q, p) + coupled
 
         return motion_from(np.array(self.q), np.array(self.p), self.time, acceleration)
 

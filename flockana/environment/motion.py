@@ -39,8 +39,7 @@ class Motion:
             with self._lock:
                 while len(pieces) <= k:
                     pieces.append(self._next(ahead, pieces))
-        y: FloatArray = pieces[k](t)
-        return y
+        return pieces[k](t)
 
     def _next(self, ahead: bool, pieces: list[Any]) -> Any:
         from scipy.integrate import solve_ivp

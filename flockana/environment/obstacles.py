@@ -84,8 +84,7 @@ class Obstacle(ABC):
 
     def contains(self, q: Any) -> npt.NDArray[np.bool_]:
         """Return which points lie inside or on the surface, shape (n,)."""
-        inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
-        return inside
+        return self.clearance(q) <= 0.0
 
     def check_dimension(self, m: int, name: str = "the obstacle") -> None:
         """Raise unless the obstacle lives in m dimensions."""

@@ -69,5 +69,4 @@ class Spring:
         x = q - np.array(self.centre)
         if self.reach is not None:
             x = x / np.sqrt(1.0 + np.sum(x * x, axis=-1, keepdims=True) / self.reach**2)
-        force: FloatArray = np.array(self.push) - self.stiffness * x - self.damping * p
-        return force
+        return np.array(self.push) - self.stiffness * x - self.damping * p

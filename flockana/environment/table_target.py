@@ -75,8 +75,7 @@ class TableTarget(Target):
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         (k, s), c = self._at(t), self._pieces
-        place: FloatArray = ((c[0, k] * s + c[1, k]) * s + c[2, k]) * s + c[3, k]
-        return place
+        return ((c[0, k] * s + c[1, k]) * s + c[2, k]) * s + c[3, k]
 
     def rate(self, t: float) -> FloatArray:
         """Return dq_r/dt, 0 beyond the table."""

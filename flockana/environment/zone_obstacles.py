@@ -78,8 +78,7 @@ class SimplePolygon:
         q = ensure_points("q", q)
         if q.shape[1] != 2:
             raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
-        signed: FloatArray = _in_parts(self._signed, q)
-        return signed
+        return _in_parts(self._signed, q)
 
     def _signed(self, q: FloatArray) -> FloatArray:
         import shapely
@@ -103,8 +102,7 @@ class SimplePolygon:
             Signed distances of both, where they are known already.
         """
         ends = (self.clearance(start), self.clearance(end)) if ends is None else ends
-        bound: FloatArray = _in_parts(self._signed_along, start, end, *ends)
-        return bound
+        return _in_parts(self._signed_along, start, end, *ends)
 
     def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
         import shapely
@@ -136,8 +134,7 @@ def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> Fl
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
     nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
-    clearance: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
-    return clearance
+    return np.linalg.norm(nearest, axis=1) - ball.radius
 
 
 @dataclass(frozen=True)
@@ -172,5 +169,4 @@ class Box:
         On a straight way it is least at one of the ends.
         """
         q = ensure_points("q", q)
-        inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
-        return inside
+        return np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

@@ -135,8 +135,7 @@ class ZoneWorld:
 
     def clearance(self, q: FloatArray) -> FloatArray:
         """Return signed distances from all obstacles at samples, and a lower bound between some of them."""
-        least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
-        return least
+        return np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
         """Return signed distances from all obstacles at samples, and lower bounds over the given intervals.

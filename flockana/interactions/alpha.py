@@ -154,8 +154,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return ψ_α(‖x‖_σ) at Euclidean distances x."""
-        values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
-        return values
+        return self.psi_alpha(self.sigma_norm(lengths))
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""

@@ -156,8 +156,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return `psi` at each distance."""
-        values: FloatArray = self.psi(lengths)
-        return values
+        return self.psi(lengths)
 
     @cached_property
     def far_potential(self) -> float:
@@ -174,8 +173,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
             free[3] = 0.0
 
             def ramped(s: FloatArray) -> FloatArray:
-                forces: FloatArray = _FORCE(s, free)
-                return forces
+                return _FORCE(s, free)
 
             # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
             # narrow panels near it keep the series short

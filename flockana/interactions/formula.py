@@ -174,8 +174,7 @@ class FormulaInteraction(PairInteraction):
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return ψ at each distance, constant beyond the range."""
         square = np.square(np.asarray(lengths, dtype=np.float64))
-        values: FloatArray = evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
-        return values
+        return evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
 
     def force(self, s: Any) -> Any:
         """Return the force between two agents along their line; negative repels."""

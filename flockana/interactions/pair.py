@@ -252,8 +252,7 @@ class PairInteraction(ABC):
                     )
                 return np.zeros((i.size, q.shape[1], q.shape[1]))
             slope = slope_of(np.einsum("kc,kc->k", delta, delta), self.par)
-            blocks: FloatArray = 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
-            return blocks
+            return 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
 
         by_position = -stiffness * self.hessian(q, pairs)
         if damping:
@@ -264,8 +263,7 @@ class PairInteraction(ABC):
     def _stiffness_blocks(_i: Any, _j: Any, delta: FloatArray, terms: FloatArray) -> FloatArray:
         # gradient of w(s²) Δ in Δ: w I + 2 w' ΔΔᵀ
         w, slope = terms[0][:, None, None], terms[2][:, None, None]
-        blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
-        return blocks
+        return w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
         """Return `pair_matrix` over pairs."""

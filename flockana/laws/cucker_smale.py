@@ -67,5 +67,4 @@ class CuckerSmale(SumOfTerms):
 
 def spread(x: FloatArray) -> FloatArray:
     """Return √Σ‖x_i − x̄‖² of each sample, shape (T,)."""
-    root: FloatArray = np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
-    return root
+    return np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))

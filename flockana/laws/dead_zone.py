@@ -131,8 +131,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range."""
-        pieces: Pieces = zones(q, self.interaction.par)
-        return pieces
+        return zones(q, self.interaction.par)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros_like(q)

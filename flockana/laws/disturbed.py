@@ -180,15 +180,13 @@ class Disturbed(Wrapper):
     def kick(self, step: Step, shape: tuple[int, ...]) -> FloatArray | None:  # noqa: D102
         if not self.intensity:
             return None
-        kick: FloatArray = self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
-        return kick
+        return self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
 
     def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
         """Return `kick` of `count` steps of length h from step `first` on, stacked."""
         if not self.intensity:
             return np.zeros((count, *shape))
-        kicks: FloatArray = self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
-        return kicks
+        return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         if self.stepped:

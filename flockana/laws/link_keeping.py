@@ -114,8 +114,7 @@ class LinkKeeping(SumOfTerms):
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return the length of each link."""
         ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
-        lengths: FloatArray = np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
-        return lengths
+        return np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
 
     def longest(self, energy: float) -> float:
         """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.

@@ -69,8 +69,7 @@ class Saturated(Wrapper):
         if self.by == "component":
             return np.clip(u, -self.limit, self.limit)
         size = np.linalg.norm(u, axis=1, keepdims=True)
-        within: FloatArray = u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
-        return within
+        return u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         return self.bounded(input_of(self.law, step, view))

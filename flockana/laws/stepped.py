@@ -215,5 +215,4 @@ class _PastStates:
 
 def _hermite(x0: Any, v0: Any, x1: Any, v1: Any, share: float, h: float) -> FloatArray:
     a, b = share * share * (3.0 - 2.0 * share), share * (1.0 - share)
-    value: FloatArray = x0 + a * (x1 - x0) + h * b * ((1.0 - share) * v0 - share * v1)
-    return value
+    return x0 + a * (x1 - x0) + h * b * ((1.0 - share) * v0 - share * v1)

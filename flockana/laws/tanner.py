@@ -147,8 +147,7 @@ class ProximityFlocking(SwitchedLaw):
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Return 0 for every pair within R and 1 beyond."""
-        pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
-        return pieces
+        return np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)
@@ -162,8 +161,7 @@ class ProximityFlocking(SwitchedLaw):
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
-        after: Pieces = np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
-        return after
+        return np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
 
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
         rows, columns = np.triu_indices(len(q), 1)
@@ -221,5 +219,4 @@ def _pairs_within(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.ND
 def _distances(q: FloatArray) -> FloatArray:
     """Return the distance of every pair i < j, in the order of `numpy.triu_indices`."""
     i, j = np.triu_indices(len(q), 1)
-    distances: FloatArray = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
-    return distances
+    return np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))

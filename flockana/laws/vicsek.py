@@ -130,8 +130,7 @@ class HeadingAveraging(DiscreteLaw):
         [[2.0, 0.0]]
         """
         angles = np.asarray(headings, dtype=np.float64)
-        velocities: FloatArray = self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        return velocities
+        return self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
 
     def links(self, q: FloatArray) -> LinkArray:
         """Unordered pairs in or on each other's circle, each once, unchecked.
@@ -142,8 +141,7 @@ class HeadingAveraging(DiscreteLaw):
         [[0, 1]]
         """
         pairs = np.column_stack(pair_list(q, _SEARCH * self.range))
-        within: LinkArray = pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
-        return within
+        return pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """The headings of a start in [zero, zero + 2π); with noise, step 0."""
@@ -216,8 +214,7 @@ def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     for one, other in ((i, j), (j, i)):
         np.minimum.at(least, one, heading[other])
         np.maximum.at(most, one, heading[other])
-    means: FloatArray = np.clip(total / _sizes(pairs, n), least, most)
-    return means
+    return np.clip(total / _sizes(pairs, n), least, most)
 
 
 def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
@@ -225,8 +222,7 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     (i, j), n = pairs.T, heading.size
     x, y = (f(heading) + np.bincount(i, f(heading)[j], n) + np.bincount(j, f(heading)[i], n) for f in (np.cos, np.sin))
     cancels = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
-    angles: FloatArray = np.where(cancels, heading, np.arctan2(y, x))
-    return angles
+    return np.where(cancels, heading, np.arctan2(y, x))
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:

@@ -82,8 +82,7 @@ class Step:
         found = self._drawn.get((seed, channel))
         if found is None or found[0] != block:
             found = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
-        numbers: FloatArray = found[1][row]
-        return numbers
+        return found[1][row]
 
 
 def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -> FloatArray:

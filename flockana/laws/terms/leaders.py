@@ -101,8 +101,7 @@ class Leaders(Term):
         return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
-        return blocks
+        return self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
 
 
 def known_path(leader: Any) -> Harmonic:

@@ -42,5 +42,4 @@ class LinkTerm(Term):
         return self.pair.jacobian(q, p, stiffness=self.stiffness, damping=self.damping, pairs=[self._ends])
 
     def hessian(self, t: float, q: FloatArray) -> csr_array:  # noqa: D102
-        hessian: csr_array = self.stiffness * self.pair.hessian(q, pairs=[self._ends])
-        return hessian
+        return self.stiffness * self.pair.hessian(q, pairs=[self._ends])

@@ -73,8 +73,7 @@ class Navigation(Term):
         """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,); 1 for the linear pull."""
         if self.unit is None:
             return np.ones(len(x))
-        bend: FloatArray = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
-        return bend
+        return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         form = self._straight

@@ -81,5 +81,4 @@ class ObstacleTerm(Term):
         return self.damping * by_position - self.stiffness * self.field.hessian_blocks(q), self.damping * by_velocity
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        blocks: FloatArray = self.stiffness * self.field.hessian_blocks(q)
-        return blocks
+        return self.stiffness * self.field.hessian_blocks(q)

@@ -81,5 +81,4 @@ class PairTerm(Term):
         return self.pair.jacobian(q, p, stiffness=self.stiffness, damping=self.damping)
 
     def hessian(self, t: float, q: FloatArray) -> csr_array:  # noqa: D102
-        hessian: csr_array = self.stiffness * self.pair.hessian(q)
-        return hessian
+        return self.stiffness * self.pair.hessian(q)
