@@ -1,5 +1,6 @@
 """Laws composed of chosen terms: gradient, consensus, γ-feedback, β-agents, drag and speed control."""
 
+import inspect
 from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
@@ -11,6 +12,7 @@ from flockana.base.checks import (
     ensure_count,
     ensure_finite_scalar,
     ensure_flag,
+    ensure_kind,
     ensure_nonnegative,
     ensure_positive,
     ensure_state,
@@ -25,27 +27,19 @@ from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
-from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.terms.obstacles import ensure_one_dimension
-from flockana.laws.terms.parts import parts
+from flockana.laws.terms.alignment import AlignmentTerm
+from flockana.laws.terms.along import AlongVelocity
+from flockana.laws.terms.consensus import Consensus
+from flockana.laws.terms.feedforward import TargetFeedforward
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
+from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
-_OPTIONS = (
-    "gradient",
-    "net",
-    "pull",
-    "match",
-    "informed",
-    "agents",
-    "bounded",
-    "feedforward",
-    "repulsion",
-    "braking",
-    "beta",
-)
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -105,9 +99,9 @@ class Composition(GainedLaw):
         optional: Any = (("alpha", PairInteraction, PAIR), ("net", net, PAIR), ("target", Target, TARGET))
         for name, kind, example in optional:
             if getattr(self, name) is not None:
-                ensure_part(name, getattr(self, name), kind, example)
+                ensure_kind(name, getattr(self, name), kind, example)
         ensure_gains(self)
-        ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
         for name, ensure in (
             ("unit", ensure_positive),
@@ -160,18 +154,27 @@ class Composition(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Terms with the energy c1α V + c1β ΣΣ ψ_β + the γ-agent's and the kinetic energy, in the frame of `parts`."""
-        return parts(
-            self.alpha,
-            self.gains,
-            net=self.net,
-            field=self.obstacle_field,
-            target=self.target,
-            unit=self.unit,
-            feedforward=self.feedforward,
-            thrust=self.thrust,
-            brake=self.brake,
-        )
+        """Terms with the energy c1α V + c1β ΣΣ ψ_β + the γ-agent's and the kinetic energy."""
+        # The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
+        # nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given
+        # frame.
+        gains, net, tied = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
+        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=tied)
+        moving = pull is not None and pull.moving
+        terms: list[Term] = []
+        if self.alpha is not None:
+            terms.append(PairTerm(self.alpha, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
+        if net is not None:
+            terms.append((AlignmentTerm if isinstance(net, Weight) else Consensus)(net, gains.c2_alpha))
+        if self.obstacle_field is not None:
+            terms.append(ObstacleTerm(self.obstacle_field, gains.c1_beta, gains.c2_beta))
+        if pull is not None:
+            terms.append(pull)
+        if self.feedforward:
+            terms.append(TargetFeedforward(pull.target, moving))
+        if self.thrust or self.brake:
+            terms.append(AlongVelocity(self.thrust, self.brake, moving))
+        return tuple(terms)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """Return the energy that never rises unless a term adds some: in the moving frame if nothing fixes the place.
@@ -267,7 +270,7 @@ def compose(
     ((1.1, 0.0, 1.1), -0.1)
     """
     for name in unknown:
-        raise UnknownNameError("part of a law", name, (*_PARTS, *_OPTIONS))
+        raise UnknownNameError("part of a law", name, {*inspect.signature(compose).parameters} - {"unknown"})
     if isinstance(consensus, Weight):
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
