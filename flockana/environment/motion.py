@@ -3,17 +3,19 @@
 No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
 """
 
+from abc import ABC
 from collections.abc import Callable
 from dataclasses import is_dataclass
+from functools import cached_property
 from math import inf, isfinite
 from threading import Lock
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, SolverError, format_value
-from flockana.base.units import rescale
+from flockana.base.units import scaled_fields
 from flockana.environment.spring import Spring
 
 Force = Callable[[FloatArray, FloatArray], Any]
@@ -63,13 +65,6 @@ class Motion:
         return done.sol
 
 
-def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return f_r at one position or at several, calling a user's function one position at a time."""
-    if q.ndim == 1 or isinstance(force, Spring):
-        return np.asarray(force(q, p), dtype=np.float64)
-    return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
-
-
 def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) -> Motion:
     """Return the motion of (q, p) under an acceleration, whose first value is checked."""
     with np.errstate(all="ignore"):
@@ -89,19 +84,44 @@ def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) 
     return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
 
 
-def ensure_force(force: Any) -> None:
-    """Raise unless a force can be called."""
-    if not callable(force):
-        raise ArgumentError(f"force = {force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
+class Forced(ABC):
+    """Motion of one agent or several under a force f_r: a frozen dataclass with q, p, `force` and `time`."""
 
+    q: Any
+    p: Any
+    force: Any
+    time: float
 
-def force_in_units(force: Any, length: float, time: float) -> Any:
-    """Return f_r in other units, by its table of powers or around a user's function."""
-    if is_dataclass(force):
-        return rescale(force, length=length, time=time)
+    def __post_init__(self) -> None:
+        normalise(self, ensure_positive, "time")
+        if not callable(self.force):
+            raise ArgumentError(f"force = {self.force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
+        _ = self._motion
 
-    def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
-        own: FloatArray = np.asarray(force(q / length, p * (time / length)), dtype=np.float64)
-        return own * (length / time**2)
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without the cached motion, which holds functions that cannot be pickled."""
+        return {name: value for name, value in self.__dict__.items() if name != "_motion"}
 
-    return scaled
+    @cached_property
+    def _motion(self) -> Motion:
+        return motion_from(np.array(self.q), np.array(self.p), self.time, self._acceleration)
+
+    def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
+        """Return f_r at one position or at several, calling a user's function one position at a time."""
+        if q.ndim == 1 or isinstance(self.force, Spring):
+            return np.asarray(self.force(q, p), dtype=np.float64)
+        return np.array([self.force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
+
+    def in_units(self, length: float, time: float) -> Self:
+        """Return the motion in other units (`flockana.rescale`)."""
+
+        def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
+            return np.asarray(self.force(q / length, p * (time / length)), dtype=np.float64) * (length / time**2)
+
+        changed = scaled_fields(self, length, time)
+        return type(self)(**(changed if is_dataclass(self.force) else changed | {"force": scaled}))
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
+        """Return positions and velocities at a time."""
+        q, p = self._motion.at(float(t)).reshape(2, *np.shape(self.q))
+        return q, p

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
-from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
+from flockana.base.checks import FloatArray, freeze_vector
 from flockana.base.units import Powers
-from flockana.environment.motion import Motion, accelerations, ensure_force, force_in_units, motion_from
+from flockana.environment.motion import Forced
 from flockana.environment.target import Target
 
 
 @dataclass(frozen=True)
-class SystemTarget(Target):
+class SystemTarget(Forced, Target):
     """γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt.
 
     Parameters
@@ -53,29 +50,10 @@ class SystemTarget(Target):
 
     def __post_init__(self) -> None:
         freeze_vector(self, "p", freeze_vector(self, "q").size)
-        normalise(self, ensure_positive, "time")
-        ensure_force(self.force)
-        _ = self._motion
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the cached motion, which holds functions that cannot be pickled."""
-        return {name: value for name, value in self.__dict__.items() if name != "_motion"}
-
-    @cached_property
-    def _motion(self) -> Motion:
-        return motion_from(np.array(self.q), np.array(self.p), self.time, lambda q, p: accelerations(self.force, q, p))
-
-    def in_units(self, length: float, time: float) -> SystemTarget:
-        """Return the motion in other units (`flockana.rescale`)."""
-        q, p = np.array(self.q) * length, np.array(self.p) * (length / time)
-        return replace(self, q=q, p=p, force=force_in_units(self.force, length, time), time=self.time * time)
+        super().__post_init__()
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
-        return self._motion.at(float(t))[: len(self.q)]
+        return self.state(t)[0]
 
     def rate(self, t: float) -> FloatArray:  # noqa: D102
-        return self._motion.at(float(t))[len(self.q) :]
-
-    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
-        y = self._motion.at(float(t))
-        return y[: len(self.q)], y[len(self.q) :]
+        return self.state(t)[1]

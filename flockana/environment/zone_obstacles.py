@@ -9,12 +9,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
+import lazy_loader
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, freeze_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.environment.obstacles import Sphere
+from flockana.environment.obstacles import Sphere, ensure_corners
+
+shapely = lazy_loader.load("shapely")
 
 _ROWS = 2**16  # points and ways at once
 
@@ -45,11 +48,7 @@ class SimplePolygon:
     units: ClassVar[Mapping[str, Powers]] = {"vertices": (1, 0)}
 
     def __post_init__(self) -> None:
-        corners = ensure_points("vertices", self.vertices)
-        if corners.shape[0] < 3 or corners.shape[1] != 2:
-            raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
-        import shapely
-
+        corners = ensure_corners(self.vertices)
         shape = shapely.Polygon(corners)
         if not shape.is_valid or not shape.area > 0.0:
             reason = shapely.is_valid_reason(shape) if not shape.is_valid else "no area"
@@ -61,8 +60,6 @@ class SimplePolygon:
 
     @cached_property
     def _shape(self) -> Any:
-        import shapely
-
         shape = shapely.Polygon(self.vertices)
         shapely.prepare(shape)
         return shape
@@ -81,8 +78,6 @@ class SimplePolygon:
         return _in_parts(self._signed, q)
 
     def _signed(self, q: FloatArray) -> FloatArray:
-        import shapely
-
         points = shapely.points(q)
         distance = shapely.distance(self._shape.boundary, points)
         return np.where(shapely.contains(self._shape, points), -distance, distance)
@@ -105,8 +100,6 @@ class SimplePolygon:
         return _in_parts(self._signed_along, start, end, *ends)
 
     def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-        import shapely
-
         ways = shapely.linestrings(np.stack([start, end], axis=1))
         least = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
         deepest = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
@@ -115,8 +108,6 @@ class SimplePolygon:
 
     def enclosing_circle(self) -> Sphere:
         """Return the smallest enclosing disc, the buffer zone of the conventional method."""
-        import shapely
-
         circle = shapely.minimum_bounding_circle(self._shape)
         centre = (circle.centroid.x, circle.centroid.y)
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import scaled_near_one
 from flockana.kernels.crossings import crossing_blocks, nearest_links
@@ -59,8 +59,8 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     """
     q = ensure_points("q", q)
     links = ensure_links(links, len(q))
-    if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
-        raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
+    if limit is not None:
+        ensure_count("limit", limit)
     exact, q = _Exact(q, links), _squarable(q)
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b, sure in crossing_blocks(q, links):

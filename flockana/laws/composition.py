@@ -8,16 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import (
-    ensure_count,
-    ensure_finite_scalar,
-    ensure_flag,
-    ensure_kind,
-    ensure_nonnegative,
-    ensure_positive,
-    ensure_state,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import normalise
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -95,26 +87,22 @@ class Composition(GainedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"unit": (1, 0), "thrust": (0, -1), "brake": (-2, 1)}
 
     def __post_init__(self) -> None:
-        net: Any = Weight if isinstance(self.net, Weight) else PairInteraction
-        optional: Any = (("alpha", PairInteraction, PAIR), ("net", net, PAIR), ("target", Target, TARGET))
-        for name, kind, example in optional:
-            if getattr(self, name) is not None:
-                ensure_kind(name, getattr(self, name), kind, example)
+        none = type(None)
+        checks.ensure_kind("alpha", self.alpha, (PairInteraction, none), PAIR)
+        checks.ensure_kind("net", self.net, (PairInteraction, Weight, none), PAIR)
+        checks.ensure_kind("target", self.target, (Target, none), TARGET)
         ensure_gains(self)
-        ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        checks.ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
-        for name, ensure in (
-            ("unit", ensure_positive),
-            ("thrust", ensure_finite_scalar),
-            ("brake", ensure_nonnegative),
-        ):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, ensure(name, getattr(self, name)))
+        if self.unit is not None:
+            normalise(self, checks.ensure_positive, "unit")
+        normalise(self, checks.ensure_finite_scalar, "thrust")
+        normalise(self, checks.ensure_nonnegative, "brake")
         if self.target is not None:
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        normalise(self, ensure_flag, "feedforward")
+        normalise(self, checks.ensure_flag, "feedforward")
         if self.feedforward and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "
@@ -165,12 +153,13 @@ class Composition(GainedLaw):
         if self.alpha is not None:
             terms.append(PairTerm(self.alpha, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
         if net is not None:
-            terms.append((AlignmentTerm if isinstance(net, Weight) else Consensus)(net, gains.c2_alpha))
+            own = AlignmentTerm(net, gains.c2_alpha) if isinstance(net, Weight) else Consensus(net, gains.c2_alpha)
+            terms.append(own)
         if self.obstacle_field is not None:
             terms.append(ObstacleTerm(self.obstacle_field, gains.c1_beta, gains.c2_beta))
         if pull is not None:
             terms.append(pull)
-        if self.feedforward:
+        if pull is not None and self.feedforward:
             terms.append(TargetFeedforward(pull.target, moving))
         if self.thrust or self.brake:
             terms.append(AlongVelocity(self.thrust, self.brake, moving))
@@ -184,7 +173,7 @@ class Composition(GainedLaw):
         q, p : array_like, shape (n, m)
             Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
         """
-        q, p = ensure_state(q, p)
+        q, p = checks.ensure_state(q, p)
         free = self.target is None and not self.obstacles and self.brake == 0.0
         return self.hamiltonian(0.0, q, moving_frame(p) if free else p)
 
@@ -275,7 +264,7 @@ def compose(
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
         net, consensus = consensus, 1.0
-    obstacles, feedforward = ensure_obstacles(obstacles), ensure_flag("feedforward", feedforward)
+    obstacles, feedforward = ensure_obstacles(obstacles), checks.ensure_flag("feedforward", feedforward)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)
     _ensure_parts(
@@ -323,12 +312,9 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
         return gain
     if agents is None:
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
-    n, known = ensure_count("agents", agents), []
-    for i in informed:
-        if isinstance(i, bool) or not isinstance(i, int | np.integer) or not 0 <= i < n:
-            raise ArgumentError(f"informed has {i!r}: expected whole numbers from 0 to {n - 1}, of {n} agents")
-        known.append(int(i))
-    common = ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    n = checks.ensure_count("agents", agents)
+    known = {checks.ensure_index("informed has", i, n) for i in informed}
+    common = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
     return tuple(common if i in known else 0.0 for i in range(n))
 
 
@@ -340,7 +326,7 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
         if pair is None:
             raise ArgumentError("bounded = True without a pair: give the length at which the pull saturates")
         return pair.bend_length
-    return ensure_positive("bounded", bounded)
+    return checks.ensure_positive("bounded", bounded)
 
 
 def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
@@ -349,5 +335,5 @@ def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float
     if speed is not None:
         if not isinstance(speed, tuple | list) or len(speed) != 2:
             raise ArgumentError(f"speed = {speed!r}: expected (α, β), as in (1.0, 0.25) for a speed of 2")
-        thrust, brake = (ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
-    return thrust - (0.0 if drag is None else ensure_nonnegative("drag", drag)), brake
+        thrust, brake = (checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
+    return thrust - (0.0 if drag is None else checks.ensure_nonnegative("drag", drag)), brake

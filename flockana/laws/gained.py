@@ -16,11 +16,9 @@ from flockana.interactions.weights import Weight
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.pairs import PairTerm
 
-PAIR, GAINS, TARGET = (
-    "AlphaInteraction(...), or another pair interaction",
-    "Gains(...)",
-    "a γ-agent such as StaticTarget((0.0, 0.0))",
-)
+PAIR = "AlphaInteraction(...), or another pair interaction"
+GAINS = "Gains(...)"
+TARGET = "a γ-agent such as StaticTarget((0.0, 0.0))"
 
 
 def ensure_gains(law: Any) -> None:

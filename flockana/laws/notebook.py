@@ -76,7 +76,7 @@ class _Pushed(GainedLaw):
 
     units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
 
-    references = ("notebook-r2", "olfati-saber-2006")
+    references: ClassVar[tuple[str, ...]] = ("notebook-r2", "olfati-saber-2006")
 
     def __post_init__(self) -> None:
         super().__post_init__()

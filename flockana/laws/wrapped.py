@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_kind, ensure_seed, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.law import Law
@@ -32,6 +32,7 @@ class View(NamedTuple):
     both: bool = False  # In the terms between agents their own state is that which is heard too
 
 
+@dataclass(slots=True)
 class Step:
     """Step in which a wrapped law is evaluated: number, length, past, random numbers, held inputs.
 
@@ -54,19 +55,16 @@ class Step:
         Time from one reading of the sensors to the next.
     """
 
-    __slots__ = ("_drawn", "begins", "h", "held", "interval", "number", "past")
+    number: int
+    h: float
+    past: Callable[[float], tuple[FloatArray, FloatArray]]
+    held: dict[int, FloatArray] = field(default_factory=dict)
+    begins: bool = field(default=True, init=False)
+    interval: float = field(init=False)
+    _drawn: dict[tuple[int, int], tuple[int, FloatArray]] = field(default_factory=dict, init=False)
 
-    def __init__(
-        self,
-        number: int,
-        h: float,
-        past: Callable[[float], tuple[FloatArray, FloatArray]],
-        held: dict[int, FloatArray] | None = None,
-    ) -> None:
-        self.number, self.h, self.past = number, h, past
-        self.held: dict[int, FloatArray] = {} if held is None else held
-        self.begins, self.interval = True, h
-        self._drawn: dict[tuple[int, int], tuple[int, FloatArray]] = {}
+    def __post_init__(self) -> None:
+        self.interval = self.h
 
     def normal(self, seed: int, channel: int, shape: tuple[int, ...]) -> FloatArray:
         """Return independent standard normal numbers of this step: a function of seed, channel and step alone.
@@ -135,6 +133,11 @@ class Wrapper(WrappingLaw):
 
     stepped: ClassVar[bool] = True
 
+    def __post_init__(self) -> None:
+        ensure_kind("law", self.law, Law, "a continuous law such as Algorithm1(), or one that wraps a law")
+        if "seed" in vars(self):  # times the channels it is part of a key, and files hold 64 bits
+            normalise(self, lambda _, seed: ensure_seed(seed, 62), "seed")
+
     @abstractmethod
     def input(self, step: Step, view: View) -> FloatArray:
         """Return accelerations from the states that agents know, shape (n, m), unchecked.
@@ -202,27 +205,6 @@ class Wrapper(WrappingLaw):
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Any:  # noqa: D102
         return self.law.measures(t, q, p, extra)
-
-
-def ensure_wrappable(law: Any) -> None:
-    """Raise unless something can be wrapped."""
-    if not isinstance(law, Law):
-        raise ArgumentError(f"law = {law!r}: expected a continuous law such as Algorithm1(), or one that wraps a law")
-
-
-def as_numbers(value: Any) -> FloatArray:
-    """Return an array of numbers; NaN for what is none."""
-    try:
-        return checks.real_array(value)
-    except (TypeError, ValueError):
-        return np.array(np.nan)
-
-
-def ensure_seed(seed: Any) -> int:
-    """Return a seed, a whole number from 0 to 2⁶² − 1."""
-    if (found := checks.ensure_seed(seed)) >= 2**62:  # times the channels it is part of a key, and files hold 64 bits
-        raise ArgumentError(f"seed = {found}: expected a whole number below 2**62")
-    return found
 
 
 def needs_steps(law: Any) -> bool:
