@@ -15,7 +15,6 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, normalise, per_agent
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.directed import directed_forces, seen_edges
@@ -96,10 +95,6 @@ class DirectedNet(WrappingLaw):
         return paper_pair(self.law)
 
     @property
-    def scales(self) -> Scales:  # noqa: D102
-        return self.law.scales
-
-    @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
         return (self.alpha.r if self.ranges is None else self.ranges,)
 
@@ -118,7 +113,7 @@ class DirectedNet(WrappingLaw):
 
     @cached_property
     def _slow2(self) -> float:
-        return float((_SLOW * self.scales.speed if self.slow is None else self.slow) ** 2)
+        return float((_SLOW * self.law.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return the input, and NaN as no energy is known."""
