@@ -18,7 +18,6 @@ from flockana.base.errors import ArgumentError, SolverError, format_value
 from flockana.base.units import scaled_fields
 from flockana.environment.spring import Spring
 
-Force = Callable[[FloatArray, FloatArray], Any]
 _RTOL = 1e-12
 _PIECE = 8.0  # of the system's own time, integrated at once
 
@@ -65,25 +64,6 @@ class Motion:
         return done.sol
 
 
-def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) -> Motion:
-    """Return the motion of (q, p) under an acceleration, whose first value is checked."""
-    with np.errstate(all="ignore"):
-        first = acceleration(q, p)
-    if first.shape != q.shape or not np.isfinite(first).all():
-        raise ArgumentError(f"force gives {format_value(first)} at the start: expected {q.shape[-1]} finite components")
-    sizes = [float(np.abs(x).max()) for x in (q, p, first)]
-    length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
-    if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
-        raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
-    units = np.repeat([length, length / time], q.size)
-
-    def rate(y: FloatArray) -> FloatArray:
-        x, v = y.reshape(2, *q.shape)
-        return np.concatenate([v.ravel(), acceleration(x, v).ravel()])
-
-    return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
-
-
 class Forced(ABC):
     """Motion of one agent or several under a force f_r: a frozen dataclass with q, p, `force` and `time`."""
 
@@ -104,7 +84,23 @@ class Forced(ABC):
 
     @cached_property
     def _motion(self) -> Motion:
-        return motion_from(np.array(self.q), np.array(self.p), self.time, self._acceleration)
+        """The motion from q and p on; raise unless its first acceleration is finite and its time fits."""
+        q, p, time = np.array(self.q), np.array(self.p), self.time
+        with np.errstate(all="ignore"):
+            first = self._acceleration(q, p)
+        if first.shape != q.shape or not np.isfinite(first).all():
+            raise ArgumentError(f"force gives {format_value(first)} at first: expected {q.shape[-1]} finite components")
+        sizes = [float(np.abs(x).max()) for x in (q, p, first)]
+        length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
+        if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
+            raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
+        units = np.repeat([length, length / time], q.size)
+
+        def rate(y: FloatArray) -> FloatArray:
+            x, v = y.reshape(2, *q.shape)
+            return np.concatenate([v.ravel(), self._acceleration(x, v).ravel()])
+
+        return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
 
     def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """Return f_r at one position or at several, calling a user's function one position at a time."""

@@ -89,7 +89,6 @@ def formula_parts(
     view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
-    jumps = view.jumps()
     panels = _panels(cut, view, d) if forces else near.panels
     texts, constants = _texts(cut, near, forces=forces)
     far = _far(view, panels, forces=forces)
@@ -100,7 +99,7 @@ def formula_parts(
         raise ArgumentError(f"{main!r} has a part that is not finite with these parameters: expected finite numbers")
     for array in (par, panels, view.looks):
         array.setflags(write=False)
-    surfaces = tuple(sorted({*jumps, r}))
+    surfaces = tuple(sorted({*view.jumps(), r}))
     return FormulaParts(
         cut, texts, par, panels, surfaces, view.strength, near.kind != "excluded", view.holds(d), view.looks
     )

@@ -67,12 +67,11 @@ class PushTerm(Term):
         return self.hessian(t, q), self.hessian(t, q)
 
 
-@dataclass(frozen=True)
 class _Pushed(GainedLaw):
     """Mixin of the two pushed laws: the two parameters, their checks, and the push term."""
 
-    min_distance: float = MIN_DISTANCE
-    factor: float = FACTOR
+    min_distance: float
+    factor: float
 
     units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
 
@@ -105,7 +104,13 @@ class PushedAlgorithm1(_Pushed, Algorithm1):
     wherever no pair is closer than `min_distance`.
     """
 
+    min_distance: float = MIN_DISTANCE
+    factor: float = FACTOR
+
 
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Pushed, Algorithm2):
     """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push."""
+
+    min_distance: float = MIN_DISTANCE
+    factor: float = FACTOR
