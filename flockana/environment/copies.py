@@ -1,7 +1,5 @@
 """Copies of a γ-agent with dynamics, one for each agent, coupled to each other or not."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

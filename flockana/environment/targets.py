@@ -4,14 +4,12 @@ A target hands over the p_r that the law is given and, apart from it, the true r
 a p_r that is not that rate, which is allowed here and reported where a theorem needs it.
 """
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, inf, pi, sin
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -291,7 +289,7 @@ class CallableTarget(Target):
                 f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
             )
 
-    def in_units(self, length: float, time: float) -> CallableTarget:
+    def in_units(self, length: float, time: float) -> Self:
         """Return the path in other units (`flockana.rescale`)."""
 
         def scaled(t: float) -> tuple[FloatArray, FloatArray]:
@@ -299,7 +297,7 @@ class CallableTarget(Target):
             return length * q, length / time * p
 
         start, end = self.span
-        return CallableTarget(scaled, time * self.time, (time * start, time * end))
+        return type(self)(scaled, time * self.time, (time * start, time * end))
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         t = min(max(t, self.span[0]), self.span[1])

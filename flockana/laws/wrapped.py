@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from flockana.laws.terms.pairs import PairTerm
 
 _BLOCK = 256  # steps whose random numbers are drawn at once
 _CHANNELS = 8  # kinds of random numbers
+Past = Callable[[float], tuple[FloatArray, FloatArray]]
 
 
 class View(NamedTuple):
@@ -32,7 +32,6 @@ class View(NamedTuple):
     both: bool = False  # In the terms between agents their own state is that which is heard too
 
 
-@dataclass(slots=True)
 class Step:
     """Step in which a wrapped law is evaluated: number, length, past, random numbers, held inputs.
 
@@ -55,16 +54,13 @@ class Step:
         Time from one reading of the sensors to the next.
     """
 
-    number: int
-    h: float
-    past: Callable[[float], tuple[FloatArray, FloatArray]]
-    held: dict[int, FloatArray] = field(default_factory=dict)
-    begins: bool = field(default=True, init=False)
-    interval: float = field(init=False)
-    _drawn: dict[tuple[int, int], tuple[int, FloatArray]] = field(default_factory=dict, init=False)
+    __slots__ = ("_drawn", "begins", "h", "held", "interval", "number", "past")
 
-    def __post_init__(self) -> None:
-        self.interval = self.h
+    def __init__(self, number: int, h: float, past: Past, held: dict[int, FloatArray] | None = None) -> None:
+        self.number, self.h, self.past = number, h, past
+        self.held: dict[int, FloatArray] = {} if held is None else held
+        self.begins, self.interval = True, h
+        self._drawn: dict[tuple[int, int], tuple[int, FloatArray]] = {}
 
     def normal(self, seed: int, channel: int, shape: tuple[int, ...]) -> FloatArray:
         """Return independent standard normal numbers of this step: a function of seed, channel and step alone.

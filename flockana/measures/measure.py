@@ -39,6 +39,11 @@ class Series(NamedTuple):
     logarithmic: bool = False
 
 
+def any_law(law: Any) -> bool:
+    """Return True: the measure is defined for every law."""
+    return True
+
+
 def has_range(law: Any) -> bool:
     """Return whether the law has an interaction range, and so a net."""
     return law.pair is not None
@@ -61,7 +66,7 @@ class Measure:
     # ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end
     of_run: Callable[[Any], float] | None = None
     of_run_text: str = ""  # what that is, where it is not the value at the end
-    defined: Callable[[Any], bool] = lambda law: True  # ``defined(law)``: whether it makes sense
+    defined: Callable[[Any], bool] = any_law  # ``defined(law)``: whether it makes sense
     logarithmic: bool = False  # draw it on a logarithmic axis
     at_most_one: bool = False  # it is a share or a cosine, so that its axis ends at 1
 

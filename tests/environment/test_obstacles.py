@@ -1,7 +1,5 @@
 """β-agents of every kind of obstacle: exact feet, brute-force closest points, derivatives, sums, bad input."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass

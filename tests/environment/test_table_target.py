@@ -1,7 +1,5 @@
 """A γ-agent from a table: through its samples, smooth between, saved with runs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

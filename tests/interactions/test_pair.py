@@ -1,7 +1,5 @@
 """Pair laws: exact facts, refusals, and the sums' Hessian and Laplacian by hand."""
 
-from __future__ import annotations
-
 import pickle
 import re
 from dataclasses import FrozenInstanceError

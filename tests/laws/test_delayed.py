@@ -1,7 +1,5 @@
 """Delayed laws: the method of steps by hand, its order, what is heard, delays link by link."""
 
-from __future__ import annotations
-
 from math import cos, sin
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Disturbed laws: forces against closed forms, compiled and not; noise whose covariance is known; bad input."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The dead-zone law with leaders: against a transcription in plain loops, its energy, derivatives, what it refuses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from math import cos, pi, sin

@@ -1,7 +1,5 @@
 """Measured laws: what noise on sensors does to one agent in the mean, and who sees it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

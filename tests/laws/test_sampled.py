@@ -1,7 +1,5 @@
 """Sampled laws: the Taylor step, holds longer than a step, clocks of their own, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

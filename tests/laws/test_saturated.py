@@ -1,7 +1,5 @@
 """Saturated laws: bounded inputs, the energy's balance, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

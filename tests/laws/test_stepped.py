@@ -1,7 +1,5 @@
 """Steps of wrapped laws: all wrappers at once, in any pieces, saved and replayed."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws as sums of terms: what each has, and that sums are sums."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
