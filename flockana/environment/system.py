@@ -32,9 +32,10 @@ class SystemTarget(Forced, Target):
 
     Examples
     --------
+    >>> from math import pi
     >>> from flockana.environment.spring import Spring
     >>> swing = SystemTarget((1.0,), (0.0,), Spring((0.0,), 1.0))
-    >>> q_r, p_r = swing.state(np.pi / 2)
+    >>> q_r, p_r = swing.state(pi / 2)
     >>> bool(abs(q_r[0]) < 1e-10 and abs(p_r[0] + 1.0) < 1e-10)
     True
     """
