@@ -231,7 +231,7 @@ class RescaledVelocity(Target):
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.target.position(t), self.factor * self.target.rate(t)
 
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic | None:  # noqa: D102
         path = self.target.harmonic
         if path is None:
