@@ -12,6 +12,7 @@ from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, format
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+PerAgent = float | tuple[float, ...]
 
 
 def ensure_finite_scalar(name: str, value: Any) -> float:
@@ -39,6 +40,15 @@ def ensure_nonnegative(name: str, value: Any) -> float:
     if number < 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
     return number
+
+
+def per_agent(name: str, value: Any, ensure: Any = ensure_positive) -> PerAgent:
+    """Return one validated number, or one for each agent."""
+    if np.ndim(value) == 0:
+        return float(ensure(name, value))
+    if np.ndim(value) != 1 or not len(value):
+        raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or one for each agent")
+    return tuple(ensure(f"{name}[{i}]", one) for i, one in enumerate(value))
 
 
 def normalise(item: Any, check: Callable[[str, Any], Any], *names: str) -> None:
@@ -203,10 +213,19 @@ def ensure_count(name: str, value: Any) -> int:
     return int(value)
 
 
-def ensure_seed(seed: Any) -> int:
-    """Return a seed, a whole number >= 0."""
+def ensure_index(what: str, value: Any, count: int, kind: str = "a whole number") -> int:
+    """Return `value` as one of the numbers 0 to count − 1."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or not 0 <= value < count:
+        raise ArgumentError(f"{what} {format_value(value)}: expected {kind}, 0 to {count - 1}")
+    return int(value)
+
+
+def ensure_seed(seed: Any, bits: int | None = None) -> int:
+    """Return a seed, a whole number >= 0, of so many bits at most."""
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number >= 0")
+    if bits is not None and seed >= 2**bits:
+        raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number below 2**{bits}")
     return int(seed)
 
 

@@ -112,7 +112,7 @@ class Encounters:
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
         """Compiled check of the obstacles, the numbers that it reads, and the index at which each kind's begin."""
         kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
-        numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind[2:]) for kind in kinds]
+        numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind.arrays) for kind in kinds]
         starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
         return guard_of(tuple(kind.kernels.guard for kind in kinds)), np.concatenate([[], *numbers]), starts
 

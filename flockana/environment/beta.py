@@ -21,10 +21,7 @@ class Kind(NamedTuple):
     """Obstacles of one kind, as arrays for the compiled sums."""
 
     kernels: ObstacleKernels
-    obstacles: tuple[Obstacle, ...]
-    pars: FloatArray
-    starts: Any
-    balls: FloatArray
+    arrays: tuple[FloatArray, Any, FloatArray]  # parameters, where those of each obstacle start, and bounding balls
 
 
 class BetaLinks(NamedTuple):
@@ -59,21 +56,21 @@ class ObstacleField:
             pars = [obstacle.par for obstacle in group]
             starts = np.concatenate([[0], np.cumsum([par.size for par in pars])]).astype(np.int64)
             balls = np.array([[*centre, radius] for centre, radius in (obstacle.ball for obstacle in group)])
-            kinds.append(Kind(group[0].kernels, tuple(group), np.concatenate(pars), starts, balls))
+            kinds.append(Kind(group[0].kernels, (np.concatenate(pars), starts, balls)))
         return tuple(kinds)
 
     def forces(self, q: FloatArray, p: FloatArray, u: FloatArray, *, stiffness: float, damping: float) -> float:
         """Add the forces of all β-agents, c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i), to u in place, unchecked."""
         power, par, reach = 0.0, self.beta.par, self.beta.r
-        for kernels, _, pars, starts, balls in self.kinds:
-            power += kernels.forces(q, p, (pars, starts, balls), par, reach, (stiffness, damping), u)
+        for kernels, arrays in self.kinds:
+            power += kernels.forces(q, p, arrays, par, reach, (stiffness, damping), u)
         return power
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
-        for kernels, _, pars, starts, balls in self.kinds:
-            total += kernels.potential(q, (pars, starts, balls), par, panels, reach)
+        for kernels, arrays in self.kinds:
+            total += kernels.potential(q, arrays, par, panels, reach)
         return total
 
     def hessian_blocks(self, q: FloatArray) -> FloatArray:
@@ -102,10 +99,9 @@ class ObstacleField:
         by_obstacle = []
         for k, obstacle in enumerate(self.obstacles):
             agents = obstacle.beta_agents(q, p)
-            near = np.flatnonzero(np.abs(agents.clearance) < self.beta.r)
-            by_obstacle.append(
-                (near, np.full(near.size, k), agents.q[near], agents.p[near], np.abs(agents.clearance[near]))
-            )
+            distance = np.abs(agents.clearance)
+            near = np.flatnonzero(distance < self.beta.r)
+            by_obstacle.append((near, np.full(near.size, k), agents.q[near], agents.p[near], distance[near]))
         empty = np.empty(0, np.int64), np.empty(0, np.int64), q[:0], p[:0], np.empty(0)
         return BetaLinks(*map(np.concatenate, zip(empty, *by_obstacle, strict=True)))
 
@@ -125,15 +121,10 @@ def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
     where = " and ".join(f"obstacles[{k}] = {obstacles[k]}" for k in holders)
     others = f" ({agents.size} agents do)" if agents.size > 1 else ""
     free = _free_point(q[i], obstacles)
-    if free is None:
-        raise InsideObstacleError(
-            f"agent {i} at {q[i].tolist()} starts inside {where}{others}, and no free point was found by pushing it "
-            "out of the overlapping obstacles: move the agent or an obstacle"
-        )
-    raise InsideObstacleError(
-        f"agent {i} at {q[i].tolist()} starts inside {where}{others}: "
-        f"expected every agent outside; {free.tolist()} is free"
-    )
+    remedy = ", and no free point was found by pushing it out of all obstacles: move the agent or an obstacle"
+    if free is not None:
+        remedy = f": expected every agent outside; {free.tolist()} is free"
+    raise InsideObstacleError(f"agent {i} at {q[i].tolist()} starts inside {where}{others}{remedy}")
 
 
 def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray | None:
@@ -143,14 +134,11 @@ def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray 
         depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]
         k = int(np.argmin(depth))
         if depth[k] > 0.0:
-            free: FloatArray = here[0]
-            return free
+            return here[0]
         foot = obstacles[k].beta_agents(here, np.zeros_like(here)).q
         step = foot - here
-        if not np.isfinite(step).all() or not step.any():  # at a centre, or on the surface: any direction will do
-            outward = np.zeros_like(here)
-            outward[0, 0] = max(abs(depth[k]), 1e-6 * float(np.abs(here).max()), 1e-9)
-            here = here + outward
-        else:
+        if np.isfinite(step).all() and step.any():
             here = foot + _OUTWARD * step
+        else:  # at a centre, or on the surface: any direction will do
+            here[0, 0] += max(abs(depth[k]), 1e-6 * float(np.abs(here).max()), 1e-9)
     return None

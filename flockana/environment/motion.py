@@ -3,20 +3,21 @@
 No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
 """
 
+from abc import ABC
 from collections.abc import Callable
 from dataclasses import is_dataclass
+from functools import cached_property
 from math import inf, isfinite
 from threading import Lock
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, SolverError, format_value
-from flockana.base.units import rescale
+from flockana.base.units import scaled_fields
 from flockana.environment.spring import Spring
 
-Force = Callable[[FloatArray, FloatArray], Any]
 _RTOL = 1e-12
 _PIECE = 8.0  # of the system's own time, integrated at once
 
@@ -39,8 +40,7 @@ class Motion:
             with self._lock:
                 while len(pieces) <= k:
                     pieces.append(self._next(ahead, pieces))
-        y: FloatArray = pieces[k](t)
-        return y
+        return pieces[k](t)
 
     def _next(self, ahead: bool, pieces: list[Any]) -> Any:
         from scipy.integrate import solve_ivp
@@ -64,45 +64,60 @@ class Motion:
         return done.sol
 
 
-def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return f_r at one position or at several, calling a user's function one position at a time."""
-    if q.ndim == 1 or isinstance(force, Spring):
-        return np.asarray(force(q, p), dtype=np.float64)
-    return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
+class Forced(ABC):
+    """Motion of one agent or several under a force f_r: a frozen dataclass with q, p, `force` and `time`."""
 
+    q: Any
+    p: Any
+    force: Any
+    time: float
 
-def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) -> Motion:
-    """Return the motion of (q, p) under an acceleration, whose first value is checked."""
-    with np.errstate(all="ignore"):
-        first = acceleration(q, p)
-    if first.shape != q.shape or not np.isfinite(first).all():
-        raise ArgumentError(f"force gives {format_value(first)} at the start: expected {q.shape[-1]} finite components")
-    sizes = [float(np.abs(x).max()) for x in (q, p, first)]
-    length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
-    if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
-        raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
-    units = np.repeat([length, length / time], q.size)
+    def __post_init__(self) -> None:
+        normalise(self, ensure_positive, "time")
+        if not callable(self.force):
+            raise ArgumentError(f"force = {self.force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
+        _ = self._motion
 
-    def rate(y: FloatArray) -> FloatArray:
-        x, v = y.reshape(2, *q.shape)
-        return np.concatenate([v.ravel(), acceleration(x, v).ravel()])
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without the cached motion, which holds functions that cannot be pickled."""
+        return {name: value for name, value in self.__dict__.items() if name != "_motion"}
 
-    return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
+    @cached_property
+    def _motion(self) -> Motion:
+        """The motion from q and p on; raise unless its first acceleration is finite and its time fits."""
+        q, p, time = np.array(self.q), np.array(self.p), self.time
+        with np.errstate(all="ignore"):
+            first = self._acceleration(q, p)
+        if first.shape != q.shape or not np.isfinite(first).all():
+            raise ArgumentError(f"force gives {format_value(first)} at first: expected {q.shape[-1]} finite components")
+        sizes = [float(np.abs(x).max()) for x in (q, p, first)]
+        length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
+        if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
+            raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
+        units = np.repeat([length, length / time], q.size)
 
+        def rate(y: FloatArray) -> FloatArray:
+            x, v = y.reshape(2, *q.shape)
+            return np.concatenate([v.ravel(), self._acceleration(x, v).ravel()])
 
-def ensure_force(force: Any) -> None:
-    """Raise unless a force can be called."""
-    if not callable(force):
-        raise ArgumentError(f"force = {force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
+        return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
 
+    def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
+        """Return f_r at one position or at several, calling a user's function one position at a time."""
+        if q.ndim == 1 or isinstance(self.force, Spring):
+            return np.asarray(self.force(q, p), dtype=np.float64)
+        return np.array([self.force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
 
-def force_in_units(force: Any, length: float, time: float) -> Any:
-    """Return f_r in other units, by its table of powers or around a user's function."""
-    if is_dataclass(force):
-        return rescale(force, length=length, time=time)
+    def in_units(self, length: float, time: float) -> Self:
+        """Return the motion in other units (`flockana.rescale`)."""
 
-    def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
-        own: FloatArray = np.asarray(force(q / length, p * (time / length)), dtype=np.float64)
-        return own * (length / time**2)
+        def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
+            return np.asarray(self.force(q / length, p * (time / length)), dtype=np.float64) * (length / time**2)
 
-    return scaled
+        changed = scaled_fields(self, length, time)
+        return type(self)(**(changed if is_dataclass(self.force) else changed | {"force": scaled}))
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
+        """Return positions and velocities at a time."""
+        q, p = self._motion.at(float(t)).reshape(2, *np.shape(self.q))
+        return q, p

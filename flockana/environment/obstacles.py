@@ -34,6 +34,14 @@ class BetaAgents(NamedTuple):
     clearance: FloatArray
 
 
+def ensure_corners(vertices: Any) -> FloatArray:
+    """Return the corners of a polygon in the plane, shape (V, 2)."""
+    corners = ensure_points("vertices", vertices)
+    if corners.shape[0] < 3 or corners.shape[1] != 2:
+        raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
+    return corners
+
+
 class Obstacle(ABC):
     """Base class of convex obstacles: frozen dataclasses with `par`, `ball` and `kernels`.
 
@@ -73,7 +81,11 @@ class Obstacle(ABC):
             On bad arrays, or agents of another dimension than the obstacle's.
         """
         q, p = ensure_state(q, p)
-        self.check_dimension(q.shape[1])
+        if self.dimension != q.shape[1]:
+            raise ArgumentError(
+                f"the obstacle = {self} has {self.dimension} components but the agents have {q.shape[1]}: "
+                "expected equal dimensions"
+            )
         gap, rate, clearance = self._project(q, p)
         return BetaAgents(q + gap, rate, clearance)
 
@@ -84,15 +96,7 @@ class Obstacle(ABC):
 
     def contains(self, q: Any) -> npt.NDArray[np.bool_]:
         """Return which points lie inside or on the surface, shape (n,)."""
-        inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
-        return inside
-
-    def check_dimension(self, m: int, name: str = "the obstacle") -> None:
-        """Raise unless the obstacle lives in m dimensions."""
-        if self.dimension != m:
-            raise ArgumentError(
-                f"{name} = {self} has {self.dimension} components but the agents have {m}: expected equal dimensions"
-            )
+        return self.clearance(q) <= 0.0
 
 
 @register_jitable

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.environment.obstacles import Obstacle
+from flockana.environment.obstacles import Obstacle, ensure_corners
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn
 
@@ -69,9 +69,7 @@ class Polygon(Obstacle):
     kernels = _POLYGON
 
     def __post_init__(self) -> None:
-        corners = ensure_points("vertices", self.vertices)
-        if corners.shape[0] < 3 or corners.shape[1] != 2:
-            raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
+        corners = ensure_corners(self.vertices)
         sides = np.roll(corners, -1, axis=0) - corners
         after = np.roll(sides, -1, axis=0)
         turns = np.arctan2(sides[:, 0] * after[:, 1] - sides[:, 1] * after[:, 0], np.sum(sides * after, axis=1))
@@ -87,8 +85,8 @@ class Polygon(Obstacle):
     def par(self) -> FloatArray:
         """Vertices, counter-clockwise."""
         corners = np.array(self.vertices)
-        first, second = corners[1] - corners[0], corners[2] - corners[1]
-        turn = first[0] * second[1] - first[1] * second[0]
+        (x, y), (u, v) = np.diff(corners[:3], axis=0)
+        turn = x * v - y * u
         return np.ascontiguousarray(corners if turn > 0.0 else corners[::-1]).ravel()
 
     @property

@@ -6,14 +6,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_finite_scalar,
-    ensure_nonnegative,
-    ensure_positive,
-    freeze_vector,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import FloatArray, normalise
 from flockana.base.units import Powers
 
 
@@ -55,19 +49,18 @@ class Spring:
     }
 
     def __post_init__(self) -> None:
-        m = freeze_vector(self, "centre").size
+        m = checks.freeze_vector(self, "centre").size
         if np.isscalar(self.push) and self.push == 0:
             object.__setattr__(self, "push", np.zeros(m))
-        freeze_vector(self, "push", m)
-        normalise(self, ensure_finite_scalar, "stiffness")
-        normalise(self, ensure_nonnegative, "damping")
+        checks.freeze_vector(self, "push", m)
+        normalise(self, checks.ensure_finite_scalar, "stiffness")
+        normalise(self, checks.ensure_nonnegative, "damping")
         if self.reach is not None:
-            normalise(self, ensure_positive, "reach")
+            normalise(self, checks.ensure_positive, "reach")
 
     def __call__(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """Return the acceleration at one position or at several (…, m)."""
         x = q - np.array(self.centre)
         if self.reach is not None:
             x = x / np.sqrt(1.0 + np.sum(x * x, axis=-1, keepdims=True) / self.reach**2)
-        force: FloatArray = np.array(self.push) - self.stiffness * x - self.damping * p
-        return force
+        return np.array(self.push) - self.stiffness * x - self.damping * p

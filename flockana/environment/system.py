@@ -1,22 +1,17 @@
 """γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
-from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
+from flockana.base.checks import FloatArray, freeze_vector
 from flockana.base.units import Powers
-from flockana.environment.motion import Motion, accelerations, ensure_force, force_in_units, motion_from
+from flockana.environment.motion import Forced
 from flockana.environment.target import Target
 
 
 @dataclass(frozen=True)
-class SystemTarget(Target):
+class SystemTarget(Forced, Target):
     """γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt.
 
     Parameters
@@ -37,9 +32,10 @@ class SystemTarget(Target):
 
     Examples
     --------
+    >>> from math import pi
     >>> from flockana.environment.spring import Spring
     >>> swing = SystemTarget((1.0,), (0.0,), Spring((0.0,), 1.0))
-    >>> q_r, p_r = swing.state(np.pi / 2)
+    >>> q_r, p_r = swing.state(pi / 2)
     >>> bool(abs(q_r[0]) < 1e-10 and abs(p_r[0] + 1.0) < 1e-10)
     True
     """
@@ -53,29 +49,10 @@ class SystemTarget(Target):
 
     def __post_init__(self) -> None:
         freeze_vector(self, "p", freeze_vector(self, "q").size)
-        normalise(self, ensure_positive, "time")
-        ensure_force(self.force)
-        _ = self._motion
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the cached motion, which holds functions that cannot be pickled."""
-        return {name: value for name, value in self.__dict__.items() if name != "_motion"}
-
-    @cached_property
-    def _motion(self) -> Motion:
-        return motion_from(np.array(self.q), np.array(self.p), self.time, lambda q, p: accelerations(self.force, q, p))
-
-    def in_units(self, length: float, time: float) -> SystemTarget:
-        """Return the motion in other units (`flockana.rescale`)."""
-        q, p = np.array(self.q) * length, np.array(self.p) * (length / time)
-        return replace(self, q=q, p=p, force=force_in_units(self.force, length, time), time=self.time * time)
+        super().__post_init__()
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
-        return self._motion.at(float(t))[: len(self.q)]
+        return self.state(t)[0]
 
     def rate(self, t: float) -> FloatArray:  # noqa: D102
-        return self._motion.at(float(t))[len(self.q) :]
-
-    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
-        y = self._motion.at(float(t))
-        return y[: len(self.q)], y[len(self.q) :]
+        return self.state(t)[1]

@@ -55,31 +55,18 @@ class TableTarget(Target):
             object.__setattr__(self, "p", tuple(map(tuple, p.tolist())))
 
     @cached_property
-    def _pieces(self) -> FloatArray:
-        """Coefficients of t^3 to 1 in each interval, shape (4, T - 1, m)."""
+    def _path(self) -> Any:
+        """The path between the first sample and the last."""
         from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
         if self.p is not None:
-            return np.asarray(CubicHermiteSpline(self.t, np.array(self.q), np.array(self.p)).c)
-        ends: Any = "not-a-knot" if len(self.t) > 3 else "natural" if len(self.t) > 2 else "not-a-knot"
-        return np.asarray(CubicSpline(self.t, np.array(self.q), bc_type=ends).c)
-
-    @cached_property
-    def _times(self) -> FloatArray:
-        return np.array(self.t)
-
-    def _at(self, t: float) -> tuple[int, float]:
-        """The interval of a time within the table, and the time since its beginning."""
-        k = int(np.clip(np.searchsorted(self._times, t, side="right") - 1, 0, len(self._times) - 2))
-        return k, float(np.clip(t, self._times[0], self._times[-1]) - self._times[k])
+            return CubicHermiteSpline(self.t, np.array(self.q), np.array(self.p))
+        ends: Any = "natural" if len(self.t) == 3 else "not-a-knot"
+        return CubicSpline(self.t, np.array(self.q), bc_type=ends)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
-        (k, s), c = self._at(t), self._pieces
-        place: FloatArray = ((c[0, k] * s + c[1, k]) * s + c[2, k]) * s + c[3, k]
-        return place
+        return self._path(min(max(t, self.t[0]), self.t[-1]))
 
     def rate(self, t: float) -> FloatArray:
         """Return dq_r/dt, 0 beyond the table."""
-        (k, s), c = self._at(t), self._pieces
-        rate: FloatArray = (3.0 * c[0, k] * s + 2.0 * c[1, k]) * s + c[2, k]
-        return rate if self._times[0] <= t <= self._times[-1] else np.zeros(rate.shape)
+        return self._path(t, 1) if self.t[0] <= t <= self.t[-1] else np.zeros(len(self.q[0]))

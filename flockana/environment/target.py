@@ -1,6 +1,7 @@
 """Interface of γ-agents: position, velocity, and the velocity reported to the law."""
 
 from abc import ABC, abstractmethod
+from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,21 @@ class Harmonic(NamedTuple):
     terms: FloatArray  # shape (5, m): a, b, c, s, e
     omega: float = 0.0  # omega, factor: ω and what p_r is of the true rate
     factor: float = 1.0
+
+    def position(self, t: float) -> FloatArray:
+        """Return q_r(t)."""
+        a, b, c, s, _ = self.terms
+        return a + b * t + cos(self.omega * t) * c + sin(self.omega * t) * s
+
+    def rate(self, t: float) -> FloatArray:
+        """Return dq_r/dt."""
+        _, b, c, s, _ = self.terms
+        return b + self.omega * (cos(self.omega * t) * s - sin(self.omega * t) * c)
+
+    def acceleration(self, t: float) -> FloatArray:
+        """Return d²q_r/dt²."""
+        c, s = self.terms[2:4]
+        return 0.0 - self.omega**2 * (cos(self.omega * t) * c + sin(self.omega * t) * s)
 
 
 class Target(ABC):

@@ -4,23 +4,17 @@ A target hands over the p_r that the law is given and, apart from it, the true r
 a p_r that is not that rate, which is allowed here and reported where a theorem needs it.
 """
 
-from __future__ import annotations
-
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import cos, inf, pi, sin
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_finite_scalar,
-    ensure_positive,
-    ensure_vector,
-    freeze_vector,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import FloatArray, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.environment.target import Harmonic, Target
@@ -34,8 +28,22 @@ def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0,
     return Harmonic(np.array([np.broadcast_to(one, np.shape(a)) for one in (a, b, c, s, e)], dtype=np.float64), omega)
 
 
+class _HarmonicTarget(Target):
+    """γ-agent whose path is given in closed form by `harmonic`."""
+
+    @property
+    @abstractmethod
+    def harmonic(self) -> Harmonic: ...
+
+    def position(self, t: float) -> FloatArray:
+        return self.harmonic.position(t)
+
+    def rate(self, t: float) -> FloatArray:
+        return self.harmonic.rate(t)
+
+
 @dataclass(frozen=True)
-class StaticTarget(Target):
+class StaticTarget(_HarmonicTarget):
     """Fixed γ-agent at q; a velocity p ≠ 0 may be reported with it, as Theorem 6 does.
 
     Parameters
@@ -55,27 +63,21 @@ class StaticTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        m = freeze_vector(self, "q").size
+        m = checks.freeze_vector(self, "q").size
         if np.isscalar(self.p) and self.p == 0:
             object.__setattr__(self, "p", np.zeros(m))
-        freeze_vector(self, "p", m)
-
-    def position(self, t: float) -> FloatArray:  # noqa: D102
-        return np.array(self.q)
-
-    def rate(self, t: float) -> FloatArray:  # noqa: D102
-        return np.zeros(len(self.q))
+        checks.freeze_vector(self, "p", m)
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return np.array(self.q), np.array(self.p)
 
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
         return _harmonic(self.q, e=self.p)
 
 
 @dataclass(frozen=True)
-class LinearTarget(Target):
+class LinearTarget(_HarmonicTarget):
     """γ-agent on a straight line: q_r = q + p t.
 
     Parameters
@@ -95,21 +97,15 @@ class LinearTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        freeze_vector(self, "p", freeze_vector(self, "q").size)
+        checks.freeze_vector(self, "p", checks.freeze_vector(self, "q").size)
 
-    def position(self, t: float) -> FloatArray:  # noqa: D102
-        return np.array(self.q) + np.array(self.p) * t
-
-    def rate(self, t: float) -> FloatArray:  # noqa: D102
-        return np.array(self.p)
-
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
         return _harmonic(self.q, b=self.p)
 
 
 @dataclass(frozen=True)
-class SineTarget(Target):
+class SineTarget(_HarmonicTarget):
     """γ-agent on a sine about a line: q_r = start + velocity t + A sin(2πft + φ) e_axis.
 
     Parameters
@@ -148,34 +144,22 @@ class SineTarget(Target):
     }
 
     def __post_init__(self) -> None:
-        m = freeze_vector(self, "start").size
-        freeze_vector(self, "velocity", m)
-        normalise(self, ensure_finite_scalar, "amplitude", "frequency", "phase")
+        m = checks.freeze_vector(self, "start").size
+        checks.freeze_vector(self, "velocity", m)
+        normalise(self, checks.ensure_finite_scalar, "amplitude", "frequency", "phase")
         if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
             raise ArgumentError(f"axis = {format_value(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
 
-    def _swing(self, value: float) -> FloatArray:
-        swing = np.zeros(len(self.start))
-        swing[self.axis] = value
-        return swing
-
-    def position(self, t: float) -> FloatArray:  # noqa: D102
-        angle = 2.0 * pi * self.frequency * t + self.phase
-        return np.array(self.start) + np.array(self.velocity) * t + self._swing(self.amplitude * sin(angle))
-
-    def rate(self, t: float) -> FloatArray:  # noqa: D102
-        omega = 2.0 * pi * self.frequency
-        return np.array(self.velocity) + self._swing(self.amplitude * omega * cos(omega * t + self.phase))
-
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
-        c, s = (self._swing(self.amplitude * turn(self.phase)) for turn in (sin, cos))
+        c, s = np.zeros((2, len(self.start)))
+        c[self.axis], s[self.axis] = self.amplitude * sin(self.phase), self.amplitude * cos(self.phase)
         return _harmonic(self.start, b=self.velocity, c=c, s=s, omega=2.0 * pi * self.frequency)
 
 
 @dataclass(frozen=True)
-class CircleTarget(Target):
+class CircleTarget(_HarmonicTarget):
     """γ-agent on a circle in the first two coordinates: centre + R (cos, sin)(2πft + φ).
 
     Parameters
@@ -203,29 +187,16 @@ class CircleTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0), "frequency": (0, -1)}
 
     def __post_init__(self) -> None:
-        if freeze_vector(self, "centre").size < 2:
+        if checks.freeze_vector(self, "centre").size < 2:
             raise ArgumentError(f"centre = {self.centre}: expected 2 or 3 components; a line holds no circle")
-        normalise(self, ensure_positive, "radius")
-        normalise(self, ensure_finite_scalar, "frequency", "phase")
+        normalise(self, checks.ensure_positive, "radius")
+        normalise(self, checks.ensure_finite_scalar, "frequency", "phase")
 
-    def _plane(self, x: float, y: float) -> FloatArray:
-        return np.array([x, y, 0.0])[: len(self.centre)]
-
-    def position(self, t: float) -> FloatArray:  # noqa: D102
-        angle = 2.0 * pi * self.frequency * t + self.phase
-        return np.array(self.centre) + self.radius * self._plane(cos(angle), sin(angle))
-
-    def rate(self, t: float) -> FloatArray:  # noqa: D102
-        omega = 2.0 * pi * self.frequency
-        angle = omega * t + self.phase
-        return self.radius * omega * self._plane(-sin(angle), cos(angle))
-
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
-        c, s = (
-            self.radius * self._plane(*way)
-            for way in ((cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase)))
-        )
+        turn = np.zeros((2, len(self.centre)))
+        turn[:, :2] = (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
+        c, s = self.radius * turn
         return _harmonic(self.centre, c=c, s=s, omega=2.0 * pi * self.frequency)
 
 
@@ -248,9 +219,8 @@ class RescaledVelocity(Target):
     factor: float
 
     def __post_init__(self) -> None:
-        if not isinstance(self.target, Target):
-            raise ArgumentError(f"target = {self.target!r}: expected a Target such as CircleTarget(...)")
-        normalise(self, ensure_finite_scalar, "factor")
+        checks.ensure_kind("target", self.target, Target, "a Target such as CircleTarget(...)")
+        normalise(self, checks.ensure_finite_scalar, "factor")
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return self.target.position(t)
@@ -261,7 +231,7 @@ class RescaledVelocity(Target):
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.target.position(t), self.factor * self.target.rate(t)
 
-    @property
+    @cached_property
     def harmonic(self) -> Harmonic | None:  # noqa: D102
         path = self.target.harmonic
         if path is None:
@@ -302,7 +272,7 @@ class CallableTarget(Target):
     span: tuple[float, float] = (-inf, inf)
 
     def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "time")
+        normalise(self, checks.ensure_positive, "time")
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         try:
@@ -313,35 +283,32 @@ class CallableTarget(Target):
             raise ArgumentError(f"span = {self.span}: expected a start and an end, more than 4e-5 time apart")
         object.__setattr__(self, "span", (start, end))
         first = min(max(0.0, start), end)
-        q, p = self._call(first)
+        q, p = self.state(first)
         if q.size != p.size:
             raise ArgumentError(
                 f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
             )
 
-    def in_units(self, length: float, time: float) -> CallableTarget:
+    def in_units(self, length: float, time: float) -> Self:
         """Return the path in other units (`flockana.rescale`)."""
 
         def scaled(t: float) -> tuple[FloatArray, FloatArray]:
-            q, p = self._call(t / time)
+            q, p = self.state(t / time)
             return length * q, length / time * p
 
         start, end = self.span
-        return CallableTarget(scaled, time * self.time, (time * start, time * end))
+        return type(self)(scaled, time * self.time, (time * start, time * end))
 
-    def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         t = min(max(t, self.span[0]), self.span[1])
         try:
             q, p = self.function(t)
         except (TypeError, ValueError) as error:
             raise ArgumentError(f"function({t:g}) failed ({error}): expected it to return (q_r, p_r)") from error
-        return ensure_vector(f"q_r({t:g})", q), ensure_vector(f"p_r({t:g})", p)
+        return checks.ensure_vector(f"q_r({t:g})", q), checks.ensure_vector(f"p_r({t:g})", p)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
-        return self._call(t)[0]
-
-    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
-        return self._call(t)
+        return self.state(t)[0]
 
     def rate(self, t: float) -> FloatArray:
         """Return dq_r/dt by central difference, one-sided at the ends of the span."""

@@ -9,12 +9,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
+import lazy_loader
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, freeze_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.environment.obstacles import Sphere
+from flockana.environment.obstacles import Sphere, ensure_corners
+
+shapely = lazy_loader.load("shapely")
 
 _ROWS = 2**16  # points and ways at once
 
@@ -45,11 +48,7 @@ class SimplePolygon:
     units: ClassVar[Mapping[str, Powers]] = {"vertices": (1, 0)}
 
     def __post_init__(self) -> None:
-        corners = ensure_points("vertices", self.vertices)
-        if corners.shape[0] < 3 or corners.shape[1] != 2:
-            raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
-        import shapely
-
+        corners = ensure_corners(self.vertices)
         shape = shapely.Polygon(corners)
         if not shape.is_valid or not shape.area > 0.0:
             reason = shapely.is_valid_reason(shape) if not shape.is_valid else "no area"
@@ -61,8 +60,6 @@ class SimplePolygon:
 
     @cached_property
     def _shape(self) -> Any:
-        import shapely
-
         shape = shapely.Polygon(self.vertices)
         shapely.prepare(shape)
         return shape
@@ -78,12 +75,9 @@ class SimplePolygon:
         q = ensure_points("q", q)
         if q.shape[1] != 2:
             raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
-        signed: FloatArray = _in_parts(self._signed, q)
-        return signed
+        return _in_parts(self._signed, q)
 
     def _signed(self, q: FloatArray) -> FloatArray:
-        import shapely
-
         points = shapely.points(q)
         distance = shapely.distance(self._shape.boundary, points)
         return np.where(shapely.contains(self._shape, points), -distance, distance)
@@ -103,12 +97,9 @@ class SimplePolygon:
             Signed distances of both, where they are known already.
         """
         ends = (self.clearance(start), self.clearance(end)) if ends is None else ends
-        bound: FloatArray = _in_parts(self._signed_along, start, end, *ends)
-        return bound
+        return _in_parts(self._signed_along, start, end, *ends)
 
     def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-        import shapely
-
         ways = shapely.linestrings(np.stack([start, end], axis=1))
         least = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
         deepest = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
@@ -117,8 +108,6 @@ class SimplePolygon:
 
     def enclosing_circle(self) -> Sphere:
         """Return the smallest enclosing disc, the buffer zone of the conventional method."""
-        import shapely
-
         circle = shapely.minimum_bounding_circle(self._shape)
         centre = (circle.centroid.x, circle.centroid.y)
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
@@ -136,8 +125,7 @@ def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> Fl
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
     nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
-    clearance: FloatArray = np.linalg.norm(nearest, axis=1) - ball.radius
-    return clearance
+    return np.linalg.norm(nearest, axis=1) - ball.radius
 
 
 @dataclass(frozen=True)
@@ -172,5 +160,4 @@ class Box:
         On a straight way it is least at one of the ends.
         """
         q = ensure_points("q", q)
-        inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)
-        return inside
+        return np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
+from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
@@ -88,8 +88,7 @@ class ZoneWorld:
                 expected = "SimplePolygon or Sphere" if name == "obstacles" else "Alien"
                 raise ArgumentError(f"{name} = {items!r}: expected a sequence of {expected}")
             object.__setattr__(self, name, tuple(items))
-        if self.box is not None and not isinstance(self.box, Box):
-            raise ArgumentError(f"box = {self.box!r}: expected a Box")
+        ensure_kind("box", self.box, (Box, type(None)), "a Box")
         if len(set(self._dimensions())) > 1:
             raise ArgumentError(f"{self}: expected obstacles, box and aliens of one dimension")
 
@@ -135,8 +134,7 @@ class ZoneWorld:
 
     def clearance(self, q: FloatArray) -> FloatArray:
         """Return signed distances from all obstacles at samples, and a lower bound between some of them."""
-        least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
-        return least
+        return np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
         """Return signed distances from all obstacles at samples, and lower bounds over the given intervals.

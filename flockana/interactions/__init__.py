@@ -1,24 +1,12 @@
 """Pair laws as frozen, validated parameters with their scalar functions and sums over pairs."""
 
-from flockana.interactions.alpha import AlphaInteraction
-from flockana.interactions.beta import BetaInteraction
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.interactions.formula import FormulaInteraction
-from flockana.interactions.from_formula import pair_law
-from flockana.interactions.gains import Gains
-from flockana.interactions.pair import PairInteraction
-from flockana.interactions.zone_noise import ZoneNoise
-from flockana.interactions.zones import ZoneRadii, ZoneWeights
-
-__all__ = [
-    "AlphaInteraction",
-    "BetaInteraction",
-    "DeadZoneInteraction",
-    "FormulaInteraction",
-    "Gains",
-    "PairInteraction",
-    "ZoneNoise",
-    "ZoneRadii",
-    "ZoneWeights",
-    "pair_law",
-]
+from flockana.interactions.alpha import AlphaInteraction as AlphaInteraction
+from flockana.interactions.beta import BetaInteraction as BetaInteraction
+from flockana.interactions.dead_zone import DeadZoneInteraction as DeadZoneInteraction
+from flockana.interactions.formula import FormulaInteraction as FormulaInteraction
+from flockana.interactions.from_formula import pair_law as pair_law
+from flockana.interactions.gains import Gains as Gains
+from flockana.interactions.pair import PairInteraction as PairInteraction
+from flockana.interactions.zone_noise import ZoneNoise as ZoneNoise
+from flockana.interactions.zones import ZoneRadii as ZoneRadii
+from flockana.interactions.zones import ZoneWeights as ZoneWeights

@@ -12,7 +12,7 @@ from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
-from flockana.interactions.pair import PairInteraction, Tabulated, ensure_bump_start, ensure_resolved, evaluate
+from flockana.interactions.pair import PairInteraction, Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import bump, phi, phi_integral, sigma_norm
@@ -82,15 +82,12 @@ class AlphaInteraction(Tabulated, PairInteraction):
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "d", "r", "eps", "a", "b", "unit")
-        object.__setattr__(self, "h", ensure_bump_start(self.h))
-        if self.r <= self.d:
-            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r = 1.2 d")
+        ensure_lengths(self, "r = 1.2 d")
+        normalise(self, ensure_positive, "a", "b")
         if self.a > self.b:
             raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected a <= b (attraction at most repulsion)")
         if self.b > MAX_ASYMMETRY * self.a:
             raise ArgumentError(f"a = {self.a:g} and b = {self.b:g}: expected b <= {MAX_ASYMMETRY:g} a")
-        ensure_resolved(self.d, self.r, self.eps, self.unit)
 
     @cached_property
     def c(self) -> float:
@@ -154,19 +151,13 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return ψ_α(‖x‖_σ) at Euclidean distances x."""
-        values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
-        return values
+        return self.psi_alpha(self.sigma_norm(lengths))
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
-
-        numbers = par.tolist()
-
-        def taper(z: FloatArray) -> FloatArray:
-            return np.array([kernel.phi_alpha(each, numbers) for each in z.tolist()])
-
+        taper = one_by_one(kernel.phi_alpha, par)
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         doublings = d_alpha * (1.0 + 2.0 ** np.arange(max(0.0, np.ceil(np.log2(r_alpha / d_alpha)))))
         marks = np.append(d_alpha, doublings)  # between them ψ grows by a few times only, from 0 and from at most c*

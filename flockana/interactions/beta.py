@@ -7,10 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray
 from flockana.base.units import Powers
-from flockana.interactions.pair import Tabulated, ensure_bump_start, ensure_resolved, evaluate
+from flockana.interactions.pair import Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
 from flockana.kernels.scalars import sigma_norm
@@ -55,11 +54,7 @@ class BetaInteraction(Tabulated):
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "d", "r", "eps", "unit")
-        object.__setattr__(self, "h", ensure_bump_start(self.h))
-        if self.r <= self.d:
-            raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'")
-        ensure_resolved(self.d, self.r, self.eps, self.unit)
+        ensure_lengths(self, "r' = 1.2 d'")
 
     @cached_property
     def d_beta(self) -> float:
@@ -74,14 +69,9 @@ class BetaInteraction(Tabulated):
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         d_beta, knee, area = self.d_beta, self.h * self.d_beta, self.unit**2
         par = np.array([self.eps, self.h, d_beta, 0.0, area])
-        numbers = par.tolist()
-
-        def taper(z: FloatArray) -> FloatArray:
-            return np.array([kernel.phi_beta(each, numbers) for each in z.tolist()])
-
         edges = area * panel_edges(knee / area, d_beta / area, d_beta / area)
-        panels = integral_panels(taper, edges, anchor=edges[-1])
-        par[kernel.BETA_OFFSET] = on_panels(knee, panels) - kernel.integral_beta(knee, numbers)
+        panels = integral_panels(one_by_one(kernel.phi_beta, par), edges, anchor=edges[-1])
+        par[kernel.BETA_OFFSET] = on_panels(knee, panels) - kernel.integral_beta(knee, par.tolist())
         return par, panels
 
     def phi_beta(self, z: Any) -> Any:

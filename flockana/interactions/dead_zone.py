@@ -156,8 +156,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return `psi` at each distance."""
-        values: FloatArray = self.psi(lengths)
-        return values
+        return self.psi(lengths)
 
     @cached_property
     def far_potential(self) -> float:
@@ -174,8 +173,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
             free[3] = 0.0
 
             def ramped(s: FloatArray) -> FloatArray:
-                forces: FloatArray = _FORCE(s, free)
-                return forces
+                return _FORCE(s, free)
 
             # F is analytic within each ramp: repulsion's pole at 0 is farther from [d1 - ramp, d1] than d1 - ramp, and
             # narrow panels near it keep the series short
@@ -207,16 +205,9 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     def jumps(self) -> tuple[Jump, ...]:
         """Return discontinuities of F: at r, and without a ramp at both ends of the dead zone."""
-        s, inside = np.array([self.d1, self.d2, self.r]), np.nextafter
-        par = self.par
-        sides = [
-            ("d1", self.d1, inside(s[0], 0.0), s[0]),
-            ("d2", self.d2, s[1], inside(s[1], inf)),
-            ("r", self.r, inside(s[2], 0.0), s[2]),
-        ]
         jumps = []
-        for name, where, low, high in sides:
-            below, above = (float(x) for x in _FORCE(np.array([low, high]), par))
+        for name, where in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
+            below, above = _FORCE(np.nextafter(where, [0.0, inf]), self.par).tolist()
             if where <= self.r and not np.isclose(below, above, rtol=1e-9, atol=1e-9 * self.contact_force):
                 jumps.append(Jump(name, where, below, above))
         return tuple(jumps)

@@ -174,12 +174,12 @@ class FormulaInteraction(PairInteraction):
     def energy_at(self, lengths: FloatArray) -> FloatArray:
         """Return ψ at each distance, constant beyond the range."""
         square = np.square(np.asarray(lengths, dtype=np.float64))
-        values: FloatArray = evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
-        return values
+        return evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
 
     def force(self, s: Any) -> Any:
         """Return the force between two agents along their line; negative repels."""
-        return self._of_pair(s, 0, times_distance=True)
+        with np.errstate(invalid="ignore"):  # NaN at 0 where coincidence is excluded
+            return s * self.stress(s)
 
     def stress(self, s: Any) -> Any:
         """Return the weight w of the pair force w (q_j − q_i)."""
@@ -189,13 +189,12 @@ class FormulaInteraction(PairInteraction):
         """Return the adjacency a_ij at each distance."""
         return self._of_pair(s, 1)
 
-    def _of_pair(self, s: Any, row: int, *, times_distance: bool = False) -> Any:
+    def _of_pair(self, s: Any, row: int) -> Any:
         lengths = np.atleast_1d(np.asarray(s, dtype=np.float64))
         line = np.append(0.0, lengths.ravel())[:, None]
         ends = np.arange(1, line.size, dtype=np.int64)
         found = self.kernels.terms(line, np.zeros_like(ends), ends, self.par)[row]
-        with np.errstate(invalid="ignore"):  # NaN at 0 where coincidence is excluded
-            values = np.where(lengths.ravel() < self.r, found * line[1:, 0] if times_distance else found, 0.0)
+        values = np.where(lengths.ravel() < self.r, found, 0.0)
         return float(values[0]) if np.ndim(s) == 0 else values.reshape(lengths.shape)
 
     def with_parameters(self, **parameters: float) -> FormulaInteraction:

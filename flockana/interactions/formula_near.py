@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -29,26 +29,25 @@ class NearZero:
     """Method for the weight near 0: ``plain``, ``series`` in y below a bound, or ``excluded`` at 0."""
 
     kind: Literal["plain", "series", "excluded"]
-    bound: float
-    coefficients: FloatArray
-    panels: FloatArray
+    bound: float = 0.0
+    coefficients: FloatArray = field(default_factory=lambda: np.zeros(0))
+    panels: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def near_zero(cut: PiecewiseFormula, end: float) -> NearZero:
     """Return how to evaluate the first piece near 0, from its values in high precision."""
-    piece, none = cut.pieces[0], np.zeros(0)
+    piece = cut.pieces[0]
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
-    closed = np.zeros((0, 0))
     first, second = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
     shares = (float(weight(end * share)) for share in (0.05, 0.25, 0.5))
     scale = max((abs(w) for w in (first, *shares) if isfinite(w)), default=0.0)
     if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
-        return NearZero("excluded", 0.0, none, closed)
+        return NearZero("excluded")
     if not _cancels(cut, piece, end, scale):
-        return NearZero("plain", 0.0, none, closed)
+        return NearZero("plain")
     bends = end * abs(float(slope(end * _CLOSER)) - float(slope(end * _CLOSE)))
     if not bends <= _AGREED * scale:
-        return NearZero("plain", 0.0, none, closed)  # w has a limit, its slope has none: the formula from a tiny s on
+        return NearZero("plain")  # w has a limit, its slope has none: the formula from a tiny s on
     for k in _QUARTERS:
         bound = min(end, cut.marks[1] if cut.marks[1] < cut.end else end) * 0.25**k
         coefficients, error = _series(weight, bound)

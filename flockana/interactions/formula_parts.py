@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -55,10 +56,8 @@ class FormulaParts:
         """Return bounds of the slopes of force and adjacency on parts of the range."""
         from flockana.symbolic.slopes import slope_bounds
 
-        eps, squares = float(self.par[2]), self.par[0]
-        marks = self.cut.marks[1:-1]
-        places = [float(np.sqrt(mark * (2.0 + eps * mark))) if eps else mark for mark in marks]
-        return slope_bounds(self.cut, eps, float(np.sqrt(squares)), places, parts)
+        eps = float(self.par[2])
+        return slope_bounds(self.cut, eps, float(np.sqrt(self.par[0])), _places(self.cut, eps), parts)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Return whether another formula's law is this one in other units, compared on a grid."""
@@ -90,10 +89,9 @@ def formula_parts(
     view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
-    jumps = view.jumps()
     panels = _panels(cut, view, d) if forces else near.panels
     texts, constants = _texts(cut, near, forces=forces)
-    far = _far(cut, view, panels, forces=forces)
+    far = _far(view, panels, forces=forces)
     head = np.array([r * r, far, eps, near.bound, *near.coefficients])
     marks = np.array([view.of_mark(mark) for mark in cut.marks[1:-1]])
     par = np.concatenate([head, marks, [float(cut.value(each)) for each in constants]])
@@ -101,7 +99,7 @@ def formula_parts(
         raise ArgumentError(f"{main!r} has a part that is not finite with these parameters: expected finite numbers")
     for array in (par, panels, view.looks):
         array.setflags(write=False)
-    surfaces = tuple(sorted({*jumps, r}))
+    surfaces = tuple(sorted({*view.jumps(), r}))
     return FormulaParts(
         cut, texts, par, panels, surfaces, view.strength, near.kind != "excluded", view.holds(d), view.looks
     )
@@ -112,6 +110,11 @@ def _norm(x: float, eps: float) -> float:
     return x * x / (np.sqrt(1.0 + eps * x * x) + 1.0) if eps > 0.0 else x
 
 
+def _places(cut: PiecewiseFormula, eps: float) -> list[float]:
+    """Return the Euclidean distances of the cuts between the ends."""
+    return [float(np.sqrt(mark * (2.0 + eps * mark))) if eps else mark for mark in cut.marks[1:-1]]
+
+
 class _PreciseForce:
     """Force of a formula as a function of the Euclidean distance, in high precision."""
 
@@ -120,8 +123,8 @@ class _PreciseForce:
         self._forces = [cut.function(piece.weight) for piece in cut.pieces]
         self._weights = [cut.function(piece.adjacency) for piece in cut.pieces]
         energies = [piece.potential for piece in cut.pieces]
-        self._energies = [None if each is None else cut.function(each) for each in energies]
-        self.strength, self.looks = 0.0, np.zeros((2, 0))
+        self._energies = [(lambda y: 0.0) if each is None else cut.function(each) for each in energies]
+        self.strength, self.looks, self.places = 0.0, np.zeros((2, 0)), _places(cut, eps)
 
     def y(self, s: float) -> float:
         """Return s² or z at a distance."""
@@ -131,27 +134,21 @@ class _PreciseForce:
         """Return s² or z at a cut that is given in s or z."""
         return mark if self.eps else mark * mark
 
-    def distance(self, mark: float) -> float:
-        """Return the Euclidean distance of a cut."""
-        return float(np.sqrt(mark * (2.0 + self.eps * mark))) if self.eps else mark
-
     def piece(self, s: float) -> int:
         """Return the index of the piece that holds a distance."""
-        marks = self.cut.marks[1:-1]
-        return int(np.searchsorted([self.distance(mark) for mark in marks], s, side="right"))
+        return bisect_right(self.places, s)
 
     def force(self, s: float, piece: int | None = None) -> float:
         """Return the force at a distance, NaN where undefined."""
         return float(self._forces[self.piece(s) if piece is None else piece](self.y(s)) * s)
 
-    def weight(self, s: float, piece: int | None = None) -> float:
+    def weight(self, s: float) -> float:
         """Return the adjacency at a distance."""
-        return float(self._weights[self.piece(s) if piece is None else piece](self.y(s)))
+        return float(self._weights[self.piece(s)](self.y(s)))
 
     def energy(self, s: float) -> float:
         """Return the potential at a distance, 0 where the force was given."""
-        energy = self._energies[self.piece(s)]
-        return 0.0 if energy is None else float(energy(self.y(s)))
+        return float(self._energies[self.piece(s)](self.y(s)))
 
     def look(self, d: float, *, unbounded: bool) -> None:
         """Return samples of the force along the range; raise where it is not finite."""
@@ -171,12 +168,8 @@ class _PreciseForce:
 
     def jumps(self) -> list[float]:
         """Return the cuts at which the force jumps by more than rounding of the parameters."""
-        places = [self.distance(mark) for mark in self.cut.marks[1:-1]]
-        return [s for k, s in enumerate(places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= self._small]
-
-    @property
-    def _small(self) -> float:
-        return _SMALL * self.strength
+        small = _SMALL * self.strength
+        return [s for k, s in enumerate(self.places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= small]
 
 
 def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
@@ -191,8 +184,7 @@ def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
     whole: list[float] = [0.0]
     for left, right in pairwise(edges):
         whole += _resolved(values, left, right, view.strength, 0)
-    panels = integral_panels(values, np.array(whole), anchor=inner)
-    return panels
+    return integral_panels(values, np.array(whole), anchor=inner)
 
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
@@ -209,13 +201,10 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
     return [edge for half in halves for edge in _resolved(values, *half, scale, depth + 1)]
 
 
-def _far(cut: PiecewiseFormula, view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
+def _far(view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
     """Return ψ at the range."""
-    if forces:
-        return float(panels[-1, 2:].sum())  # of powers of 1
-    potential = cut.pieces[-1].potential
-    far = float(cut.function(potential)(view.y(view.r)))
-    return far if isfinite(far) else inf
+    far = float(panels[-1, 2:].sum()) if forces else view.energy(view.r)  # of powers of 1
+    return far if forces or isfinite(far) else inf
 
 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from math import sqrt
 from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray, ensure_finite_scalar, normalise, per_agent
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.units import Powers
 
@@ -61,17 +61,8 @@ class Gains:
     }
 
     def __post_init__(self) -> None:
-        for name in (field.name for field in fields(self)):
-            value = getattr(self, name)
-            several = name in PER_AGENT and isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1
-            if several and len(value) == 0:
-                raise ArgumentError(f"{name} is empty: expected one gain, or one per agent")
-            gain = (
-                tuple(ensure_gain(f"{name}[{i}]", x) for i, x in enumerate(value))
-                if several
-                else ensure_gain(name, value)
-            )
-            object.__setattr__(self, name, gain)
+        normalise(self, ensure_gain, *(field.name for field in fields(self) if field.name not in PER_AGENT))
+        normalise(self, partial(per_agent, ensure=ensure_gain), *PER_AGENT)
 
     @cached_property
     def per_agent(self) -> bool:

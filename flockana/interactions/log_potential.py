@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp, expm1, inf, sqrt
+from math import exp, expm1, inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -119,8 +119,3 @@ def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: A
     stiff = potential.weight(s2)[:, None, None] * np.eye(m) + bend
     drag = np.broadcast_to(damping * np.eye(m), stiff.shape)
     return -pair_matrix(i, j, stiff, n), -pair_matrix(i, j, drag, n)
-
-
-def length_scale_time(potential: LogPotential) -> float:
-    """Return d/√k, the time in which the potential's force moves an agent by about d."""
-    return potential.d / sqrt(potential.strength)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.jit import thawed
@@ -30,6 +30,12 @@ def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
     values = np.asarray(x, dtype=np.float64)
     out = compiled(values.ravel(), *parameters)
     return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
+
+
+def one_by_one(function: Callable[..., float], par: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Return a scalar function with its parameters as a function of arrays, interpreted."""
+    numbers = par.tolist()
+    return lambda z: np.array([function(each, numbers) for each in z.tolist()])
 
 
 class Tabulated(ABC):
@@ -110,11 +116,12 @@ class PairInteraction(ABC):
     @property
     def facts(self) -> PairFacts:
         """Facts known over all distances: those in `proofs` are met, those in `faults` unmet."""
-        open_ = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
-        met = {name: Fact("met", text) for name, text in self.proofs.items()}
-        smooth = Fact("unmet", "; ".join(self.faults)) if self.faults else (open_ | met)["smooth"]
+        known = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
+        known |= {name: Fact("met", text) for name, text in self.proofs.items()}
+        if self.faults:
+            known["smooth"] = Fact("unmet", "; ".join(self.faults))
         unknown = (-inf, inf)
-        return PairFacts(smooth, (open_ | met)["weight"], (open_ | met)["inside"], unknown, unknown, unknown)
+        return PairFacts(known["smooth"], known["weight"], known["inside"], unknown, unknown, unknown)
 
     @property
     def coincidence(self) -> bool:
@@ -248,8 +255,7 @@ class PairInteraction(ABC):
                     )
                 return np.zeros((i.size, q.shape[1], q.shape[1]))
             slope = slope_of(np.einsum("kc,kc->k", delta, delta), self.par)
-            blocks: FloatArray = 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
-            return blocks
+            return 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
 
         by_position = -stiffness * self.hessian(q, pairs)
         if damping:
@@ -260,8 +266,7 @@ class PairInteraction(ABC):
     def _stiffness_blocks(_i: Any, _j: Any, delta: FloatArray, terms: FloatArray) -> FloatArray:
         # gradient of w(s²) Δ in Δ: w I + 2 w' ΔΔᵀ
         w, slope = terms[0][:, None, None], terms[2][:, None, None]
-        blocks: FloatArray = w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
-        return blocks
+        return w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
         """Return `pair_matrix` over pairs."""
@@ -309,21 +314,19 @@ def _ensure_apart(i: Any, j: Any, delta: FloatArray) -> None:
 _MOST_COUNTED = 1e140  # units of ℓ²: φ squares them
 
 
-def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
-    """Raise where d and r are so extreme that rounding confuses their σ-norms with 0, ∞ or each other."""
-    near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
-    area = unit * unit
+def ensure_lengths(law: Any, printed: str) -> None:
+    """Check d, r, eps, unit and h of a law of the σ-norm, and that rounding confuses no σ-norm with 0, ∞ or another."""
+    normalise(law, ensure_positive, "d", "r", "eps", "unit")
+    normalise(law, ensure_finite_scalar, "h")
+    d, r, eps, unit = law.d, law.r, law.eps, law.unit
+    if not 0.0 < law.h < 1.0:
+        raise ArgumentError(f"h = {law.h:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
+    if r <= d:
+        raise ArgumentError(f"r = {r:g} and d = {d:g}: expected r > d; the paper takes {printed}")
+    near, far, area = sigma_norm(d * d, eps), sigma_norm(r * r, eps), unit * unit
     counted = 0.0 < area < inf and near / area > 0.0 and far / area < _MOST_COUNTED
     if not (0.0 < near < far < inf and eps * r * r < inf and counted):
         raise ArgumentError(
             f"d = {d:g}, r = {r:g}, eps = {eps:g}, unit = {unit:g}: their σ-norms are {near:g} and {far:g}; "
             "expected 0 < d_sigma < r_sigma, all finite: choose another length unit (flockana.rescale)"
         )
-
-
-def ensure_bump_start(h: Any) -> float:
-    """Return h as a float strictly between 0 and 1."""
-    start = ensure_finite_scalar("h", h)
-    if not 0.0 < start < 1.0:
-        raise ArgumentError(f"h = {start:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
-    return start

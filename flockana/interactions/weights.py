@@ -76,9 +76,8 @@ class RationalWeight(Weight):
     units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
 
     def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "strength")
+        normalise(self, ensure_positive, "strength", "length")
         normalise(self, ensure_nonnegative, "decay")
-        normalise(self, ensure_positive, "length")
 
     @cached_property
     def par(self) -> FloatArray:

@@ -4,11 +4,9 @@ from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
-from flockana.base.checks import ensure_nonnegative, normalise
+from flockana.base.checks import ensure_nonnegative, ensure_seed, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-
-_MOST = 2**63  # seeds are whole numbers below it
 
 
 @dataclass(frozen=True)
@@ -45,8 +43,7 @@ class ZoneNoise:
         normalise(self, ensure_nonnegative, "weights", "velocities")
         if self.weights > 1.0:
             raise ArgumentError(f"weights = {self.weights:g}: expected at most 1, so that no weight becomes negative")
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
-            raise ArgumentError(f"seed = {self.seed!r}: expected a whole number, 0 <= seed < 2**63")
+        object.__setattr__(self, "seed", ensure_seed(self.seed, 63))
 
     @property
     def quiet(self) -> bool:

@@ -1,27 +1,18 @@
 """Radii of the zones of repulsion, conflict, attraction and surveillance, and weights of the behaviours."""
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
+from flockana.base.checks import FloatArray, PerAgent, ensure_nonnegative, normalise, per_agent
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 
-PerAgent = float | tuple[float, ...]
 Table = float | tuple[tuple[float, ...], ...]
 _PAIRS = ("separation", "cohesion", "alignment")
-
-
-def _each(name: str, value: Any, ensure: Any) -> PerAgent:
-    """Return one validated number, or one for each agent."""
-    if np.ndim(value) == 0:
-        return float(ensure(name, value))
-    if np.ndim(value) != 1:
-        raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or one for each agent")
-    return tuple(ensure(f"{name}[{i}]", one) for i, one in enumerate(value))
 
 
 def _spread(name: str, value: PerAgent, n: int) -> FloatArray:
@@ -74,8 +65,7 @@ class ZoneRadii:
     def __post_init__(self) -> None:
         watched = self.s is not None
         object.__setattr__(self, "c", self.r if self.c is None else self.c)
-        for name in ("r", "a", "c", *("s" if watched else "")):
-            object.__setattr__(self, name, _each(name, getattr(self, name), ensure_positive))
+        normalise(self, per_agent, "r", "a", "c", *("s" if watched else ""))
         sizes = {name: len(v) for name in "rcas" if isinstance(v := getattr(self, name), tuple)}
         if len(set(sizes.values())) > 1:
             raise ArgumentError(f"numbers of radii {sizes}: expected one number each, or one for each agent")
@@ -142,11 +132,11 @@ class ZoneWeights:
     }
 
     def __post_init__(self) -> None:
-        normalise(self, _table, *_PAIRS, "alien")
+        normalise(self, per_pair, *_PAIRS)
+        normalise(self, partial(per_pair, square=False), "alien")
         for name in ("cohesion", "alignment"):
             _check_sums(name, getattr(self, name))
-        for name in ("speed", "obstacle"):
-            object.__setattr__(self, name, _each(name, getattr(self, name), ensure_nonnegative))
+        normalise(self, partial(per_agent, ensure=ensure_nonnegative), "speed", "obstacle")
         normalise(self, ensure_nonnegative, "cohesion_gain", "alignment_gain")
 
     def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
@@ -157,12 +147,9 @@ class ZoneWeights:
         aliens : int
             Number of aliens, K.
         """
-        values = {}
-        for field in fields(self)[:6]:
-            name, value = field.name, getattr(self, field.name)
-            if name in ("speed", "obstacle"):
-                values[name] = _spread(name, value, n)
-                continue
+        values = {name: _spread(name, getattr(self, name), n) for name in ("speed", "obstacle")}
+        for name in (*_PAIRS, "alien"):
+            value: Any = getattr(self, name)
             shape: tuple[int, ...] = (n, aliens if name == "alien" else n)
             if isinstance(value, tuple) and np.shape(value) != shape:
                 raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or {shape}")
@@ -172,14 +159,14 @@ class ZoneWeights:
         return values
 
 
-def _table(name: str, value: Any) -> Table:
-    """Return one number >= 0, or a table of them."""
+def per_pair(name: str, value: Any, *, square: bool = True) -> Table:
+    """Return one number >= 0, or a table of them: the weight of j for i."""
     if np.ndim(value) == 0:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)
-    if table.ndim != 2 or (name in _PAIRS and len(set(table.shape)) > 1):
+    if table.ndim != 2 or (square and len(set(table.shape)) > 1):
         raise ArgumentError(
-            f"{name} has shape {table.shape}: expected one number, or {'(n, n)' if name in _PAIRS else '(n, K)'}"
+            f"{name} has shape {table.shape}: expected one number, or {'(n, n)' if square else '(n, K)'}"
         )
     return tuple(
         tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)

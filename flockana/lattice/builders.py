@@ -73,7 +73,7 @@ def line(n: int, d: float) -> FloatArray:
 
 
 def triangular(n: int, d: float) -> FloatArray:
-    """Return the first n points of a spiral on the triangular lattice, with Harborth's number of links.
+    """Return n agents of the triangular lattice, row by row.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import scaled_near_one
 from flockana.jit import thawed
@@ -62,8 +62,8 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     """
     q = ensure_points("q", q)
     links = ensure_links(links, len(q))
-    if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
-        raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
+    if limit is not None:
+        ensure_count("limit", limit)
     exact, x, planes = _Exact(q, links), _padded(_squarable(q)), 3 if q.shape[1] == 3 else 1
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b in _close_links(x, links, 0.0):

@@ -129,27 +129,16 @@ def kuratowski(n: int, links: Any) -> Kuratowski | None:
 
 
 def _name(links: LinkArray) -> Kuratowski:
+    import networkx
+
     agents, degree = np.unique(links, return_counts=True)
     corners = [int(v) for v in agents[degree > 2]]
     if len(corners) == 5:
         return Kuratowski("K5", tuple(corners), links)
-    ends = _ends_of_paths(links, corners[0], set(corners))
+    graph = networkx.Graph(links.tolist())
+    paths = networkx.node_connected_component(graph.subgraph({*graph} - {*corners[1:]}), corners[0])
+    ends = networkx.node_boundary(graph, paths)  # corners that paths from the first one reach
     return Kuratowski("K3,3", (*(v for v in corners if v not in ends), *sorted(ends)), links)
-
-
-def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]:
-    """Return the corners that paths from a corner reach through agents of degree 2."""
-    near: dict[int, list[int]] = {}
-    for i, j in links.tolist():
-        near.setdefault(i, []).append(j)
-        near.setdefault(j, []).append(i)
-    ends = set()
-    for step in near[corner]:
-        before, here = corner, step
-        while here not in corners:
-            before, here = here, next(v for v in near[here] if v != before)
-        ends.add(here)
-    return ends
 
 
 def _distinct(n: int, links: Any) -> LinkArray:
@@ -165,9 +154,7 @@ def _planar(n: int, links: LinkArray) -> bool:
         return False
     import networkx
 
-    graph = networkx.Graph()
-    graph.add_edges_from(links.tolist())
-    return networkx.check_planarity(graph)[0]
+    return networkx.check_planarity(networkx.Graph(links.tolist()))[0]
 
 
 def ensure_plane(m: int) -> None:

@@ -126,9 +126,8 @@ def rigid_motion_count(q: FloatArray) -> int:
 
 
 def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
-    sizes = np.zeros(matrix.shape[1])
     singular = np.linalg.svd(matrix.toarray(), compute_uv=False)
-    sizes[: len(singular)] = singular
+    sizes = np.pad(singular, (0, matrix.shape[1] - len(singular)))
     zero, more = (int(np.sum(sizes <= factor * tol * sizes[0])) for factor in (1.0, 10.0))
     return zero, more - zero
 

@@ -5,26 +5,25 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import ensure_kind
+from flockana.base.errors import ArgumentError, format_value
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
-from flockana.laws.gained import GainedLaw, ensure_part
-from flockana.laws.terms.obstacles import ensure_one_dimension
-from flockana.laws.terms.parts import parts
+from flockana.laws.gained import GainedLaw
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
 from flockana.laws.terms.term import Term
 
 
 def ensure_obstacles(given: Any) -> tuple[Obstacle, ...]:
     """Return obstacles as a tuple, or raise if something among them is none."""
-    expected = "a sequence such as (Sphere((5, 0), 1),)"
-    ensure_part("obstacles", given, Iterable, expected)
-    if getattr(given, "ndim", 1) == 0:  # numpy's numbers are iterable by their type alone
-        raise ArgumentError(f"obstacles = {given!r}: expected {expected}")
+    if not isinstance(given, Iterable) or getattr(given, "ndim", 1) == 0:  # numpy's numbers are iterable by type alone
+        raise ArgumentError(f"obstacles = {format_value(given)}: expected a sequence such as (Sphere((5, 0), 1),)")
     obstacles = tuple(given)
     for k, obstacle in enumerate(obstacles):
-        ensure_part(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")
+        ensure_kind(f"obstacles[{k}]", obstacle, Obstacle, "an obstacle such as Sphere((5, 0), 1)")
     return obstacles
 
 
@@ -71,7 +70,7 @@ class Algorithm3(GainedLaw):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         obstacles = ensure_obstacles(self.obstacles)
         object.__setattr__(self, "obstacles", obstacles)
         ensure_one_dimension(obstacles, self.target.dimension, "the target has")
@@ -84,5 +83,5 @@ class Algorithm3(GainedLaw):
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Terms with the energy c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ²(√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖² (E2)."""
-        own, unit = self.obstacle_field, self.alpha.bend_length
-        return parts(self.alpha, self.gains, field=own, target=self.target, unit=unit)
+        repulsion = ObstacleTerm(self.obstacle_field, self.gains.c1_beta, self.gains.c2_beta)
+        return self.pair_term, repulsion, Navigation(self.target, self.gains, self.alpha.bend_length)

@@ -12,15 +12,8 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_choice,
-    ensure_nonnegative,
-    ensure_points,
-    ensure_positive,
-    ensure_state,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import FloatArray, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -192,14 +185,13 @@ class ZoneFlocking(DiscreteLaw):
     def __post_init__(self) -> None:
         parts = (("radii", ZoneRadii), ("weights", ZoneWeights), ("world", ZoneWorld), ("noise", ZoneNoise))
         for name, kind in parts:
-            if not isinstance(getattr(self, name), kind):
-                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a {kind.__name__}")
-        normalise(self, ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
-        normalise(self, ensure_nonnegative, "growth")
+            checks.ensure_kind(name, getattr(self, name), kind, f"a {kind.__name__}")
+        normalise(self, checks.ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
+        normalise(self, checks.ensure_nonnegative, "growth")
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():
-            ensure_choice(name, getattr(self, name), names)
+            checks.ensure_choice(name, getattr(self, name), names)
         self._check_box()
 
     def _check_box(self) -> None:
@@ -268,7 +260,7 @@ class ZoneFlocking(DiscreteLaw):
         ArgumentError
             On bad arrays, or a law for other agents than these.
         """
-        q, p = ensure_state(q, p)
+        q, p = checks.ensure_state(q, p)
         self.check_dimension(q.shape[1])
         known = self.start(q, p) if memory is None else memory
         components = compiled.behaviours(*self._state(q, p, known), self._rules(*q.shape))
@@ -278,11 +270,9 @@ class ZoneFlocking(DiscreteLaw):
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
         parts, counts = fragments(q, a), cache(lambda: populations(q, r, c, a))
+        connected = (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0]
         series = {
-            "connectivity": (
-                "C = rank(L)/(n − 1), of agents within a",
-                (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0],
-            ),
+            "connectivity": ("C = rank(L)/(n − 1), of agents within a", connected),
             "giant_share": ("C*, share of nodes", parts[:, 1] / n),
         }
         for k, zone in enumerate(("repulsion", "conflict", "attraction")):
@@ -322,7 +312,7 @@ class ZoneFlocking(DiscreteLaw):
         >>> ZoneFlocking(zone_length="speed").altitudes([[0.0, 0.0], [2.0, 0.0], [0.0, 4.0]]).tolist()
         [1.5, 3.25, 5.0]
         """
-        speeds = np.linalg.norm(ensure_points("p", p), axis=1)
+        speeds = np.linalg.norm(checks.ensure_points("p", p), axis=1)
         r, c, a, _ = self.radii.arrays(len(speeds))
         by_speed: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
         lengths = {"conflict": c, "attraction": a, "speed": by_speed}
@@ -330,11 +320,8 @@ class ZoneFlocking(DiscreteLaw):
 
     def _state(self, q: FloatArray, p: FloatArray, memory: Mapping[str, Any]) -> tuple[compiled.Flock, int]:
         """Return copies of the state, and the number of the next step."""
-        whole: dict[str, Any] = {
-            "reach": self.radii.arrays(len(q))[2],
-            "alien": np.empty((0, q.shape[1])),
-            "step": 0,
-        } | dict(memory)
+        unknown = {"reach": self.radii.arrays(len(q))[2], "alien": np.empty((0, q.shape[1])), "step": 0}
+        whole: dict[str, Any] = unknown | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
         own = (np.array(whole[name], float) for name in names)
         return compiled.Flock(np.array(q), np.array(p), *own), int(whole["step"])

@@ -1,5 +1,6 @@
 """Laws composed of chosen terms: gradient, consensus, γ-feedback, β-agents, drag and speed control."""
 
+import inspect
 from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
@@ -7,15 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import (
-    ensure_count,
-    ensure_finite_scalar,
-    ensure_flag,
-    ensure_nonnegative,
-    ensure_positive,
-    ensure_state,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import normalise
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -25,27 +19,19 @@ from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
-from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.terms.obstacles import ensure_one_dimension
-from flockana.laws.terms.parts import parts
+from flockana.laws.terms.alignment import AlignmentTerm
+from flockana.laws.terms.along import AlongVelocity
+from flockana.laws.terms.consensus import Consensus
+from flockana.laws.terms.feedforward import TargetFeedforward
+from flockana.laws.terms.navigation import Navigation
+from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
+from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
-_OPTIONS = (
-    "gradient",
-    "net",
-    "pull",
-    "match",
-    "informed",
-    "agents",
-    "bounded",
-    "feedforward",
-    "repulsion",
-    "braking",
-    "beta",
-)
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -101,26 +87,22 @@ class Composition(GainedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"unit": (1, 0), "thrust": (0, -1), "brake": (-2, 1)}
 
     def __post_init__(self) -> None:
-        net: Any = Weight if isinstance(self.net, Weight) else PairInteraction
-        optional: Any = (("alpha", PairInteraction, PAIR), ("net", net, PAIR), ("target", Target, TARGET))
-        for name, kind, example in optional:
-            if getattr(self, name) is not None:
-                ensure_part(name, getattr(self, name), kind, example)
+        none = type(None)
+        checks.ensure_kind("alpha", self.alpha, (PairInteraction, none), PAIR)
+        checks.ensure_kind("net", self.net, (PairInteraction, Weight, none), PAIR)
+        checks.ensure_kind("target", self.target, (Target, none), TARGET)
         ensure_gains(self)
-        ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        checks.ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
-        for name, ensure in (
-            ("unit", ensure_positive),
-            ("thrust", ensure_finite_scalar),
-            ("brake", ensure_nonnegative),
-        ):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, ensure(name, getattr(self, name)))
+        if self.unit is not None:
+            normalise(self, checks.ensure_positive, "unit")
+        normalise(self, checks.ensure_finite_scalar, "thrust")
+        normalise(self, checks.ensure_nonnegative, "brake")
         if self.target is not None:
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        normalise(self, ensure_flag, "feedforward")
+        normalise(self, checks.ensure_flag, "feedforward")
         if self.feedforward and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "
@@ -160,18 +142,28 @@ class Composition(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Terms with the energy c1α V + c1β ΣΣ ψ_β + the γ-agent's and the kinetic energy, in the frame of `parts`."""
-        return parts(
-            self.alpha,
-            self.gains,
-            net=self.net,
-            field=self.obstacle_field,
-            target=self.target,
-            unit=self.unit,
-            feedforward=self.feedforward,
-            thrust=self.thrust,
-            brake=self.brake,
-        )
+        """Terms with the energy c1α V + c1β ΣΣ ψ_β + the γ-agent's and the kinetic energy."""
+        # The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
+        # nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given
+        # frame.
+        gains, net, tied = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
+        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=tied)
+        moving = pull is not None and pull.moving
+        terms: list[Term] = []
+        if self.alpha is not None:
+            terms.append(PairTerm(self.alpha, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
+        if net is not None:
+            own = AlignmentTerm(net, gains.c2_alpha) if isinstance(net, Weight) else Consensus(net, gains.c2_alpha)
+            terms.append(own)
+        if self.obstacle_field is not None:
+            terms.append(ObstacleTerm(self.obstacle_field, gains.c1_beta, gains.c2_beta))
+        if pull is not None:
+            terms.append(pull)
+        if pull is not None and self.feedforward:
+            terms.append(TargetFeedforward(pull.target, moving))
+        if self.thrust or self.brake:
+            terms.append(AlongVelocity(self.thrust, self.brake, moving))
+        return tuple(terms)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """Return the energy that never rises unless a term adds some: in the moving frame if nothing fixes the place.
@@ -181,7 +173,7 @@ class Composition(GainedLaw):
         q, p : array_like, shape (n, m)
             Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
         """
-        q, p = ensure_state(q, p)
+        q, p = checks.ensure_state(q, p)
         free = self.target is None and not self.obstacles and self.brake == 0.0
         return self.hamiltonian(0.0, q, moving_frame(p) if free else p)
 
@@ -267,12 +259,12 @@ def compose(
     ((1.1, 0.0, 1.1), -0.1)
     """
     for name in unknown:
-        raise UnknownNameError("part of a law", name, (*_PARTS, *_OPTIONS))
+        raise UnknownNameError("part of a law", name, {*inspect.signature(compose).parameters} - {"unknown"})
     if isinstance(consensus, Weight):
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
         net, consensus = consensus, 1.0
-    obstacles, feedforward = ensure_obstacles(obstacles), ensure_flag("feedforward", feedforward)
+    obstacles, feedforward = ensure_obstacles(obstacles), checks.ensure_flag("feedforward", feedforward)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)
     _ensure_parts(
@@ -320,12 +312,9 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
         return gain
     if agents is None:
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
-    n, known = ensure_count("agents", agents), []
-    for i in informed:
-        if isinstance(i, bool) or not isinstance(i, int | np.integer) or not 0 <= i < n:
-            raise ArgumentError(f"informed has {i!r}: expected whole numbers from 0 to {n - 1}, of {n} agents")
-        known.append(int(i))
-    common = ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    n = checks.ensure_count("agents", agents)
+    known = {checks.ensure_index("informed has", i, n) for i in informed}
+    common = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
     return tuple(common if i in known else 0.0 for i in range(n))
 
 
@@ -337,7 +326,7 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
         if pair is None:
             raise ArgumentError("bounded = True without a pair: give the length at which the pull saturates")
         return pair.bend_length
-    return ensure_positive("bounded", bounded)
+    return checks.ensure_positive("bounded", bounded)
 
 
 def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
@@ -346,5 +335,5 @@ def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float
     if speed is not None:
         if not isinstance(speed, tuple | list) or len(speed) != 2:
             raise ArgumentError(f"speed = {speed!r}: expected (α, β), as in (1.0, 0.25) for a speed of 2")
-        thrust, brake = (ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
-    return thrust - (0.0 if drag is None else ensure_nonnegative("drag", drag)), brake
+        thrust, brake = (checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
+    return thrust - (0.0 if drag is None else checks.ensure_nonnegative("drag", drag)), brake

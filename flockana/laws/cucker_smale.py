@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, normalise
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_flag, ensure_kind, normalise
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.alignment import AlignmentTerm
 from flockana.laws.terms.term import Term
+from flockana.measures.metrics import spreads
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,7 @@ class CuckerSmale(SumOfTerms):
     moving = True
 
     def __post_init__(self) -> None:
-        if not isinstance(self.weight, RationalWeight):
-            raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
+        ensure_kind("weight", self.weight, RationalWeight, "RationalWeight(strength, decay, length)")
         normalise(self, ensure_flag, "mean")
 
     @property
@@ -60,12 +59,6 @@ class CuckerSmale(SumOfTerms):
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         return {
-            "position_spread": ("√Σ‖q_i − q̄‖² (length)", spread(q)),
-            "velocity_spread": ("√Σ‖p_i − p̄‖² (length/time)", spread(p)),
+            "position_spread": ("√Σ‖q_i − q̄‖² (length)", np.sqrt(2.0 * spreads(q))),
+            "velocity_spread": ("√Σ‖p_i − p̄‖² (length/time)", np.sqrt(2.0 * spreads(p))),
         }
-
-
-def spread(x: FloatArray) -> FloatArray:
-    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,)."""
-    root: FloatArray = np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
-    return root

@@ -7,8 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_state, normalise
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_kind, ensure_state, normalise
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
@@ -19,7 +18,7 @@ from flockana.laws.discrete import IndexArray
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
-from flockana.laws.terms.pairs import PairTerm, ensure_apart
+from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 from flockana.measures.nets import links
 
@@ -61,26 +60,16 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     references = ("li-dead-zone",)
     moving = True
+    slide = ": the force of one zone drives them into the other and back; give the interaction a ramp to go on"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.interaction, DeadZoneInteraction):
-            raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
+        ensure_kind("interaction", self.interaction, DeadZoneInteraction, "DeadZoneInteraction(...)")
         normalise(self, ensure_gain, "k2")
 
     @property
     def scales(self) -> Scales:
         """d₁, and the time in which the force of a contact moves an agent by it."""
         return contact_scales(self.interaction)
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if two agents coincide: their force has no direction and their potential is infinite."""
-        ensure_no_contact(q)
-        super().check_start(q, p)
-
-    def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:  # noqa: D102
-        t, q, p = self._checked(t, q, p)
-        ensure_no_contact(q)
-        return self.flow(t, q, p)[0]
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -93,12 +82,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         n = len(q)
         apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
-
-    def stiffness(self, q: Any, t: float = 0.0) -> Any:
-        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse."""
-        q = ensure_points("q", q)
-        ensure_no_contact(q)
-        return super().stiffness(q, t)
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
         def literal() -> FloatArray:
@@ -119,10 +102,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             The steps to keep, numbered from 1, rising; by default all of them.
         """
         kept = np.arange(1, steps + 1) if wanted is None else wanted
-        stepped: tuple[FloatArray, FloatArray, FloatArray] = semi_implicit_steps(
-            q, p, self.interaction.par, self.k2, dt, kept
-        )
-        return stepped
+        return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, kept)
 
     @property
     def located(self) -> bool:
@@ -131,8 +111,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range."""
-        pieces: Pieces = zones(q, self.interaction.par)
-        return pieces
+        return zones(q, self.interaction.par)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros_like(q)
@@ -148,33 +127,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             after = np.where(after == ATTRACTION, np.where(step > 0, OUT, DEAD), after)
         return after.astype(np.int8)
 
-    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
-        rows, columns = np.triu_indices(len(q), 1)
-        for k in np.flatnonzero(before != after):
-            i, j = int(rows[k]), int(columns[k])
-            x, v = q[j] - q[i], p[j] - p[i]
-            rho = float(np.linalg.norm(x))
-            speed = float(v @ x) / rho
-            bend = (float(v @ v) - speed**2) / rho
-            held = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
-            held[i] += 0.5 * speed / rho * x
-            held[j] -= 0.5 * speed / rho * x
-            old, new = (self.piece_flow(side, t, q, held)[0] for side in (before, after))
-            out = 1.0 if after[k] > before[k] else -1.0
-            leaving, back = (out * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
-            if leaving > 0.0 > back and speed**2 <= 2.0 * SLIDES * self.interaction.d1 * min(leaving, -back):
-                return (
-                    f"agents {i} and {j} slide at distance {rho:.6g}: the force of one zone drives them into the other "
-                    "and back; give the interaction a ramp to go on"
-                )
-        return None
+    def held_speed(self, push: float) -> float:  # noqa: D102
+        return float(np.sqrt(2.0 * SLIDES * self.interaction.d1 * push))
 
 
 def contact_scales(interaction: DeadZoneInteraction) -> Scales:
     """Return d₁, and the time in which the force of a contact moves an agent by d₁."""
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
-
-
-def ensure_no_contact(q: FloatArray, force: str = "the dead-zone force") -> None:
-    """Raise if two agents coincide, as their force has no direction; the message names the force."""
-    ensure_apart(q, f"{force} is infinite there and has no direction")

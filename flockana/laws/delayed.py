@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_series
+from flockana.base.checks import FloatArray, ensure_choice, ensure_numbers, ensure_series
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, as_numbers, ensure_hears, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
 
 LATE = ("all", "pairs", "neighbours")
 _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for rounding is as long
@@ -56,13 +56,12 @@ class Delayed(Wrapper):
     units: ClassVar[Mapping[str, Powers]] = {"delay": (0, 1), "history_t": (0, 1), "history_q": (1, 0)}
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
+        super().__post_init__()
         ensure_choice("late", self.late, LATE)
-        lag = as_numbers(self.delay)
+        wanted = "a number >= 0, or one for each pair, (n, n)"
+        lag = ensure_numbers("delay", self.delay, wanted)
         if lag.ndim not in (0, 2) or not lag.size or not (np.isfinite(lag) & (lag >= 0.0)).all():
-            raise ArgumentError(
-                f"delay = {format_value(self.delay)}: expected a number >= 0, or one for each pair, (n, n)"
-            )
+            raise ArgumentError(f"delay = {format_value(self.delay)}: expected {wanted}")
         if lag.ndim == 2 and self.late != "neighbours":
             raise ArgumentError('delay is one for each pair: expected late="neighbours"')
         if self.late != "all":
@@ -74,11 +73,10 @@ class Delayed(Wrapper):
     def _check_history(self) -> None:
         """Raise unless the history is valid and covers the delay; store it as tuples."""
         t = ensure_series("history_t", self.history_t)
-        q = as_numbers(self.history_q)
+        wanted = f"finite positions ({len(t)}, n, m), one row for each time"
+        q = ensure_numbers("history_q", self.history_q, wanted)
         if q.ndim != 3 or len(q) != len(t) or not np.isfinite(q).all():
-            raise ArgumentError(
-                f"history_q has shape {q.shape}: expected finite positions ({len(t)}, n, m), one row for each time"
-            )
+            raise ArgumentError(f"history_q has shape {q.shape}: expected {wanted}")
         if not (np.diff(t) > 0.0).all() or t[-1] >= 0.0:
             raise ArgumentError(f"history_t = {format_value(self.history_t)}: expected rising times below 0, the start")
         object.__setattr__(self, "history_t", tuple(t.tolist()))
@@ -118,15 +116,13 @@ class Delayed(Wrapper):
         super().check_dimension(m)
         if self.history_q is not None and np.shape(self.history_q)[2] != m:
             raise ArgumentError(
-                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected the same"
+                f"history_q has shape {np.shape(self.history_q)}: expected {m} components, as agents have"
             )
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)
         if self.history_q is not None and np.shape(self.history_q)[1] != n:
-            raise ArgumentError(
-                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected equal numbers"
-            )
+            raise ArgumentError(f"history_q has shape {np.shape(self.history_q)}: expected positions of {n} agents")
         if np.ndim(self.delay) == 2 and np.shape(self.delay) != (n, n):
             raise ArgumentError(f"delay has shape {np.shape(self.delay)}: expected ({n}, {n}), a delay for each pair")
 

@@ -13,9 +13,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, normalise, per_agent
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.directed import directed_forces, seen_edges
@@ -76,38 +75,24 @@ class DirectedNet(WrappingLaw):
     units: ClassVar[Mapping[str, Powers]] = {"ranges": (1, 0), "slow": (1, -1)}
 
     references = ("olfati-saber-2006",)
+    lattice = None  # links are not mutual
 
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2, Algorithm3):
             raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...), Algorithm2(...) or Algorithm3(...)")
         paper_pair(self.law)
-        given = self.ranges
-        if given is not None:
-            each = [ensure_positive(f"ranges[{i}]", x) for i, x in enumerate(np.ravel(given).tolist())]
-            if np.ndim(given) > 1:
-                raise ArgumentError(f"ranges has shape {np.shape(given)}: expected one range, or one per agent")
-            if not each:
-                raise ArgumentError("ranges is empty: expected one range, or one per agent")
-            object.__setattr__(self, "ranges", each[0] if np.ndim(given) == 0 else tuple(each))
-        object.__setattr__(self, "view", ensure_finite_scalar("view", self.view))
+        if self.ranges is not None:
+            normalise(self, per_agent, "ranges")
+        normalise(self, ensure_finite_scalar, "view")
         if not 0.0 < self.view <= _ALL_ROUND * (1.0 + 1e-12):
             raise ArgumentError(f"view = {self.view:g}: expected an angle in radians, 0 < view <= 2π")
         if self.slow is not None:
-            object.__setattr__(self, "slow", ensure_positive("slow", self.slow))
+            normalise(self, ensure_positive, "slow")
 
     @property
     def alpha(self) -> AlphaInteraction:
         """The pair law."""
         return paper_pair(self.law)
-
-    @property
-    def scales(self) -> Scales:  # noqa: D102
-        return self.law.scales
-
-    @property
-    def lattice(self) -> None:
-        """None, as links are not mutual."""
-        return
 
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
@@ -128,7 +113,7 @@ class DirectedNet(WrappingLaw):
 
     @cached_property
     def _slow2(self) -> float:
-        return float((_SLOW * self.scales.speed if self.slow is None else self.slow) ** 2)
+        return float((_SLOW * self.law.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return the input, and NaN as no energy is known."""

@@ -1,10 +1,8 @@
 """Laws that are maps from step to step."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,9 +13,6 @@ from flockana.base.overrides import ensure_consistent
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.laws.law import Arrays, Law, LawOfMotion
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 IndexArray = npt.NDArray[np.int64]
 States = tuple[FloatArray, FloatArray, FloatArray, Arrays]  # next q, next p, applied u, next memory
@@ -55,7 +50,7 @@ class DiscreteLaw(LawOfMotion):
         own = vars(self).get("law")
         return own if isinstance(own, Law) else None
 
-    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> csr_array | None:
+    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
         """Return the derivative of the next headings by the headings, shape (n, n); None unless headings are mapped.
 
         Parameters

@@ -6,31 +6,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, normalise
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_numbers, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import scaled_fields
 from flockana.kernels import force as kernel
 from flockana.kernels.listed import no_energy
 from flockana.laws.law import Law
-from flockana.laws.terms.term import Compiled, TermKernel
-from flockana.laws.wrapped import (
-    Step,
-    View,
-    Wrapper,
-    as_numbers,
-    ensure_seed,
-    ensure_wrappable,
-    input_of,
-    normal_numbers,
-)
+from flockana.laws.terms.term import Compiled, Derivatives, TermKernel
+from flockana.laws.wrapped import Step, View, Wrapper, input_of, normal_numbers
 from flockana.measures.frame import moving_frame
-
-if TYPE_CHECKING:
-    from scipy.sparse import sparray
 
 _NOISE = 0  # channel of random numbers
 
@@ -97,7 +85,7 @@ class Disturbed(Wrapper):
     }
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
+        super().__post_init__()
         for name, least in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
             if not callable(getattr(self, name)) or name != "force":
                 object.__setattr__(self, name, _pushes(name, getattr(self, name), least))
@@ -109,7 +97,6 @@ class Disturbed(Wrapper):
             raise ArgumentError(f"times = {format_value(self.times)}: expected rising times, one for each row of table")
         normalise(self, ensure_nonnegative, "frequency", "intensity")
         normalise(self, ensure_finite_scalar, "phase")
-        object.__setattr__(self, "seed", ensure_seed(self.seed))
 
     @property
     def stepped(self) -> bool:  # type: ignore[override]
@@ -118,11 +105,8 @@ class Disturbed(Wrapper):
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
         """Yield the name and value of each push at one time, of shape (m,) or (n, m)."""
-        given = {
-            "force": self._called(0.0),
-            "swing": self.swing,
-            "table": None if self.table is None else self.table[0],
-        }
+        first = None if self.table is None else self.table[0]
+        given = {"force": self._called(0.0), "swing": self.swing, "table": first}
         yield from ((name, push) for name, push in given.items() if push is not None)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -180,15 +164,13 @@ class Disturbed(Wrapper):
     def kick(self, step: Step, shape: tuple[int, ...]) -> FloatArray | None:  # noqa: D102
         if not self.intensity:
             return None
-        kick: FloatArray = self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
-        return kick
+        return self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
 
     def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
         """Return `kick` of `count` steps of length h from step `first` on, stacked."""
         if not self.intensity:
             return np.zeros((count, *shape))
-        kicks: FloatArray = self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
-        return kicks
+        return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         if self.stepped:
@@ -217,7 +199,7 @@ class Disturbed(Wrapper):
         force, swing = np.broadcast_arrays(force, swing)
         return force, np.sin(self.phase) * swing, np.cos(self.phase) * swing
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:  # noqa: D102
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         return self.law.derivatives(t, q, p)
 
 
@@ -225,9 +207,9 @@ def _pushes(name: str, value: Any, least: int) -> Any:
     """Return finite numbers with `least` axes or one more as nested tuples; None stays None."""
     if value is None:
         return None
-    array = as_numbers(value)
+    shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"
+    array = ensure_numbers(name, value, f"finite components, {shape}")
     if array.ndim not in (least, least + 1) or not array.size or not np.isfinite(array).all():
-        shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"
         raise ArgumentError(f"{name} = {format_value(value)}: expected finite components, {shape}")
     return _as_tuples(array)
 

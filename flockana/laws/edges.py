@@ -5,11 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
-from flockana.base.errors import ArgumentError
-
-PerAgent = float | tuple[float, ...]
-PerPair = float | tuple[tuple[float, ...], ...]
+from flockana.base.checks import FloatArray, PerAgent
+from flockana.interactions.zones import Table
 
 
 class EdgeData(NamedTuple):
@@ -22,32 +19,13 @@ class EdgeData(NamedTuple):
     align: FloatArray
 
 
-def per_agent(name: str, value: Any) -> PerAgent:
-    """Return one validated number > 0, or one for each agent."""
-    if np.ndim(value) == 0:
-        return ensure_positive(name, value)
-    return tuple(ensure_positive(f"{name}[{k}]", one) for k, one in enumerate(value))
-
-
-def per_pair(name: str, value: Any) -> PerPair:
-    """Return one validated number >= 0, or a square table of them."""
-    if np.ndim(value) == 0:
-        return ensure_nonnegative(name, value)
-    table = np.asarray(value, dtype=object)
-    if table.ndim != 2 or table.shape[0] != table.shape[1]:
-        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): the weight of j for i")
-    return tuple(
-        tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
-    )
-
-
 def weighed_edges(law: Any, head: npt.NDArray[np.int64], tail: npt.NDArray[np.int64]) -> EdgeData:
     """Return the weights and spacings of edges from the parameters of a `MinimalFlocking`."""
 
     def of_agent(value: PerAgent) -> Any:
         return value if isinstance(value, float) else np.array(value)[head]
 
-    def of_pair(value: PerPair) -> FloatArray:
+    def of_pair(value: Table) -> FloatArray:
         return np.full(head.size, value) if isinstance(value, float) else np.array(value)[head, tail]
 
     if law.spacing is not None:

@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError, format_value
+from flockana.base.checks import ensure_kind
 from flockana.base.scales import Scales
 from flockana.base.units import scaled_fields
 from flockana.environment.target import Target
@@ -14,26 +14,18 @@ from flockana.interactions import Gains, PairInteraction
 from flockana.interactions.gains import gains_of
 from flockana.interactions.weights import Weight
 from flockana.laws.sum_of_terms import SumOfTerms
+from flockana.laws.terms.pairs import PairTerm
 
-
-def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
-    """Raise unless a parameter is of its kind."""
-    if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
-
-
-PAIR, GAINS, TARGET = (
-    "AlphaInteraction(...), or another pair interaction",
-    "Gains(...)",
-    "a γ-agent such as StaticTarget((0.0, 0.0))",
-)
+PAIR = "AlphaInteraction(...), or another pair interaction"
+GAINS = "Gains(...)"
+TARGET = "a γ-agent such as StaticTarget((0.0, 0.0))"
 
 
 def ensure_gains(law: Any) -> None:
     """Check the gains of a law; a dictionary of gains becomes `Gains`."""
     if isinstance(law.gains, Mapping):
         object.__setattr__(law, "gains", gains_of(law.gains))
-    ensure_part("gains", law.gains, Gains, GAINS)
+    ensure_kind("gains", law.gains, Gains, GAINS)
 
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
@@ -54,14 +46,19 @@ class GainedLaw(SumOfTerms):
     gains: Gains
 
     def __post_init__(self) -> None:
-        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
+        ensure_kind("alpha", self.alpha, PairInteraction, PAIR)
         ensure_gains(self)
         if "target" in vars(self):
-            ensure_part("target", self.target, Target, TARGET)
+            ensure_kind("target", self.target, Target, TARGET)
 
     @property
     def scales(self) -> Scales:  # noqa: D102
         return alpha_scales(self.alpha, self.gains)
+
+    @property
+    def pair_term(self) -> PairTerm:
+        """Gradient and velocity consensus among agents."""
+        return PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha)
 
     def in_units(self, length: float, time: float) -> Self:
         """Return the law in other units (`flockana.rescale`)."""

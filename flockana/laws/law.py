@@ -294,5 +294,4 @@ class Law(LawOfMotion):
             ensure_fits("the Jacobian", (2 * q.size, 2 * q.size), "ask for sparse=True")
         by_position, by_velocity = self.derivatives(t, q, p)
         whole: Any = csr_array(block_array([[None, eye_array(q.size)], [by_position, by_velocity]], format="csr"))
-        matrix: FloatArray | csr_array = whole if sparse else whole.toarray()
-        return matrix
+        return whole if sparse else whole.toarray()

@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, normalise
+from flockana.base.checks import FloatArray, ensure_index, ensure_kind, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import ensure_gain
-from flockana.laws.dead_zone import contact_scales, ensure_no_contact
+from flockana.laws.dead_zone import contact_scales
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.leaders import Leaders, known_path
@@ -82,8 +82,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     references = ("li-dead-zone",)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.interaction, DeadZoneInteraction):
-            raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
+        ensure_kind("interaction", self.interaction, DeadZoneInteraction, "DeadZoneInteraction(...)")
         if self.interaction.ramp == 0.0:
             raise ArgumentError("interaction.ramp = 0: expected a ramp such as 0.25; only DeadZoneFlocking takes jumps")
         normalise(self, ensure_gain, "k2", "c1", "c2")
@@ -100,35 +99,23 @@ class LedDeadZoneFlocking(SumOfTerms):
         given = getattr(self, name)
         if isinstance(given, str | bytes) or not isinstance(given, Iterable):
             raise ArgumentError(f"{name} = {given!r}: expected a sequence of whole numbers, such as (0, 1)")
-        values = tuple(given)
-        for value in values:
-            whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-            if not whole or not 0 <= value < count:
-                raise ArgumentError(f"{name} has {value!r}: expected {what}, 0 to {count - 1}")
-        object.__setattr__(self, name, tuple(map(int, values)))
+        object.__setattr__(self, name, tuple(ensure_index(f"{name} has", one, count, what) for one in given))
 
     @property
     def scales(self) -> Scales:
         """Length and time scales of `DeadZoneFlocking`."""
         return contact_scales(self.interaction)
 
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if two agents coincide, or there are others than `group` has."""
-        super().check_start(q, p)
-        ensure_no_contact(q)
+    @cached_property
+    def ties(self) -> Leaders:
+        """Term that couples agents to their leaders."""
+        own = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
+        return Leaders(self.interaction, self.k2, *own)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Terms: the pair forces without consensus, and the coupling to leaders."""
-        ties = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
-        return PairTerm(self.interaction, 1.0, 0.0), Leaders(self.interaction, self.k2, *ties)
-
-    @property
-    def ties(self) -> Leaders:
-        """Term that couples agents to their leaders."""
-        ties = self.term(Leaders)
-        assert ties is not None
-        return ties
+        return PairTerm(self.interaction, 1.0, 0.0), self.ties
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)

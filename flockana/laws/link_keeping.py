@@ -16,6 +16,7 @@ from flockana.interactions.formula import FormulaInteraction
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.links import LinkTerm
 from flockana.laws.terms.term import Term
+from flockana.measures.perception import ensure_in_flock, ensure_net
 
 
 @dataclass(frozen=True)
@@ -49,17 +50,13 @@ class LinkKeeping(SumOfTerms):
     references: ClassVar[tuple[str, ...]] = ("ji-egerstedt-2007", "zavlanos-2007")
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k": (1, -2), "c": (0, -1)}
     surfaces = ()  # no force begins or ends at a distance
+    pair = None  # the net and not the distance decides which agents interact
+    lattice = None  # links have no preferred length
 
     def __post_init__(self) -> None:
         normalise(self, ensure_positive, "r", "k")
         normalise(self, ensure_nonnegative, "c")
-        ends = np.asarray(self.links)
-        if ends.size and (ends.ndim != 2 or ends.shape[1] != 2 or ends.dtype.kind not in "iu" or ends.min() < 0):
-            raise ArgumentError(f"links = {self.links!r}: expected pairs of agents such as ((0, 1), (1, 2))")
-        links = tuple(sorted((min(i, j), max(i, j)) for i, j in ends.tolist()))
-        if len({*links}) < len(links) or any(i == j for i, j in links):
-            raise ArgumentError(f"links = {links}: expected different agents, and every link once")
-        object.__setattr__(self, "links", links)
+        normalise(self, ensure_net, "links")
 
     @cached_property
     def tension(self) -> FormulaInteraction:
@@ -79,16 +76,6 @@ class LinkKeeping(SumOfTerms):
         return Scales(self.r, sqrt(self.r / self.k))
 
     @property
-    def pair(self) -> None:  # type: ignore[override]
-        """None, as the net and not the distance decides which agents interact."""
-        return
-
-    @property
-    def lattice(self) -> None:
-        """None, as links have no preferred length."""
-        return
-
-    @property
     def poles(self) -> tuple[float, ...]:
         """r, which no link may reach."""
         return (self.r,)
@@ -100,9 +87,7 @@ class LinkKeeping(SumOfTerms):
 
     def check_agents(self, n: int) -> None:
         """Raise if a link is of an agent that is not there."""
-        last = max((j for _, j in self.links), default=0)
-        if last >= n:
-            raise ArgumentError(f"links name agent {last}, and there are {n}: expected links among agents 0 to {n - 1}")
+        ensure_in_flock("links", self.links, n)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if a link is as long as r, where the tension has its pole."""
@@ -114,8 +99,7 @@ class LinkKeeping(SumOfTerms):
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return the length of each link."""
         ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
-        lengths: FloatArray = np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
-        return lengths
+        return np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
 
     def longest(self, energy: float) -> float:
         """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative
+from flockana.base.checks import FloatArray, ensure_nonnegative, normalise
 from flockana.base.errors import ArgumentError
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_seed, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
 
 _LOST = 3  # channel of random numbers
 
@@ -42,13 +42,11 @@ class Lossy(Wrapper):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
+        super().__post_init__()
         ensure_hears(self.law)
-        loss = ensure_nonnegative("loss", self.loss)
-        if loss > 1.0:
-            raise ArgumentError(f"loss = {loss:g}: expected a probability, at most 1")
-        object.__setattr__(self, "loss", loss)
-        object.__setattr__(self, "seed", ensure_seed(self.seed))
+        normalise(self, ensure_nonnegative, "loss")
+        if self.loss > 1.0:
+            raise ArgumentError(f"loss = {self.loss:g}: expected a probability, at most 1")
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         from scipy.special import ndtri

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_nonnegative, normalise
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_seed, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
 
 NOISY = ("all", "neighbours")
 _POSITION, _VELOCITY = 1, 2  # channels of random numbers
@@ -47,10 +47,9 @@ class Measured(Wrapper):
     units: ClassVar[Mapping[str, tuple[float, float]]] = {"position": (1, 0.5), "velocity": (1, -0.5)}
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
+        super().__post_init__()
         normalise(self, ensure_nonnegative, "position", "velocity")
         ensure_choice("of", self.of, NOISY)
-        object.__setattr__(self, "seed", ensure_seed(self.seed))
         if self.of == "neighbours":
             ensure_hears(self.law)
 

@@ -5,35 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_points, normalise
+from flockana.base.checks import FloatArray, PerAgent, ensure_flag, ensure_kind, ensure_points, normalise, per_agent
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
-from flockana.base.units import times
+from flockana.base.units import Powers, scaled_fields, times
 from flockana.base.vectors import lengths
-from flockana.kernels.minimal import (
-    AT_ONCE,
-    EqualEdges,
-    edge_forces,
-    perceived_edges,
-    perceived_forces,
-    semi_implicit_steps,
-)
+from flockana.interactions.zones import Table, per_pair
+from flockana.kernels import minimal as kernel
 from flockana.laws.discrete import DiscreteLaw, States
-from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
+from flockana.laws.edges import EdgeData, weighed_edges
 from flockana.laws.law import Arrays, Law
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.terms.term import Derivatives
 from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
 from flockana.measures.profiles import pair_distance_profile
-
-if TYPE_CHECKING:
-    from scipy.sparse import sparray
 
 _EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
 
@@ -81,20 +73,19 @@ class MinimalFlocking(Law):
     _: KW_ONLY
     beta: PerAgent | None = None
     spacing: PerAgent | None = None
-    mu: PerPair = 1.0
-    sigma: PerPair = 1.0
+    mu: Table = 1.0
+    sigma: Table = 1.0
     edges: Edges | None = None
     normalised: bool = True
 
     references = ("jond-2025",)
+    units: ClassVar[Mapping[str, Powers]] = {"radius": (1, 0), "spacing": (1, 0), "mu": (0, -2)}
 
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
         normalise(self, ensure_flag, "normalised")
-        for name in ("radius", "beta", "spacing"):
-            if name == "radius" or getattr(self, name) is not None:
-                object.__setattr__(self, name, per_agent(name, getattr(self, name)))
+        normalise(self, per_agent, "radius", *(name for name in ("beta", "spacing") if getattr(self, name) is not None))
         normalise(self, per_pair, "mu", "sigma")
         if self.edges is not None:
             object.__setattr__(self, "edges", ensure_edges(self.edges))
@@ -127,22 +118,29 @@ class MinimalFlocking(Law):
                 f"time = {time:g}: normalised alignment has the rate 1 per time unit, as printed, and no "
                 "parameter for it; expected time = 1, or a law with normalised=False"
             )
-        own = {name: getattr(self, name) for name in ("edges", "normalised")}
-        powers = {"radius": length, "spacing": length, "beta": 1.0, "mu": time**-2}
-        powers["sigma"] = 1.0 if self.normalised else 1.0 / time
-        beta = self.beta
-        if beta is None and self.spacing is None:  # the default 1/r_i is that of the unit in which it was given
-            beta = tuple(1.0 / r for r in self.radius) if isinstance(self.radius, tuple) else 1.0 / self.radius
-        values = {"radius": self.radius, "spacing": self.spacing, "beta": beta, "mu": self.mu, "sigma": self.sigma}
-        return MinimalFlocking(**own, **{name: times(value, powers[name]) for name, value in values.items()})
+        changed = scaled_fields(self, length, time)
+        if not self.normalised:
+            changed["sigma"] = times(self.sigma, 1.0 / time)
+        if self.beta is None and self.spacing is None:  # the default 1/r_i is that of the unit in which it was given
+            changed["beta"] = 1.0 / np.array(self.radius)
+        return MinimalFlocking(**changed)
+
+    @cached_property
+    def _sizes(self) -> dict[str, int]:
+        tables = {name: getattr(self, name) for name in ("radius", "beta", "spacing", "mu", "sigma")}
+        return {name: len(value) for name, value in tables.items() if isinstance(value, tuple)}
+
+    @cached_property
+    def _named(self) -> int:
+        """Number of agents that the edges name, at least."""
+        return 1 + max((max(edge) for edge in self.edges or ()), default=-1)
 
     def _check_sizes(self) -> None:
-        sizes = {name: len(v) for name in self._tables if isinstance(v := getattr(self, name), tuple)}
+        sizes = self._sizes
         if len(set(sizes.values())) > 1:
             raise ArgumentError(f"{sizes}: expected tables of equal length, one entry for each agent")
-        last = max((max(edge) for edge in self.edges or ()), default=-1)
-        if sizes and last >= min(sizes.values()):
-            raise ArgumentError(f"edges name agent {last}: expected agents below {min(sizes.values())}, as in {sizes}")
+        if sizes and self._named > (least := min(sizes.values())):
+            raise ArgumentError(f"edges name agent {self._named - 1}: expected agents below {least}, as in {sizes}")
 
     def _check_means(self) -> None:
         """Raise where the weights of a mean over agents are all zero."""
@@ -160,18 +158,15 @@ class MinimalFlocking(Law):
                 "alone give sigma=0"
             )
 
-    _tables = ("radius", "beta", "spacing", "mu", "sigma")
-
     @property
     def agents(self) -> int | None:
         """Number of agents that the tables fix; None if all parameters are single numbers."""
-        return next((len(v) for name in self._tables if isinstance(v := getattr(self, name), tuple)), None)
+        return next(iter(self._sizes.values()), None)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
-        least = 1 + max((max(edge) for edge in self.edges or ()), default=-1)
-        if n < least or (self.agents is not None and n != self.agents):
+        if n < self._named or (self.agents is not None and n != self.agents):
             raise ArgumentError(
-                f"{n} agents: expected {self.agents or f'at least {least}'}, as the law's parameters name them"
+                f"{n} agents: expected {self.agents or f'at least {self._named}'}, as the law's parameters name them"
             )
 
     @cached_property
@@ -183,7 +178,7 @@ class MinimalFlocking(Law):
         """Return directed edges of a state with their weights and spacings, unchecked."""
         if self.edges is not None:
             return self._frozen
-        return weighed_edges(self, *perceived_edges(q, np.full(len(q), self.radius)))
+        return weighed_edges(self, *kernel.perceived_edges(q, np.full(len(q), self.radius)))
 
     def perceived(self, q: Any) -> Edges:
         """Return the directed edges (j, i) of a state, where i perceives j.
@@ -215,17 +210,19 @@ class MinimalFlocking(Law):
         """Whether all perceived agents have the same weight."""
         return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
 
-    def _alike(self, n: int) -> EqualEdges:
+    def _alike(self, n: int) -> kernel.EqualEdges:
         """Return the numbers of a law whose weights are all equal."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
         lengths = np.full(n, 1.0 if spacing is None else spacing)
         mu, sigma = float(self.mu), float(self.sigma)  # type: ignore[arg-type]  # numbers, as all weights are equal
-        return EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
+        return kernel.EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
 
     def steps_many(self, n: int) -> bool:
         """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`."""
-        return self._one_weight and n <= AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
+        return (
+            self._one_weight and n <= kernel.AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
+        )
 
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
@@ -239,15 +236,15 @@ class MinimalFlocking(Law):
         steps : int
             How many.
         """
-        return semi_implicit_steps(q, p, self._alike(len(q)), dt, steps)
+        return kernel.semi_implicit_steps(q, p, self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN."""
         u = np.zeros_like(q)
         if self._one_weight:
-            perceived_forces(q, p, self._alike(len(q)), u)
+            kernel.perceived_forces(q, p, self._alike(len(q)), u)
             return u, float("nan")
-        dissipated = edge_forces(q, p, *self.edge_data(q), u)
+        dissipated = kernel.edge_forces(q, p, *self.edge_data(q), u)
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
@@ -277,7 +274,7 @@ class MinimalFlocking(Law):
             "giant_share": ("C*, share of nodes", largest / n),
         }
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:
         """Return (∂u/∂q, ∂u/∂p), sparse, with the graph frozen at q, unchecked.
 
         ∂u_i/∂q_j = μ ((1 − ρ/‖x‖) I + ρ/‖x‖ b bᵀ) with the bearing b = x/‖x‖, and ∂u_i/∂p_j = a I; the blocks of an
@@ -351,8 +348,7 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
     steps_at_once = 50
 
     def __post_init__(self) -> None:
-        if not isinstance(self.law, MinimalFlocking):
-            raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
+        ensure_kind("law", self.law, MinimalFlocking, "MinimalFlocking(...)")
         super().__post_init__()
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
@@ -42,10 +42,7 @@ class MSNDiscretisation(DiscreteLaw):
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2):
             raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...) or Algorithm2(...) itself")
-        if not isinstance(self.law.alpha, AlphaInteraction):
-            raise ArgumentError(
-                f"law = {self.law!r}: expected AlphaInteraction(...), whose sums the iteration has compiled"
-            )
+        ensure_kind("alpha", self.alpha, AlphaInteraction, "AlphaInteraction(...), whose sums are compiled")
         if self.target is not None:
             ensure_one_gain(self.law.gains)
         normalise(self, ensure_flag, "in_place")

@@ -11,11 +11,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.interactions import AlphaInteraction, Gains
+from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
+from flockana.laws.gained import GainedLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.term import Term
 
@@ -63,26 +64,22 @@ class PushTerm(Term):
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
                 "push does not act; it has no derivatives here"
             )
-        nothing = np.zeros((*q.shape, q.shape[1]))
-        return nothing, nothing
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return np.zeros((*q.shape, q.shape[1]))
+        return self.hessian(t, q), self.hessian(t, q)
 
 
-class _Push:
-    """Mixin of the two pushed laws: checks of the two parameters, and the push term."""
+class _Pushed(GainedLaw):
+    """Mixin of the two pushed laws: the two parameters, their checks, and the push term."""
 
-    alpha: AlphaInteraction
-    gains: Gains
     min_distance: float
     factor: float
 
-    def _check(self) -> None:
-        if not isinstance(self.alpha, AlphaInteraction):
-            raise ArgumentError(
-                f"alpha = {self.alpha!r}: expected AlphaInteraction(...), whose action the push multiplies"
-            )
+    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
+
+    references: ClassVar[tuple[str, ...]] = ("notebook-r2", "olfati-saber-2006")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        ensure_kind("alpha", self.alpha, AlphaInteraction, "AlphaInteraction(...), whose action the push multiplies")
         normalise(self, ensure_positive, "min_distance", "factor")
         if self.factor < 1.0:
             raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
@@ -90,17 +87,17 @@ class _Push:
     @property
     def surfaces(self) -> tuple[Any, ...]:
         """Switching distances of the law without the push, and where the push begins."""
-        return (self.min_distance, *super().surfaces)  # type: ignore[misc]
+        return (self.min_distance, *super().surfaces)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Terms of the law without the push, and the push."""
         push = PushTerm(self.alpha, self.gains.c1_alpha, self.min_distance, self.factor)
-        return (*super().terms, push)  # type: ignore[misc]
+        return (*super().terms, push)  # type: ignore[safe-super]  # those of the law beside it
 
 
 @dataclass(frozen=True)
-class PushedAlgorithm1(_Push, Algorithm1):
+class PushedAlgorithm1(_Pushed, Algorithm1):
     """Algorithm 1 with the notebook's push; `energy` stays H, whose rate gains the power of the push.
 
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
@@ -110,26 +107,10 @@ class PushedAlgorithm1(_Push, Algorithm1):
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
 
-    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
-
-    references = ("notebook-r2", "olfati-saber-2006")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._check()
-
 
 @dataclass(frozen=True)
-class PushedAlgorithm2(_Push, Algorithm2):
+class PushedAlgorithm2(_Pushed, Algorithm2):
     """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push."""
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR
-
-    units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
-
-    references = ("notebook-r2", "olfati-saber-2006")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._check()

@@ -4,20 +4,20 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
-from flockana.base.checks import ensure_state
+from flockana.base.checks import ensure_kind, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.laws.gained import GAINS, GainedLaw, alpha_scales, ensure_part
-from flockana.laws.terms.parts import parts
+from flockana.laws.gained import GAINS, GainedLaw, alpha_scales
+from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 
 def ensure_one_gain(gains: Gains) -> None:
     """Raise unless `gains` are Gains with one c1γ and c2γ for all agents, under which shape and centre decouple."""
-    ensure_part("gains", gains, Gains, GAINS)
+    ensure_kind("gains", gains, Gains, GAINS)
     if gains.per_agent:
         raise ArgumentError(
             "c1_gamma or c2_gamma is given per agent: expected one of each, or the shape does not separate from the "
@@ -27,8 +27,7 @@ def ensure_one_gain(gains: Gains) -> None:
 
 def paper_pair(law: Any) -> AlphaInteraction:
     """Return a law's pair law; raise unless it is the paper's, the only one for which φ_α's properties are proved."""
-    if not isinstance(law.alpha, AlphaInteraction):
-        raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), as proofs need it")
+    ensure_kind("alpha", law.alpha, AlphaInteraction, "AlphaInteraction(...), as proofs need it")
     return law.alpha
 
 
@@ -63,7 +62,7 @@ class Algorithm1(GainedLaw):
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Pair term, with the energy c1α V(q) + ½ Σ‖p_i‖² in the given frame (with the ½ that the slides omit: E1)."""
-        return parts(self.alpha, self.gains)
+        return (self.pair_term,)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """H(x, v) = c1α V(x) + K(v), the energy in the frame that moves with the centre of mass.
@@ -107,7 +106,7 @@ class Algorithm2(GainedLaw):
         With per-agent gains the flock's shape does not separate from its centre, and no frame but the given one will
         do for every target: H(t, q, p) = c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r‖² + ½ Σ‖p_i‖², as under Algorithm 3.
         """
-        return parts(self.alpha, self.gains, target=self.target)
+        return self.pair_term, Navigation(self.target, self.gains)
 
     def structural_energy(self, q: Any, p: Any) -> float:
         """Return H_λ(x, v), which equals `energy`, as that is in the moving frame already.

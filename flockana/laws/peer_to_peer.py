@@ -7,21 +7,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.scales import Scales
+from flockana.base.checks import FloatArray, ensure_kind
 from flockana.base.vectors import lengths
 from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.laws.gained import PAIR, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import GainedLaw
 from flockana.laws.law import Arrays
-from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.copies import CopiesTerm
-from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 
 
 @dataclass(frozen=True)
-class PeerToPeer(SumOfTerms):
+class PeerToPeer(GainedLaw):
     """Algorithm 2, where agent i follows its own copy: −c1γ (q_i − q_r^i) − c2γ (p_i − p_r^i).
 
     Copies that are alike make it Algorithm 2. As the forces between agents cancel, the centre of mass follows the mean
@@ -49,18 +46,13 @@ class PeerToPeer(SumOfTerms):
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
-        ensure_part("copies", self.copies, Copies, "Copies(q, p, force)")
-        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_gains(self)
-
-    @property
-    def scales(self) -> Scales:  # noqa: D102
-        return alpha_scales(self.alpha, self.gains)
+        ensure_kind("copies", self.copies, Copies, "Copies(q, p, force)")
+        super().__post_init__()
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Terms with the energy c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r^i‖² + ½ Σ‖p_i‖² in the given frame."""
-        return (PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha), CopiesTerm(self.copies, self.gains))
+        return self.pair_term, CopiesTerm(self.copies, self.gains)
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         places = np.array([self.copies.state(float(time))[0] for time in t])

@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_numbers, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, as_numbers, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,14 @@ class Sampled(Wrapper):
     units: ClassVar[Mapping[str, Powers]] = {"period": (0, 1), "offsets": (0, 1)}
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
-        object.__setattr__(self, "period", ensure_positive("period", self.period))
+        super().__post_init__()
+        normalise(self, ensure_positive, "period")
         if self.offsets is None:
             return
-        offsets = as_numbers(self.offsets)
+        wanted = f"one for each agent, 0 <= offset < {self.period:g}"
+        offsets = ensure_numbers("offsets", self.offsets, wanted)
         if offsets.ndim != 1 or not offsets.size or not ((offsets >= 0.0) & (offsets < self.period)).all():
-            raise ArgumentError(
-                f"offsets = {format_value(self.offsets)}: expected one for each agent, 0 <= offset < {self.period:g}"
-            )
+            raise ArgumentError(f"offsets = {format_value(self.offsets)}: expected {wanted}")
         object.__setattr__(self, "offsets", tuple(offsets.tolist()))
 
     @property

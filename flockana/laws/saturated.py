@@ -6,11 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, normalise
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, input_of
 from flockana.measures.frame import moving_frame
 
 BY = ("length", "component")
@@ -51,10 +50,9 @@ class Saturated(Wrapper):
     units: ClassVar[Mapping[str, Powers]] = {"limit": (1, -2)}
 
     def __post_init__(self) -> None:
-        ensure_wrappable(self.law)
-        object.__setattr__(self, "limit", ensure_positive("limit", self.limit))
-        if self.by not in BY:
-            raise ArgumentError(f"by = {self.by!r}: expected one of {', '.join(BY)}")
+        super().__post_init__()
+        normalise(self, ensure_positive, "limit")
+        ensure_choice("by", self.by, BY)
 
     stepped = False
 
@@ -69,8 +67,7 @@ class Saturated(Wrapper):
         if self.by == "component":
             return np.clip(u, -self.limit, self.limit)
         size = np.linalg.norm(u, axis=1, keepdims=True)
-        within: FloatArray = u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
-        return within
+        return u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         return self.bounded(input_of(self.law, step, view))

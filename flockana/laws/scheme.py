@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.units import Powers
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays, Law
@@ -31,9 +30,8 @@ class Scheme(DiscreteLaw):
     approximates = True
 
     def __post_init__(self) -> None:
-        if not isinstance(self.law, Law):
-            raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+        ensure_kind("law", self.law, Law, "a continuous law such as DeadZoneFlocking()")
+        normalise(self, ensure_positive, "dt")
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped

@@ -2,13 +2,13 @@
 
 from collections import deque
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil, isclose
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits
+from flockana.base.checks import FloatArray, ensure_fits, ensure_kind
 from flockana.base.errors import ArgumentError
 from flockana.kernels.euler_maruyama import euler_maruyama_steps
 from flockana.kernels.verlet import no_pairs
@@ -47,13 +47,12 @@ class Stepped(Scheme):
     private = ("step", "past", "held")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.law, Wrapper):
-            raise ArgumentError(f"law = {self.law!r}: expected a law that wraps one, such as Disturbed(law, ...)")
+        ensure_kind("law", self.law, Wrapper, "a law that wraps one, such as Disturbed(law, ...)")
         super().__post_init__()
         dt = self.dt
         if self.order not in ORDERS:
             raise ArgumentError(f"order = {self.order!r}: expected one of 1, 2, 4")
-        for clock in (clock for one in self.law.wrappers for clock in one.clocks):
+        for clock in (clock for one in self._wrappers for clock in one.clocks):
             if clock / dt < 1.0 - _WHOLE or not isclose(clock / dt, round(clock / dt), rel_tol=_WHOLE):
                 raise ArgumentError(
                     f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
@@ -121,7 +120,7 @@ class Stepped(Scheme):
         for k in range(int(wanted[-1])):
             now.number, now.begins, at = first + k, True, t + k * self.dt
             if past and self.past_steps:
-                now.past = _PastStates(past, at, self.dt)
+                now.past = partial(_past_state, past, at, self.dt)
             q, p, u, departs = advance(now, at, q, p, kicking, past)
             if self.past_steps:
                 past.append((q, p, departs, departs))
@@ -195,25 +194,18 @@ def _kicked(p: FloatArray, now: Step, kicking: list[Wrapper]) -> FloatArray:
     return p
 
 
-class _PastStates:
-    """State at an earlier time: steps that were made, and between two a Hermite cubic."""
-
-    def __init__(self, past: _Past, t: float, h: float) -> None:
-        self.past, self.t, self.h = past, t, h
-
-    def __call__(self, s: float) -> tuple[FloatArray, FloatArray]:
-        back = (self.t - s) / self.h
-        last = len(self.past) - 1
-        k = min(last, max(0, ceil(back - _WHOLE)))
-        share = k - back  # of the interval that begins k steps ago
-        q0, p0, _, u0 = self.past[last - k]
-        if abs(share) <= _WHOLE or k == 0:
-            return q0, p0
-        q1, p1, u1, _ = self.past[last - k + 1]
-        return _hermite(q0, p0, q1, p1, share, self.h), _hermite(p0, u0, p1, u1, share, self.h)
+def _past_state(past: _Past, t: float, h: float, s: float) -> tuple[FloatArray, FloatArray]:
+    """Return the state at an earlier time s: steps that were made, and between two a Hermite cubic."""
+    back, last = (t - s) / h, len(past) - 1
+    k = min(last, max(0, ceil(back - _WHOLE)))
+    share = k - back  # of the interval that begins k steps ago
+    q0, p0, _, u0 = past[last - k]
+    if abs(share) <= _WHOLE or k == 0:
+        return q0, p0
+    q1, p1, u1, _ = past[last - k + 1]
+    return _hermite(q0, p0, q1, p1, share, h), _hermite(p0, u0, p1, u1, share, h)
 
 
 def _hermite(x0: Any, v0: Any, x1: Any, v1: Any, share: float, h: float) -> FloatArray:
     a, b = share * share * (3.0 - 2.0 * share), share * (1.0 - share)
-    value: FloatArray = x0 + a * (x1 - x0) + h * b * ((1.0 - share) * v0 - share * v1)
-    return value
+    return x0 + a * (x1 - x0) + h * b * ((1.0 - share) * v0 - share * v1)

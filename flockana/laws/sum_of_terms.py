@@ -10,12 +10,10 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import overrides_consistently
 from flockana.laws.law import Law, block_diagonal
-from flockana.laws.terms.term import Compiled, Term, TermKernel
+from flockana.laws.terms.term import Compiled, Derivatives, Term, TermKernel
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
-    from scipy.sparse import sparray
-
     from flockana.symbolic.energy import EnergyIdentity
 
 
@@ -82,7 +80,7 @@ class SumOfTerms(Law):
         v = moving_frame(p) if self.moving else p
         return self.potential_energy(t, q) + 0.5 * float(np.sum(v * v))
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:  # noqa: D102
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         by_position, by_velocity = zip(*(term.derivatives(t, q, p) for term in self.terms), strict=True)
         return _assembled(by_position), _assembled(by_velocity)
 

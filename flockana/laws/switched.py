@@ -1,7 +1,7 @@
 """Laws whose acceleration jumps across surfaces in space: what `simulate` must know to stop at each switch."""
 
 from abc import abstractmethod
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -27,10 +27,7 @@ class SwitchedLaw(Law):
     both sides it holds at the surface (a Filippov sliding mode), which is reported and ends the run.
     """
 
-    @property
-    @abstractmethod
-    def located(self) -> bool:
-        """Whether switches are to be located."""
+    slide: ClassVar[str] = ": each side drives them into the other"  # end of the report
 
     @abstractmethod
     def pieces(self, q: FloatArray) -> Pieces:
@@ -69,6 +66,15 @@ class SwitchedLaw(Law):
         """
 
     @abstractmethod
+    def held_speed(self, push: float) -> float:
+        """Return the radial speed up to which a pair counts as held at a surface.
+
+        Parameters
+        ----------
+        push : float
+            The lesser of the two accelerations that drive it back.
+        """
+
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
         """Return a description of what slides along the surface just crossed; None if nothing does.
 
@@ -79,3 +85,19 @@ class SwitchedLaw(Law):
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """
+        rows, columns = np.triu_indices(len(q), 1)
+        for k in np.flatnonzero(before != after):
+            i, j = int(rows[k]), int(columns[k])
+            x, v = q[j] - q[i], p[j] - p[i]
+            rho = float(np.linalg.norm(x))
+            speed = float(v @ x) / rho
+            bend = (float(v @ v) - speed**2) / rho
+            held = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
+            held[i] += 0.5 * speed / rho * x
+            held[j] -= 0.5 * speed / rho * x
+            old, new = (self.piece_flow(side, t, q, held)[0] for side in (before, after))
+            out = 1.0 if after[k] > before[k] else -1.0
+            leaving, back = (out * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
+            if leaving > 0.0 > back and abs(speed) <= self.held_speed(min(leaving, -back)):
+                return f"agents {i} and {j} slide at distance {rho:.6g}{self.slide}"
+        return None

@@ -1,28 +1,63 @@
 """The laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a net, fixed or of proximity."""
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from math import sqrt
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.log_potential import LogPotential, length_scale_time, net_derivatives, net_forces
-from flockana.laws.dead_zone import ensure_no_contact
+from flockana.interactions.log_potential import LogPotential, net_derivatives, net_forces
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
+from flockana.laws.terms.pairs import ensure_apart
+from flockana.laws.terms.term import Derivatives
 from flockana.measures.frame import moving_frame
+from flockana.measures.perception import ensure_in_flock, ensure_net
 
 _NEAR, _FAR = 0, 1
+Ends = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]
+
+
+class _MatchingLaw(Law):
+    """Law of the potentials and the consensus along a net, with its scales."""
+
+    potential: LogPotential
+    k2: float
+
+    references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+    centre_decouples = True
+
+    def __post_init__(self) -> None:
+        ensure_kind("potential", self.potential, LogPotential, "LogPotential(strength, d)")
+        normalise(self, ensure_positive, "k2")
+
+    @property
+    def scales(self) -> Scales:
+        """Length and time scales d and d/√k."""
+        return Scales(self.potential.d, self.potential.d / sqrt(self.potential.strength))
+
+    @abstractmethod
+    def _ends(self, q: FloatArray) -> Ends:
+        """Return the index pairs (i, j) along which forces act."""
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        u = np.zeros(q.shape)
+        return u, net_forces(self.potential, self.k2, q, p, *self._ends(q), u)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:
+        return net_derivatives(self.potential, self.k2, q, *self._ends(q))
 
 
 @dataclass(frozen=True)
-class FixedNetFlocking(Law):
+class FixedNetFlocking(_MatchingLaw):
     """u_i = −k₂ Σ_{j~i} (p_i − p_j) − Σ_{j~i} ∇V_ij along the edges of a given net, whatever the distances.
 
     Its energy is that in the frame of the centre of mass, ½ Σ‖p_i − p̄‖² + Σ over edges of V, and falls by
@@ -49,50 +84,36 @@ class FixedNetFlocking(Law):
     k2: float = 1.0
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
-    references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
-    centre_decouples = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "edges", _edges(self.edges))
-        _ensure_potential(self.potential)
-        normalise(self, ensure_positive, "k2")
-
-    @property
-    def scales(self) -> Scales:
-        """Length and time scales d and d/√k."""
-        return Scales(self.potential.d, length_scale_time(self.potential))
+        normalise(self, ensure_net, "edges")
+        super().__post_init__()
 
     @cached_property
-    def _ends(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    def _joined(self) -> Ends:
         i, j = np.array(self.edges, dtype=np.int64).reshape(-1, 2).T
         return i, j
 
+    def _ends(self, q: FloatArray) -> Ends:
+        return self._joined
+
     def check_agents(self, n: int) -> None:  # noqa: D102
-        last = max(map(max, self.edges), default=0)
-        if last >= n:
-            raise ArgumentError(f"edges name agent {last} but there are {n} agents: expected numbers 0 to {n - 1}")
+        ensure_in_flock("edges", self.edges, n)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         super().check_start(q, p)
-        i, j = self._ends
+        i, j = self._joined
         for a in np.flatnonzero((q[i] == q[j]).all(axis=1)):
             raise ArgumentError(f"agents {i[a]} and {j[a]} are joined and coincide: expected distinct positions")
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        u = np.zeros(q.shape)
-        return u, net_forces(self.potential, self.k2, q, p, *self._ends, u)
-
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
-        i, j = self._ends
+        i, j = self._joined
         delta, v = q[j] - q[i], moving_frame(p)
         return float(np.sum(self.potential.energy(np.sum(delta * delta, axis=1)))) + 0.5 * float(np.sum(v * v))
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
-        return net_derivatives(self.potential, self.k2, q, *self._ends)
-
 
 @dataclass(frozen=True)
-class ProximityFlocking(SwitchedLaw):
+class ProximityFlocking(_MatchingLaw, SwitchedLaw):
     """Law of `FixedNetFlocking` on the net of all pairs nearer than R, beyond which V is constant.
 
     Where a pair comes within R its pull and its share of the consensus begin at once: the right-hand side jumps, and
@@ -121,20 +142,14 @@ class ProximityFlocking(SwitchedLaw):
     k2: float = 1.0
 
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k2": (0, -1)}
-    references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
-    centre_decouples = True
     located = True  # the force always jumps
+    slide = " = R: each side drives them into the other"
 
     def __post_init__(self) -> None:
-        _ensure_potential(self.potential)
-        normalise(self, ensure_positive, "r", "k2")
+        super().__post_init__()
+        normalise(self, ensure_positive, "r")
         if self.r <= self.potential.d:
             raise ArgumentError(f"r = {self.r:g}: expected more than d = {self.potential.d:g}, where V is least")
-
-    @property
-    def scales(self) -> Scales:
-        """Length and time scales d and d/√k."""
-        return Scales(self.potential.d, length_scale_time(self.potential))
 
     @property
     def surfaces(self) -> tuple[float, ...]:
@@ -143,75 +158,35 @@ class ProximityFlocking(SwitchedLaw):
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         super().check_start(q, p)
-        ensure_no_contact(q, "the force of the logarithmic potential")
+        ensure_apart(q, "the force of the logarithmic potential is infinite there")
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Return 0 for every pair within R and 1 beyond."""
-        pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
-        return pieces
+        return np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_pairs_within(pieces, len(q)), u)
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        return self.piece_flow(self.pieces(q), t, q, p)
+    def _ends(self, q: FloatArray) -> Ends:
+        return _pairs_within(self.pieces(q), len(q))
 
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:  # noqa: D102
         inside = self.r - _distances(q)
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
-        after: Pieces = np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
-        return after
+        return np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
 
-    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
-        rows, columns = np.triu_indices(len(q), 1)
-        old, new = (self.piece_flow(side, t, q, p)[0] for side in (before, after))
-        for k in np.flatnonzero(before != after):
-            i, j = int(rows[k]), int(columns[k])
-            x, v = q[j] - q[i], p[j] - p[i]
-            rho, way = float(np.linalg.norm(x)), 1.0 if after[k] == _FAR else -1.0
-            speed = float(v @ x) / rho
-            bend = (float(v @ v) - speed**2) / rho
-            leaving, back = (way * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
-            if leaving > 0.0 > back and abs(speed) <= 1e-9 * self.scales.speed:
-                return f"agents {i} and {j} slide at distance {rho:.6g} = R: each side drives them into the other"
-        return None
+    def held_speed(self, push: float) -> float:  # noqa: D102
+        return 1e-9 * self.scales.speed
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         s, v = np.minimum(_distances(q), self.r), moving_frame(p)
         return float(np.sum(self.potential.energy(s * s))) + 0.5 * float(np.sum(v * v))
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
-        return net_derivatives(self.potential, self.k2, q, *_pairs_within(self.pieces(q), len(q)))
 
-
-def _ensure_potential(potential: Any) -> None:
-    """Raise unless a potential is a `LogPotential`."""
-    if not isinstance(potential, LogPotential):
-        raise ArgumentError(f"potential = {potential!r}: expected LogPotential(strength, d)")
-
-
-def _edges(given: Any) -> tuple[tuple[int, int], ...]:
-    """Return edges (i, j), i < j, each once."""
-    try:
-        pairs = [(a, b) for a, b in given]
-    except (TypeError, ValueError):
-        raise ArgumentError(f"edges = {given!r}: expected pairs of agents such as ((0, 1), (1, 2))") from None
-    for pair in pairs:
-        if not all(isinstance(end, int | np.integer) and not isinstance(end, bool) and end >= 0 for end in pair):
-            raise ArgumentError(f"edge {pair!r}: expected two whole numbers >= 0")
-        if pair[0] == pair[1]:
-            raise ArgumentError(f"edge {pair!r}: expected two different agents")
-    found = [(int(min(pair)), int(max(pair))) for pair in pairs]
-    twice = next((pair for k, pair in enumerate(found) if pair in found[:k]), None)
-    if twice is not None:
-        raise ArgumentError(f"edge {twice!r} is given twice: expected each edge once")
-    return tuple(sorted(found))
-
-
-def _pairs_within(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def _pairs_within(pieces: Pieces, n: int) -> Ends:
     """Return the index pairs (i, j) assigned to the piece within R."""
     i, j = np.triu_indices(n, 1)
     near = pieces == _NEAR
@@ -221,5 +196,4 @@ def _pairs_within(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.ND
 def _distances(q: FloatArray) -> FloatArray:
     """Return the distance of every pair i < j, in the order of `numpy.triu_indices`."""
     i, j = np.triu_indices(len(q), 1)
-    distances: FloatArray = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
-    return distances
+    return np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))

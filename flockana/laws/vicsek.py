@@ -1,22 +1,14 @@
 """Agents of constant speed that turn to their neighbours' mean heading (Vicsek; Jadbabaie, Lin and Morse)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_choice,
-    ensure_finite_scalar,
-    ensure_nonnegative,
-    ensure_positive,
-    normalise,
-)
+from flockana.base import checks
+from flockana.base.checks import FloatArray, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -26,15 +18,11 @@ from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
 from flockana.measures.nets import LinkArray, components
 
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
-
 AVERAGES = ("headings", "vectors")
 _TURN = 2.0 * pi
 _SPEED = 1e-9  # relative: how far a start's speeds may be from the law's
 _SEARCH = 1.0 + 1e-9  # the neighbour search is strict, "in or on the circle" is not
 _CANCELS = 1e-12  # of the neighbours' number: a sum of unit vectors that points nowhere
-_MOST = 2**63  # seeds are whole numbers below it
 
 
 @dataclass(frozen=True)
@@ -89,14 +77,13 @@ class HeadingAveraging(DiscreteLaw):
     references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
 
     def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "range", "speed", "dt")
-        normalise(self, ensure_finite_scalar, "zero")
-        normalise(self, ensure_nonnegative, "noise")
-        ensure_choice("average", self.average, AVERAGES)
+        normalise(self, checks.ensure_positive, "range", "speed", "dt")
+        normalise(self, checks.ensure_finite_scalar, "zero")
+        normalise(self, checks.ensure_nonnegative, "noise")
+        checks.ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
             raise ArgumentError(f"noise = {self.noise:g}: expected at most 2π radians, at which headings are uniform")
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
-            raise ArgumentError(f"seed = {self.seed!r}: expected a whole number, 0 <= seed < 2**63")
+        object.__setattr__(self, "seed", checks.ensure_seed(self.seed, 63))
 
     @property
     def scales(self) -> Scales:
@@ -130,8 +117,7 @@ class HeadingAveraging(DiscreteLaw):
         [[2.0, 0.0]]
         """
         angles = np.asarray(headings, dtype=np.float64)
-        velocities: FloatArray = self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        return velocities
+        return self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
 
     def links(self, q: FloatArray) -> LinkArray:
         """Unordered pairs in or on each other's circle, each once, unchecked.
@@ -142,8 +128,7 @@ class HeadingAveraging(DiscreteLaw):
         [[0, 1]]
         """
         pairs = np.column_stack(pair_list(q, _SEARCH * self.range))
-        within: LinkArray = pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
-        return within
+        return pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """The headings of a start in [zero, zero + 2π); with noise, step 0."""
@@ -162,7 +147,7 @@ class HeadingAveraging(DiscreteLaw):
         before, velocities = self.velocities(heading), self.velocities(turned)
         return q + self.dt * before, velocities, (velocities - before) / self.dt, after | {"heading": turned}
 
-    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> csr_array:
+    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
         """Derivative of the next headings in the headings: each averages its own and its neighbours'.
 
         Parameters
@@ -216,8 +201,7 @@ def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     for one, other in ((i, j), (j, i)):
         np.minimum.at(least, one, heading[other])
         np.maximum.at(most, one, heading[other])
-    means: FloatArray = np.clip(total / _sizes(pairs, n), least, most)
-    return means
+    return np.clip(total / _sizes(pairs, n), least, most)
 
 
 def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
@@ -225,8 +209,7 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     (i, j), n = pairs.T, heading.size
     x, y = (f(heading) + np.bincount(i, f(heading)[j], n) + np.bincount(j, f(heading)[i], n) for f in (np.cos, np.sin))
     cancels = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
-    angles: FloatArray = np.where(cancels, heading, np.arctan2(y, x))
-    return angles
+    return np.where(cancels, heading, np.arctan2(y, x))
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:

@@ -8,8 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_kind, ensure_seed, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.law import Law
@@ -17,6 +16,7 @@ from flockana.laws.terms.pairs import PairTerm
 
 _BLOCK = 256  # steps whose random numbers are drawn at once
 _CHANNELS = 8  # kinds of random numbers
+Past = Callable[[float], tuple[FloatArray, FloatArray]]
 
 
 class View(NamedTuple):
@@ -56,13 +56,7 @@ class Step:
 
     __slots__ = ("_drawn", "begins", "h", "held", "interval", "number", "past")
 
-    def __init__(
-        self,
-        number: int,
-        h: float,
-        past: Callable[[float], tuple[FloatArray, FloatArray]],
-        held: dict[int, FloatArray] | None = None,
-    ) -> None:
+    def __init__(self, number: int, h: float, past: Past, held: dict[int, FloatArray] | None = None) -> None:
         self.number, self.h, self.past = number, h, past
         self.held: dict[int, FloatArray] = {} if held is None else held
         self.begins, self.interval = True, h
@@ -82,8 +76,7 @@ class Step:
         found = self._drawn.get((seed, channel))
         if found is None or found[0] != block:
             found = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
-        numbers: FloatArray = found[1][row]
-        return numbers
+        return found[1][row]
 
 
 def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -> FloatArray:
@@ -135,6 +128,11 @@ class Wrapper(WrappingLaw):
     """
 
     stepped: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        ensure_kind("law", self.law, Law, "a continuous law such as Algorithm1(), or one that wraps a law")
+        if "seed" in vars(self):  # times the channels it is part of a key, and files hold 64 bits
+            normalise(self, lambda _, seed: ensure_seed(seed, 62), "seed")
 
     @abstractmethod
     def input(self, step: Step, view: View) -> FloatArray:
@@ -203,27 +201,6 @@ class Wrapper(WrappingLaw):
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Any:  # noqa: D102
         return self.law.measures(t, q, p, extra)
-
-
-def ensure_wrappable(law: Any) -> None:
-    """Raise unless something can be wrapped."""
-    if not isinstance(law, Law):
-        raise ArgumentError(f"law = {law!r}: expected a continuous law such as Algorithm1(), or one that wraps a law")
-
-
-def as_numbers(value: Any) -> FloatArray:
-    """Return an array of numbers; NaN for what is none."""
-    try:
-        return checks.real_array(value)
-    except (TypeError, ValueError):
-        return np.array(np.nan)
-
-
-def ensure_seed(seed: Any) -> int:
-    """Return a seed, a whole number from 0 to 2⁶² − 1."""
-    if (found := checks.ensure_seed(seed)) >= 2**62:  # times the channels it is part of a key, and files hold 64 bits
-        raise ArgumentError(f"seed = {found}: expected a whole number below 2**62")
-    return found
 
 
 def needs_steps(law: Any) -> bool:

@@ -41,12 +41,10 @@ def closest_approach(
     """Return lower bounds of all pair distances over all times, from samples of position, velocity, acceleration."""
     # Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
     # samples are too sparse to resolve the motion.
-    lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
-    bounds = np.full(len(t) - 1, np.inf)
+    if q.shape[1] == 1:
+        return ClosestApproach(np.inf, np.inf, float(t[0]), (-1, -1), np.full(len(t) - 1, np.inf))
     at_samples = min_distances(q)
     extents = np.maximum(q.max(axis=(1, 2)), -q.min(axis=(1, 2)))  # |q| would be another run's memory
-    if q.shape[1] == 1:
-        return ClosestApproach(np.inf, np.inf, when, pair, bounds)
     k = int(np.argmin(at_samples))
     lower = reached = float(at_samples[k])
     when, pair = float(t[k]), _pair_at(q[k], reached)

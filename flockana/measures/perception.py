@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
@@ -15,18 +14,36 @@ Edges = tuple[tuple[int, int], ...]
 
 def ensure_edges(edges: Any) -> Edges:
     """Return directed edges (j, i) as a tuple of pairs."""
-    given = list(edges) if isinstance(edges, Iterable) else []
-    if not given:
+    pairs = _pairs("edges", edges, "expected each edge once; for both directions give (j, i), (i, j)")
+    if not pairs:
         raise ArgumentError(f"edges = {edges!r}: expected pairs (j, i), such as ((0, 1), (1, 2)): 1 perceives 0")
+    return pairs
+
+
+def ensure_net(name: str, links: Any) -> Edges:
+    """Return undirected links (i, j) with i < j, sorted."""
+    return tuple(sorted(_pairs(name, links, "expected each link once", directed=False)))
+
+
+def ensure_in_flock(name: str, pairs: Edges, n: int) -> None:
+    """Raise if pairs name an agent that n agents are without."""
+    if (last := max(map(max, pairs), default=0)) >= n:
+        raise ArgumentError(f"{name} name agent {last} but there are {n} agents: expected numbers 0 to {n - 1}")
+
+
+def _pairs(name: str, given: Any, once: str, *, directed: bool = True) -> Edges:
+    """Return pairs of different agents in the order given, the lesser first unless they are directed."""
     unique: dict[tuple[int, int], None] = {}
+    if not isinstance(given, Iterable):
+        raise ArgumentError(f"{name} = {given!r}: expected pairs of agents such as ((0, 1), (1, 2))")
     for k, edge in enumerate(given):
         pair = np.asarray(edge)
         if pair.shape != (2,) or pair.dtype.kind not in "iu" or pair.min() < 0 or pair[0] == pair[1]:
-            raise ArgumentError(f"edges[{k}] = {edge!r}: expected two different agents (j, i), counted from 0")
-        one = int(pair[0]), int(pair[1])
-        if one in unique:
-            raise ArgumentError(f"edges[{k}] = {one}: expected each edge once; for both directions give (j, i), (i, j)")
-        unique[one] = None
+            raise ArgumentError(f"{name}[{k}] = {edge!r}: expected two different agents, counted from 0")
+        i, j = map(int, pair if directed else np.sort(pair))
+        if (i, j) in unique:
+            raise ArgumentError(f"{name}[{k}] = {(i, j)}: {once}")
+        unique[i, j] = None
     return tuple(unique)
 
 
@@ -58,7 +75,7 @@ def is_connected(n: int, edges: Edges) -> bool:
 def incidence(n: int, edges: Edges) -> FloatArray:
     """Return the incidence matrix D, shape (n, M): +1 where an agent receives along an edge, −1 where it sends."""
     D, index = np.zeros((n, len(edges))), np.arange(len(edges))
-    sender, receiver = _columns(edges)
+    sender, receiver = np.array(edges).T
     D[receiver, index], D[sender, index] = 1.0, -1.0
     return D
 
@@ -70,10 +87,5 @@ def receivers(n: int, edges: Edges) -> FloatArray:
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
     """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m)."""
-    sender, receiver = _columns(edges)
+    sender, receiver = np.array(edges).T
     return q[..., sender, :] - q[..., receiver, :]
-
-
-def _columns(edges: Edges) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    pairs = np.array(edges, dtype=np.int64)
-    return pairs[:, 0], pairs[:, 1]

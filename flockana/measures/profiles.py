@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, real_array
+from flockana.base.checks import FloatArray, ensure_numbers
 from flockana.base.errors import ArgumentError
 
 _DISTANCES = 2**17  # that are held at once, at most, unless those of one instant are more
@@ -16,10 +16,8 @@ def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatAr
     """Return quantiles of all pair distances at each instant, shape (T, number of shares); NaN for one agent."""
     from scipy.spatial.distance import pdist
 
-    try:
-        positions, wanted = real_array(q), real_array(shares)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"q, shares = {shares!r}: expected numbers, in arrays") from None
+    positions = ensure_numbers("q", q, "numbers, in arrays")
+    wanted = ensure_numbers("shares", shares, "numbers, in arrays")
     if positions.ndim != 3:
         raise ArgumentError(f"q has shape {positions.shape}: expected (T, n, m), positions over time")
     if wanted.ndim != 1 or not ((wanted >= 0.0) & (wanted <= 1.0)).all():

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_state
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import FloatArray, ensure_index, ensure_state
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.neighbours import pair_list
 
@@ -59,9 +58,7 @@ class Reynolds:
         agent : int
             Its number, 0 to n − 1.
         """
-        n = len(self.centring)
-        if isinstance(agent, bool) or not isinstance(agent, int | np.integer) or not 0 <= agent < n:
-            raise ArgumentError(f"agent = {agent!r}: expected a whole number, 0 to {n - 1}")
+        agent = ensure_index("agent =", agent, len(self.centring))
         of_agent = (self.links == agent).any(axis=1)
         others, stress = self.links[of_agent].sum(axis=1) - agent, self.stress[of_agent]
         plus, minus, neutral = (np.sort(others[sign]) for sign in (stress > 0.0, stress < 0.0, stress == 0.0))

@@ -1,5 +1,6 @@
 """Measures defined for any flock: of its net, its extent and its velocities."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,26 +29,17 @@ def _relative_residual(run: Any) -> float:
     return float(np.abs(run.energy_residual).max()) / largest if largest > 0.0 else 0.0
 
 
+_share = partial(Measure, at_most_one=True)
+
 MEASURES = (
-    Measure(
-        "connectivity",
-        "C, relative connectivity",
-        over_time=lambda flock: flock.nets[0],
-        defined=has_range,
-        at_most_one=True,
-    ),
-    Measure(
-        "giant_share",
-        "C*, share of the largest component",
-        over_time=lambda flock: flock.nets[1],
-        defined=has_range,
-        at_most_one=True,
+    _share("connectivity", "C, relative connectivity", over_time=lambda flock: flock.nets[0], defined=has_range),
+    _share(
+        "giant_share", "C*, share of the largest component", over_time=lambda flock: flock.nets[1], defined=has_range
     ),
     Measure(
         "components",
         "components of the net",
         of_run=lambda run: int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1,
-        of_run_text="components of the net at the end",
         defined=has_range,
     ),
     Measure(
@@ -89,13 +81,8 @@ MEASURES = (
         of_run=lambda run: metrics.min_distance(run.q[-1]) / run.law.lattice[0],
         defined=has_lattice,
     ),
-    Measure("order", "polar order", over_time=lambda flock: metrics.orders(flock.p), at_most_one=True),
-    Measure(
-        "coordination",
-        "mean cosine between velocities",
-        over_time=lambda flock: metrics.coordinations(flock.p),
-        at_most_one=True,
-    ),
+    _share("order", "polar order", over_time=lambda flock: metrics.orders(flock.p)),
+    _share("coordination", "mean cosine between velocities", over_time=lambda flock: metrics.coordinations(flock.p)),
     Measure(
         "energy_residual",
         "residual of the energy balance",

@@ -1,10 +1,14 @@
 """Joint connectivity: time windows over which the nets, taken together, connect all agents."""
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from flockana.base.checks import ensure_count, ensure_fits, ensure_links
 from flockana.base.errors import ArgumentError
+from flockana.kernels.components import labelled, unite
 from flockana.measures.measure import Measure
 from flockana.measures.nets import LinkArray, links
 
@@ -35,24 +39,13 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
     ensure_fits(f"what is told of n = {n} agents,", (5, n), "ask for fewer agents")
     if not isinstance(nets, Iterable) or isinstance(nets, str | bytes) or getattr(nets, "ndim", 1) == 0:
         raise ArgumentError(f"nets = {nets!r}: expected the links at each instant, such as [[[0, 1]], [[1, 2]]]")
-    windows, start, leader, parts = [], 0, list(range(n)), n
-    for k, net in enumerate(nets):
-        for i, j in ensure_links(net, n).tolist():
-            one, other = _root(leader, i), _root(leader, j)
-            if one != other:
-                leader[one], parts = other, parts - 1
-        if parts == 1:
-            windows.append((start, k + 1))
-            start, leader, parts = k + 1, list(range(n)), n
-    return tuple(windows)
-
-
-def _root(leader: list[int], i: int) -> int:
-    """Return the root of agent i's group, with path halving."""
-    while leader[i] != i:
-        leader[i] = leader[leader[i]]
-        i = leader[i]
-    return i
+    ends, known = [0], np.arange(n)
+    for k, net in enumerate(nets, start=1):
+        unite(known, *ensure_links(net, n).T)
+        if not labelled(known).any():
+            ends.append(k)
+            known = np.arange(n)
+    return tuple(pairwise(ends))
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:

@@ -1,12 +1,10 @@
 """A γ-agent from a table: through its samples, smooth between, saved with runs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.errors import ArgumentError
+from tests.refused import refused
 
 T = np.linspace(5.0, 15.0, 41)
 Q = np.stack([3.0 * np.cos(T), T**2 / 10.0], axis=1)
@@ -52,16 +50,10 @@ def test_a_run_with_it_is_saved_judged_and_rescaled(tmp_path):
     np.testing.assert_allclose(other.rate(60.0 * 7.3), 1000.0 / 60.0 * law.target.rate(7.3))
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (([0.0], [[1.0]]), "two or more"),
-        (([0.0, 1.0], [[1.0]]), "t has 2 times and q 1 positions"),
-        (([1.0, 0.0], [[1.0], [2.0]]), "expected rising times"),
-        (([0.0, 1.0], [[1.0], [np.nan]]), "expected finite numbers"),
-        (([0.0, 1.0], [[1.0], [2.0]], [[1.0]]), r"p has shape \(1, 1\): expected \(2, 1\)"),
-    ],
+test_what_is_no_table_is_refused = refused(
+    (lambda: fl.TableTarget([0.0], [[1.0]]), "two or more"),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0]]), "t has 2 times and q 1 positions"),
+    (lambda: fl.TableTarget([1.0, 0.0], [[1.0], [2.0]]), "expected rising times"),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0], [np.nan]]), "expected finite numbers"),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0], [2.0]], [[1.0]]), r"p has shape \(1, 1\): expected \(2, 1\)"),
 )
-def test_what_is_no_table_is_refused(given, message):
-    with pytest.raises(ArgumentError, match=message):
-        fl.TableTarget(*given)

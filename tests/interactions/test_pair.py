@@ -1,10 +1,8 @@
 """Pair laws: exact facts, refusals, and the sums' Hessian and Laplacian by hand."""
 
-from __future__ import annotations
-
 import pickle
 import re
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import FrozenInstanceError
 from math import sqrt
 
 import numpy as np
@@ -222,18 +220,3 @@ def test_coincident_agents_have_no_derivative_where_their_force_has_no_limit(pai
     for derivative in (lambda: law.jacobian(0.0, q, p), lambda: law.stiffness(q)):
         with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart: the pair law has no derivative there"):
             derivative()
-
-
-def test_a_run_that_was_edited_so_that_agents_coincide_is_refused():
-    run = fl.simulate(fl.DeadZoneFlocking(), [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]], np.eye(3, 2), (0.0, 3.0))
-    q = run.q.copy()
-    q[-1, 0] = q[-1, 1]
-    with pytest.raises(ArgumentError, match="was made or changed by hand"):
-        fl.verify("energy", replace(run, q=q))
-    with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart"):
-        fl.DeadZoneFlocking().jacobian(0.0, q[-1], run.p[-1])
-
-
-def test_whether_agents_may_coincide_is_a_truth_value():
-    assert AlphaInteraction().coincidence is True
-    assert fl.DeadZoneFlocking().interaction.coincidence is False

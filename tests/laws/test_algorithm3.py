@@ -1,6 +1,5 @@
 """Algorithm 3 against a dense reference, its own energy, and the symbolic expressions; bad input."""
 
-import math
 from typing import Any
 
 import mpmath
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana import Algorithm1, Algorithm3, Capsule, Obstacle, Polygon, Sphere, Target, Wall, simulate, symbolic
+from flockana import Algorithm3, Capsule, Obstacle, Polygon, Sphere, Target, Wall, simulate, symbolic
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import (
     CallableTarget,
@@ -20,6 +19,7 @@ from flockana.environment.targets import (
 )
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.symbolic.obstacles import sphere_beta, wall_beta
+from tests.refused import refused
 
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.3, c1_beta=7.0, c2_beta=1.1, c1_gamma=0.9, c2_gamma=0.4)
 BETA = BetaInteraction(d=2.0, r=2.4, eps=0.2)
@@ -54,40 +54,6 @@ def _law(m: int, target: Target | None = None) -> Algorithm3:
     return Algorithm3(alpha=ALPHA, gains=GAINS, target=target, beta=BETA, obstacles=OBSTACLES[m])
 
 
-def _dense(law: Algorithm3, t: float, q: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, float]:
-    """(u, H) by plain loops over agents, pairs and obstacles, from the formulas."""
-    g, alpha, beta = law.gains, law.alpha, law.beta
-    q_r, p_r = law.target.state(t)
-    u, energy = np.zeros_like(q), 0.5 * np.sum(p * p)
-    for i in range(len(q)):
-        for j in range(len(q)):
-            if j != i:
-                x = q[j] - q[i]
-                z = (math.sqrt(1.0 + alpha.eps * x @ x) - 1.0) / alpha.eps
-                u[i] += g.c1_alpha * alpha.phi_alpha(z) * x / math.sqrt(1.0 + alpha.eps * x @ x)
-                u[i] += g.c2_alpha * alpha.adjacency(z) * (p[j] - p[i])
-                energy += 0.5 * g.c1_alpha * alpha.psi_alpha(z)
-        for obstacle in law.obstacles:
-            foot = obstacle.beta_agents(q[i : i + 1], p[i : i + 1])
-            x = foot.q[0] - q[i]
-            z = (math.sqrt(1.0 + beta.eps * x @ x) - 1.0) / beta.eps
-            u[i] += g.c1_beta * beta.phi_beta(z) * x / math.sqrt(1.0 + beta.eps * x @ x)
-            u[i] += g.c2_beta * beta.adjacency(z) * (foot.p[0] - p[i])
-            energy += g.c1_beta * beta.psi_beta(z)
-        x = q[i] - q_r
-        u[i] -= g.c1_gamma * x / math.sqrt(1.0 + x @ x) + g.c2_gamma * (p[i] - p_r)
-        energy += g.c1_gamma * (math.sqrt(1.0 + x @ x) - 1.0)
-    return u, float(energy)
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_input_and_energy_are_those_of_plain_loops(m: int) -> None:
-    law, (q, p) = _law(m, StaticTarget(np.linspace(1.0, 2.0, m), np.linspace(0.5, -1.0, m))), _state(m)
-    u, energy = _dense(law, 0.0, q, p)
-    np.testing.assert_allclose(law.acceleration(0.0, q, p), u, rtol=1e-11, atol=1e-12)
-    assert law.energy(0.0, q, p) == pytest.approx(energy, rel=1e-13)
-
-
 TARGETS = {
     "static": StaticTarget((1.0, 2.0)),
     "static with p_d": StaticTarget((1.0, 2.0), (0.7, -0.4)),
@@ -120,15 +86,6 @@ def test_each_obstacle_kind_enters_the_rate() -> None:
         ahead, behind = (law.energy(0.0, q + s * p + 0.5 * s * s * u, p + s * u) for s in (h, -h))
         assert len(q) == 5
         assert law.energy_rate(0.0, q, p) == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-7, abs=1e-7)
-
-
-@pytest.mark.parametrize("target", [TARGETS["circle"], TARGETS["wrong scale"]])
-def test_the_energy_balances_along_a_run(target: Target) -> None:
-    """The integral of the closed form against H, beside all kinds of obstacles: rtol 1e-10 leaves about 1e-8 of it."""
-    q, p = _state(2, 12)
-    run = simulate(_law(2, target), q, p, (0.0, 0.7), rtol=1e-10, atol=1e-12)
-    assert run.status == "complete"
-    assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
 
 
 def _psi_beta(z: sp.Expr, beta: symbolic.BetaSymbols) -> sp.Expr:
@@ -184,44 +141,16 @@ def test_kernel_and_symbolic_expression_agree(kind: str, q: list[float], obstacl
     assert law.energy_rate(0.0, [q], [p]) == pytest.approx(rate, rel=1e-12)
 
 
-def test_an_agent_beyond_d_prime_feels_no_obstacle() -> None:
-    law = Algorithm3(target=StaticTarget((0.0, 0.0)), beta=BETA, obstacles=(Wall((0.0, 0.0), (0.0, 1.0)),), gains=GAINS)
-    free = Algorithm3(target=StaticTarget((0.0, 0.0)), beta=BETA, gains=GAINS)
-    for height in (2.0, 2.3, 10.0):
-        state = 0.0, [[1.0, height]], [[1.0, -1.0]]
-        np.testing.assert_array_equal(law.acceleration(*state), free.acceleration(*state))
-        assert law.energy(*state) == free.energy(*state)
-
-
-def test_without_obstacles_and_gamma_it_is_algorithm_1() -> None:
-    gains = Gains(c1_gamma=0.0, c2_gamma=0.0)
-    (q, p), law = _state(2), Algorithm3(target=StaticTarget((0.0, 0.0)), gains=gains)
-    other = Algorithm1(gains=gains)
-    np.testing.assert_array_equal(law.acceleration(0.0, q, p), other.acceleration(0.0, q, p))
-    assert law.energy_rate(0.0, q, p) == other.energy_rate(0.0, q, p)
-
-
-def test_the_pull_of_the_gamma_agent_is_bounded() -> None:
-    law = Algorithm3(target=StaticTarget((0.0, 0.0)), gains=Gains(c1_gamma=1.1))
-    pull = law.acceleration(0.0, [[3e5, 4e5]], [[0.0, 0.0]])
-    np.testing.assert_allclose(pull, [[-0.66, -0.88]], rtol=1e-10)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"target": None}, "target = None: expected a γ-agent"),
-        ({"obstacles": Sphere((0.0, 0.0), 1.0)}, r"obstacles = Sphere.*expected a sequence"),
-        ({"obstacles": (Sphere((9.0, 9.0), 1.0), 3)}, r"obstacles\[1\] = 3: expected an obstacle"),
-        ({"obstacles": (Sphere((0.0, 0.0, 0.0), 1.0),)}, r"obstacles\[0\] = .* has 3 components but the target has 2"),
-        ({"beta": 4.2}, "beta = 4.2: expected BetaInteraction"),
-        ({"alpha": BetaInteraction()}, "expected AlphaInteraction"),
-        ({"gains": 1.0}, "gains = 1.0: expected Gains"),
-    ],
+test_bad_laws_are_refused = refused(
+    ({"target": None}, "target = None: expected a γ-agent"),
+    ({"obstacles": Sphere((0.0, 0.0), 1.0)}, r"obstacles = Sphere.*expected a sequence"),
+    ({"obstacles": (Sphere((9.0, 9.0), 1.0), 3)}, r"obstacles\[1\] = 3: expected an obstacle"),
+    ({"obstacles": (Sphere((0.0, 0.0, 0.0), 1.0),)}, r"obstacles\[0\] = .* has 3 components but the target has 2"),
+    ({"beta": 4.2}, "beta = 4.2: expected BetaInteraction"),
+    ({"alpha": BetaInteraction()}, "expected AlphaInteraction"),
+    ({"gains": 1.0}, "gains = 1.0: expected Gains"),
+    make=lambda **options: Algorithm3(**({"target": StaticTarget((0.0, 0.0))} | options)),
 )
-def test_bad_laws_are_refused(options: dict[str, Any], message: str) -> None:
-    with pytest.raises(ArgumentError, match=message):
-        Algorithm3(**({"target": StaticTarget((0.0, 0.0))} | options))
 
 
 def test_another_dimension_is_refused() -> None:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.errors import ArgumentError
 from flockana.laws.sum_of_terms import SumOfTerms
+from tests.refused import refused
 
 RNG = np.random.default_rng(3)
 Q, P = RNG.normal(0.0, 2.0, (5, 2)), RNG.normal(0.0, 1.0, (5, 2))
@@ -69,14 +69,10 @@ def test_momentum_is_kept():
     np.testing.assert_allclose(run.p.sum(axis=1), np.tile(P.sum(axis=0), (len(run.t), 1)), atol=1e-12)
 
 
-def test_bad_parameters_are_named():
-    with pytest.raises(ArgumentError, match="strength = 0: expected a number > 0"):
-        fl.RationalWeight(0.0)
-    with pytest.raises(ArgumentError, match="decay = -1: expected a number >= 0"):
-        fl.RationalWeight(decay=-1.0)
-    with pytest.raises(ArgumentError, match="length = nan: expected a finite number"):
-        fl.RationalWeight(length=float("nan"))
-    with pytest.raises(ArgumentError, match="weight = 3: expected RationalWeight"):
-        fl.CuckerSmale(3)
-    with pytest.raises(ArgumentError, match="mean = 1: expected True or False"):
-        fl.CuckerSmale(mean=1)
+test_bad_parameters_are_named = refused(
+    (lambda: fl.RationalWeight(0.0), "strength = 0: expected a number > 0"),
+    (lambda: fl.RationalWeight(decay=-1.0), "decay = -1: expected a number >= 0"),
+    (lambda: fl.RationalWeight(length=float("nan")), "length = nan: expected a finite number"),
+    (lambda: fl.CuckerSmale(3), "weight = 3: expected RationalWeight"),
+    (lambda: fl.CuckerSmale(mean=1), "mean = 1: expected True or False"),
+)

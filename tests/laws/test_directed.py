@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, DirectedNet, LinearTarget, Sphere, simulate
-from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from tests.refused import refused
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0)
 
@@ -88,23 +88,17 @@ def test_speeds_whose_squares_all_but_vanish_look_round():
     np.testing.assert_allclose(u, Algorithm1().acceleration(0.0, [[0.0], [1e-5]], np.zeros((2, 1))), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: DirectedNet(3), "law = 3: expected Algorithm1"),
-        (lambda: DirectedNet(Algorithm1(), (1.0, -1.0)), r"ranges\[1\] = -1: expected a number > 0"),
-        (lambda: DirectedNet(Algorithm1(), ()), "ranges is empty"),
-        (lambda: DirectedNet(Algorithm1(), ((8.0, 3.0),)), r"ranges has shape \(1, 2\): expected one range"),
-        (lambda: DirectedNet(Algorithm1(), view=7.0), "view = 7: expected an angle in radians"),
-        (lambda: DirectedNet(Algorithm1(), view=0.0), "view = 0: expected an angle in radians"),
-        (lambda: DirectedNet(Algorithm1(), slow=0.0), "slow = 0: expected a number > 0"),
-        (
-            lambda: DirectedNet(Algorithm1(), (1.0, 2.0)).acceleration(0.0, [[0.0]], [[0.0]]),
-            "2 ranges and 1 agents: expected one range each",
-        ),
-        (lambda: DirectedNet(Algorithm1()).jacobian(0.0, [[0.0]], [[0.0]]), "DirectedNet gives no derivatives"),
-    ],
+test_refusals = refused(
+    (lambda: DirectedNet(3), "law = 3: expected Algorithm1"),
+    (lambda: DirectedNet(Algorithm1(), (1.0, -1.0)), r"ranges\[1\] = -1: expected a number > 0"),
+    (lambda: DirectedNet(Algorithm1(), ()), r"ranges has shape \(0,\): expected one number"),
+    (lambda: DirectedNet(Algorithm1(), ((8.0, 3.0),)), r"ranges has shape \(1, 2\): expected one number"),
+    (lambda: DirectedNet(Algorithm1(), view=7.0), "view = 7: expected an angle in radians"),
+    (lambda: DirectedNet(Algorithm1(), view=0.0), "view = 0: expected an angle in radians"),
+    (lambda: DirectedNet(Algorithm1(), slow=0.0), "slow = 0: expected a number > 0"),
+    (
+        lambda: DirectedNet(Algorithm1(), (1.0, 2.0)).acceleration(0.0, [[0.0]], [[0.0]]),
+        "2 ranges and 1 agents: expected one range each",
+    ),
+    (lambda: DirectedNet(Algorithm1()).jacobian(0.0, [[0.0]], [[0.0]]), "DirectedNet gives no derivatives"),
 )
-def test_refusals(make, message):
-    with pytest.raises(ArgumentError, match=message):
-        make()

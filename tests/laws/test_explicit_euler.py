@@ -1,7 +1,5 @@
 """Explicit Euler steps: both states with the old one, the order of the scheme, what it does to a swing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

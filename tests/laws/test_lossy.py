@@ -1,7 +1,5 @@
 """Lossy laws: nothing, all or a share of the messages lost."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -12,6 +12,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
 from flockana.kernels.minimal import perceived_edges
 from flockana.measures.perception import both_ways
+from tests.refused import refused
 
 R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -50,25 +51,16 @@ def transcription(q, p, *, radius, mu, sigma, beta=None, spacing=None, edges=Non
     return u
 
 
+TABLES = {"radius": R, "mu": table(5, 1), "sigma": table(5, 2)}
 CASES = {
-    "perceived": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2)},
-    "beta": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "beta": BETA},
-    "spacing": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "spacing": BETA},
-    "summed": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "normalised": False},
-    "tree": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "edges": TREE},
-    "tree-spacing": {"radius": R, "mu": table(5, 1), "sigma": table(5, 2), "edges": TREE, "spacing": BETA},
-    "cycle": {
-        "radius": R,
-        "mu": table(5, 1),
-        "sigma": table(5, 2),
-        "edges": ((0, 1), (1, 2), (2, 0), (3, 2)),
-        "normalised": False,
-    },
+    "perceived": TABLES,
+    "beta": TABLES | {"beta": BETA},
+    "spacing": TABLES | {"spacing": BETA},
+    "summed": TABLES | {"normalised": False},
+    "tree": TABLES | {"edges": TREE},
+    "tree-spacing": TABLES | {"edges": TREE, "spacing": BETA},
+    "cycle": TABLES | {"edges": ((0, 1), (1, 2), (2, 0), (3, 2)), "normalised": False},
 }
-
-
-def law_of(radius, **options):
-    return MinimalFlocking(radius, **options)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
@@ -76,7 +68,7 @@ def law_of(radius, **options):
 def test_it_is_the_printed_law(case, m):
     q, p = state(5, m, seed=m)
     options = CASES[case]
-    found = law_of(**options).acceleration(0.0, q, p)
+    found = MinimalFlocking(**options).acceleration(0.0, q, p)
     # two orders of summation of at most four terms of order ten
     np.testing.assert_allclose(found, transcription(q, p, **options), rtol=0, atol=1e-13)
 
@@ -93,7 +85,7 @@ def test_the_jacobian_is_the_complex_step_of_the_transcription(case, m):
         dq, dp = nudge[: q.size].reshape(q.shape), nudge[q.size :].reshape(q.shape)
         u = transcription(q + dq, p + dp, **options)
         columns.append(np.concatenate([(p + dp).imag.ravel(), u.imag.ravel()]) / step)
-    law = law_of(**options)
+    law = MinimalFlocking(**options)
     np.testing.assert_allclose(law.jacobian(0.0, q, p), np.array(columns).T, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(law.jacobian(0.0, q, p, sparse=True).toarray(), law.jacobian(0.0, q, p))
 
@@ -135,11 +127,6 @@ def test_a_driven_edge_follows_its_closed_form():
     exact = [rho + y0 * exp(-t / 2) * (cos(w * t) + sin(w * t) / (2 * w)) for t in run.t]
     np.testing.assert_allclose(run.q[:, 1, 0], exact, rtol=0, atol=1e-9)
     assert np.all(run.q[:, 0] == 0.0)
-
-
-def test_agents_without_neighbours_move_straight_on():
-    q, p = state(4, 2, size=100.0)
-    assert not MinimalFlocking(0.1).acceleration(0.0, q, p).any()
 
 
 def test_coincident_agents_have_no_spring_but_align():
@@ -187,16 +174,8 @@ def test_there_is_no_energy_without_reciprocity(options):
     assert np.isnan(law.energy_rate(0.0, *state(5, 2)))
 
 
-def test_reciprocal_runs_account_for_their_energy_and_keep_their_momentum():
-    law = MinimalFlocking(edges=both_ways(TREE), spacing=1.0, normalised=False)
-    run = simulate(law, *state(5, 3), (0.0, 20.0))
-    assert np.abs(run.energy_residual).max() < 1e-6 * run.energy()[0]
-    np.testing.assert_allclose(run.p.mean(axis=1), np.broadcast_to(run.p[0].mean(axis=0), (len(run.t), 3)), atol=1e-12)
-    assert np.diff(run.energy()).max() < 1e-9
-
-
 def test_one_discrete_step_is_velocity_first():
-    law, dt = law_of(**CASES["perceived"]), 0.1
+    law, dt = MinimalFlocking(**CASES["perceived"]), 0.1
     q, p = state(5, 2)
     after_q, after_p, u, memory = law.discrete(dt).step(0.0, q, p, {})
     expected = transcription(q, p, **CASES["perceived"])
@@ -276,7 +255,7 @@ def test_flocks_of_any_size_are_stepped_as_one_by_one(n):
 
 @pytest.mark.parametrize("case", CASES)
 def test_tables_and_edges_are_stepped_by_the_law_itself(case):
-    law, (q, p) = law_of(**CASES[case]).discrete(0.1), state(5, 2)
+    law, (q, p) = MinimalFlocking(**CASES[case]).discrete(0.1), state(5, 2)
     assert not law.law.steps_many(5)
     assert_same_bits(law.iterate(0.0, q, p, {}, 3)[:3], one_by_one(law, q, p, 3))
 
@@ -317,18 +296,10 @@ def test_what_a_subclass_remembers_is_kept():
     assert run.extra["count"].shape == (6, 1)
 
 
-def test_the_discrete_variant_approaches_the_flow_at_first_order():
-    law = MinimalFlocking(edges=TREE, spacing=1.0)
-    q, p = state(5, 2)
-    exact = simulate(law, q, p, (0.0, 1.0), rtol=1e-11, atol=1e-12).q[-1]
-    errors = [np.abs(simulate(law.discrete(dt), q, p, (0.0, 1.0)).q[-1] - exact).max() for dt in (0.01, 0.005)]
-    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
-
-
 def test_laws_survive_files(tmp_path):
-    for law in (law_of(**CASES["tree-spacing"]), MinimalFlocking(), MinimalFlocking(edges=TREE).discrete(0.2)):
+    for law in (MinimalFlocking(**CASES["tree-spacing"]), MinimalFlocking(), MinimalFlocking(edges=TREE).discrete(0.2)):
         assert from_data(to_data(law)) == law
-    run = simulate(law_of(**CASES["tree-spacing"]), *state(5, 2), (0.0, 1.0))
+    run = simulate(MinimalFlocking(**CASES["tree-spacing"]), *state(5, 2), (0.0, 1.0))
     assert Trajectory.load(run.save(tmp_path / "run.nc")).law == run.law
 
 
@@ -349,14 +320,13 @@ def test_a_law_in_other_units_pushes_as_before(radius, given):
     np.testing.assert_allclose(doubled, 2.0 * law.acceleration(0.0, q, p), rtol=1e-13, atol=1e-15)
 
 
-def test_the_number_of_agents_must_fit():
-    with pytest.raises(ArgumentError, match="4 agents: expected 5"):
-        law_of(**CASES["spacing"]).acceleration(0.0, *state(4, 2))
-    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
-        simulate(MinimalFlocking(edges=TREE), *state(3, 2), (0.0, 1.0))
-    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
-        simulate(MinimalFlocking(edges=TREE).discrete(), *state(3, 2), (0.0, 1.0))
-    with pytest.raises(ArgumentError, match=r"expected MinimalFlocking\(\.\.\.\)"):
-        DiscreteMinimalFlocking(3)
-    with pytest.raises(ArgumentError, match="dt = 0"):
-        MinimalFlocking().discrete(0.0)
+test_the_number_of_agents_must_fit = refused(
+    (lambda: MinimalFlocking(**CASES["spacing"]).acceleration(0.0, *state(4, 2)), "4 agents: expected 5"),
+    (lambda: simulate(MinimalFlocking(edges=TREE), *state(3, 2), (0.0, 1.0)), "3 agents: expected at least 5"),
+    (
+        lambda: simulate(MinimalFlocking(edges=TREE).discrete(), *state(3, 2), (0.0, 1.0)),
+        "3 agents: expected at least 5",
+    ),
+    (lambda: DiscreteMinimalFlocking(3), r"expected MinimalFlocking\(\.\.\.\)"),
+    (lambda: MinimalFlocking().discrete(0.0), "dt = 0"),
+)

@@ -1,14 +1,12 @@
 """Sampled laws: the Taylor step, holds longer than a step, clocks of their own, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from flockana import Algorithm2, Gains, Sampled, StaticTarget, TaylorStep, simulate
-from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch
 from flockana.stability import sampling_margin
+from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 Q = hexagonal_patch(1, 7.0) + 0.3
@@ -40,15 +38,9 @@ def test_runs_lose_stability_at_the_margin():
         assert (np.abs(run.q[-8:]).max() > 1e-3) == grows
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: Sampled(LAW, 0.0), "period = 0: expected a number > 0"),
-        (lambda: Sampled(LAW, 0.1, offsets=(0.1,)), r"offsets = .*: expected one for each agent, 0 <= offset < 0.1"),
-        (lambda: simulate(Sampled(LAW, 0.1, offsets=(0.0,)), Q, Q, (0, 1), dt=0.1), "there are 1 offsets and 7 agents"),
-        (lambda: simulate(Sampled(LAW, 0.1), Q, Q, (0, 1), dt=0.2), "divides the delay or period 0.1, such as 0.1"),
-    ],
+test_bad_input = refused(
+    (lambda: Sampled(LAW, 0.0), "period = 0: expected a number > 0"),
+    (lambda: Sampled(LAW, 0.1, offsets=(0.1,)), r"offsets = .*: expected one for each agent, 0 <= offset < 0.1"),
+    (lambda: simulate(Sampled(LAW, 0.1, offsets=(0.0,)), Q, Q, (0, 1), dt=0.1), "there are 1 offsets and 7 agents"),
+    (lambda: simulate(Sampled(LAW, 0.1), Q, Q, (0, 1), dt=0.2), "divides the delay or period 0.1, such as 0.1"),
 )
-def test_bad_input(call, message):
-    with pytest.raises(ArgumentError, match=message):
-        call()

@@ -1,11 +1,10 @@
 """The plainest step: exact for constant inputs, of first order, and the notebook's own loop written out."""
 
 import numpy as np
-import pytest
 
-from flockana import Algorithm1, AlphaInteraction, Gains, StaticTarget, TaylorStep, simulate
-from flockana.base.errors import ArgumentError
+from flockana import AlphaInteraction, Gains, StaticTarget, TaylorStep, simulate
 from flockana.laws.notebook import PushedAlgorithm2
+from tests.refused import refused
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.0, c2_gamma=0.5)
 LAW = PushedAlgorithm2(AlphaInteraction(1.7, 2.5, 0.01, 0.2, 7.0, 15.0), UNIT, StaticTarget((5.0, 5.0), (0.7, 0.1)))
@@ -39,15 +38,7 @@ def test_the_notebooks_loop():
         np.testing.assert_allclose(run.p[k + 1], p, atol=1e-11)
 
 
-def test_it_is_of_first_order():
-    q, p = [[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]], [[0.3, 0.0], [0.0, 0.1], [0.0, 0.0]]
-    true = simulate(Algorithm1(), q, p, (0.0, 1.0), t_eval=[1.0], rtol=1e-11).q[-1]
-    errors = [np.abs(simulate(TaylorStep(Algorithm1(), h), q, p, (0.0, 1.0)).q[-1] - true).max() for h in (4e-3, 2e-3)]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
-
-
-def test_refusals():
-    with pytest.raises(ArgumentError, match="dt = 0: expected a number > 0"):
-        TaylorStep(LAW, 0.0)
-    with pytest.raises(ArgumentError, match="expected a continuous law"):
-        TaylorStep(TaylorStep(LAW))
+test_refusals = refused(
+    (lambda: TaylorStep(LAW, 0.0), "dt = 0: expected a number > 0"),
+    (lambda: TaylorStep(TaylorStep(LAW)), "expected a continuous law"),
+)

@@ -59,17 +59,6 @@ def test_a_passage_through_an_obstacle_is_not_missed() -> None:
     assert 8.0 / 17.0 <= found.time <= 10.0 / 17.0
 
 
-def test_a_dip_towards_a_wall_is_found() -> None:
-    """A parabola y = 1 + 4 (t − ½)² over one step, which a quintic gives exactly and its cubic too."""
-    t = np.array([0.0, 1.0])
-    q = np.array([[[0.0, 2.0]], [[1.0, 2.0]]])
-    p, u = np.array([[[1.0, -4.0]], [[1.0, 4.0]]]), np.array([[[0.0, 8.0]], [[0.0, 8.0]]])
-    found = clearance(t, q, p, u, [Wall((0.0, 0.0), (0.0, 1.0))])
-    assert found.lower == pytest.approx(1.0, abs=1e-8)
-    assert found.reached == pytest.approx(1.0, abs=1e-12)
-    assert found.time == 0.5
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_the_bound_lies_below_the_true_path_and_close_to_it(seed: int) -> None:
     """Smooth random paths, finely evaluated: the bound is below by at most the interpolation allowance."""

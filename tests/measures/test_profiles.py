@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist
 
-from flockana.base.errors import ArgumentError
 from flockana.measures.metrics import min_distance
 from flockana.measures.profiles import pair_distance_profile
+from tests.refused import refused
 
 
 def test_quantiles_of_all_pairs():
@@ -24,25 +24,19 @@ def test_one_agent_has_no_distances():
     assert pair_distance_profile(np.zeros((4, 1, 3))).shape == (4, 5)
 
 
-def test_bad_arguments():
-    with pytest.raises(ArgumentError, match=r"q has shape \(2, 2\): expected \(T, n, m\)"):
-        pair_distance_profile(np.zeros((2, 2)))
-    for q in ("ab", [[["a"]]], [[[0.0], [1.0, 2.0]]]):
-        with pytest.raises(ArgumentError, match="expected numbers, in arrays"):
-            pair_distance_profile(q)
-    with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
-        pair_distance_profile(np.zeros((1, 2, 2)), (0.5, 1.5))
-    with pytest.raises(ArgumentError, match="expected numbers from 0 to 1"):
-        pair_distance_profile(np.zeros((1, 2, 2)), (-0.5, 0.5))
-
-
-def test_two_agents_have_one_distance():
-    assert pair_distance_profile([[[0.0], [3.0]], [[1.0], [6.0]]], (0.0, 0.5, 1.0)).tolist() == [[3.0] * 3, [5.0] * 3]
-
-
 @pytest.mark.parametrize(("n", "count"), [(8, 5000), (700, 3)])
 def test_instants_in_blocks_are_those_one_by_one(n, count):
     """More of them than are held at once, and more pairs at one instant."""
     q, shares = np.random.default_rng(n).normal(size=(count, n, 2)), (0.0, 0.3, 1.0)
     expected = [np.quantile(pdist(instant), shares) for instant in q]
     np.testing.assert_array_equal(pair_distance_profile(q, shares), expected)
+
+
+test_bad_arguments = refused(
+    (lambda: pair_distance_profile(np.zeros((2, 2))), r"q has shape \(2, 2\): expected \(T, n, m\)"),
+    (lambda: pair_distance_profile("ab"), "q = 'ab': expected numbers, in arrays"),
+    (lambda: pair_distance_profile([[["a"]]]), "expected numbers, in arrays"),
+    (lambda: pair_distance_profile([[[0.0], [1.0, 2.0]]]), "expected numbers, in arrays"),
+    (lambda: pair_distance_profile(np.zeros((1, 2, 2)), (0.5, 1.5)), "expected numbers from 0 to 1"),
+    (lambda: pair_distance_profile(np.zeros((1, 2, 2)), (-0.5, 0.5)), "expected numbers from 0 to 1"),
+)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, AlphaInteraction, Gains
-from flockana.base.errors import ArgumentError
 from flockana.measures.reynolds import reynolds
+from tests.refused import refused
 
 ALPHA = AlphaInteraction(d=3.0, r=3.6, eps=0.1, h=0.2, a=4.0, b=5.0)
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.3)
@@ -61,22 +61,9 @@ def test_coincident_agents_and_exact_neighbours() -> None:
     np.testing.assert_allclose(rules.total, 0.0, atol=1e-13)
 
 
-def test_a_neutral_friend() -> None:
-    """The largest distance below r: φ_α underflows to zero within the taper's last digits."""
-    alpha = AlphaInteraction(d=7.0, r=8.4)
-    rules = reynolds([[0.0], [np.nextafter(8.4, 0.0)]], [[0.0], [0.0]], alpha=alpha)
-    assert len(rules.links) == 1
-    assert rules.stress[0] == pytest.approx(0.0, abs=1e-25)
-    assert sum(len(f) for f in rules.friends(0)) == 1
-
-
-@pytest.mark.parametrize("agent", [-1, 2, 1.0, "a", True])
-def test_no_such_agent(agent: object) -> None:
-    rules = reynolds([[0.0], [1.0]], [[0.0], [0.0]])
-    with pytest.raises(ArgumentError, match="expected a whole number, 0 to 1"):
-        rules.friends(agent)  # type: ignore[arg-type]
-
-
-def test_bad_states_are_refused() -> None:
-    with pytest.raises(ArgumentError, match="expected equal shapes"):
-        reynolds([[0.0, 1.0]], [[0.0]])
+test_bad_input = refused(
+    (lambda: reynolds([[0.0], [1.0]], [[0.0], [0.0]]).friends(-1), "agent = -1: expected a whole number, 0 to 1"),
+    (lambda: reynolds([[0.0], [1.0]], [[0.0], [0.0]]).friends(2), "agent = 2: expected a whole number, 0 to 1"),
+    (lambda: reynolds([[0.0], [1.0]], [[0.0], [0.0]]).friends(True), "expected a whole number, 0 to 1"),
+    (lambda: reynolds([[0.0, 1.0]], [[0.0]]), "expected equal shapes"),
+)

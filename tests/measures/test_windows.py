@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import Algorithm1, HeadingAveraging, MinimalFlocking, components, diameter, joint_windows, simulate
-from flockana.base.errors import ArgumentError
 from flockana.measures.measure import measures
 from flockana.measures.windows import windows_of
+from tests.refused import refused
 
 pairs = st.tuples(st.integers(0, 3), st.integers(0, 3)).filter(lambda pair: pair[0] < pair[1])
 
@@ -40,30 +40,17 @@ def test_windows_of_a_run():
     assert measures()["joint_windows"].number(flock) == 3.0
 
 
-def test_a_law_without_a_net_has_no_windows():
-    law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
-    with pytest.raises(ArgumentError, match="MinimalFlocking has no net"):
-        windows_of(simulate(law, [[0.0], [1.0]], [[0.0], [0.0]], (0.0, 0.1)))
-
-
-def test_bad_numbers_of_agents():
-    with pytest.raises(ArgumentError, match="n = 0"):
-        joint_windows(0, [])
-
-
-@pytest.mark.parametrize("nets", [7, None, "ab", b"ab", np.array(3.0)])
-def test_what_is_no_sequence_of_nets_is_refused(nets):
-    with pytest.raises(ArgumentError, match="expected the links at each instant"):
-        joint_windows(2, nets)
-
-
 @given(st.integers(1, 7), st.integers(1, 3), st.integers(0, 99))
 def test_the_diameter_is_the_greatest_distance(n, m, seed):
     x = np.random.default_rng(seed).normal(size=(n, m))
     assert diameter(x) == pytest.approx(max(np.linalg.norm(a - b) for a in x for b in x), abs=1e-15)
 
 
-def test_diameters_over_time():
-    run = simulate(Algorithm1(), [[0.0], [7.0], [20.0]], [[1.0], [0.0], [-1.0]], (0.0, 1.0), t_eval=[0.0, 1.0])
-    assert run.metric("position_diameter")[0] == 20.0
-    assert run.metric("velocity_diameter").tolist() == [diameter(p) for p in run.p]
+LONE = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
+test_bad_input = refused(
+    (lambda: windows_of(simulate(LONE, [[0.0], [1.0]], [[0.0]] * 2, (0.0, 0.1))), "MinimalFlocking has no net"),
+    (lambda: joint_windows(0, []), "n = 0"),
+    (lambda: joint_windows(2, 7), "nets = 7: expected the links at each instant"),
+    (lambda: joint_windows(2, "ab"), "nets = 'ab': expected the links at each instant"),
+    (lambda: joint_windows(2, np.array(3.0)), "expected the links at each instant"),
+)

@@ -97,11 +97,6 @@ def test_matching_under_the_dead_zone_is_called_measured_wherever_the_theorem_is
     assert "is measured, not proved" in promise
 
 
-def test_no_share_of_lattices_is_claimed_that_nobody_counted():
-    assert "most small flocks end in one" not in TEXT["07"]
-    assert "40 lattices" not in TEXT["07"]
-
-
 def test_what_sets_the_rate_of_late_consensus():
     from flockana.stability import consensus_root
 

@@ -1,9 +1,7 @@
 """The alignment term: velocity consensus alone, with any weight of the distance, near or far."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,10 +9,7 @@ from flockana.base.checks import FloatArray
 from flockana.interactions.pair import pair_matrix
 from flockana.interactions.weights import Weight
 from flockana.kernels.listed import no_energy
-from flockana.laws.terms.term import Term, TermKernel
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
 @dataclass(frozen=True)
@@ -59,7 +54,7 @@ class AlignmentTerm(Term):
         numbers = np.concatenate([[self.gain, float(self.mean), r], self.weight.par])
         return TermKernel(self.weight.kernels.act, no_energy, numbers, np.empty((0, 0)), r if np.isfinite(r) else 0.0)
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         (n, m), kernels, gain = q.shape, self.weight.kernels, self._gain(len(q))
         i, j = np.triu_indices(n, 1)
         delta, slip = q[j] - q[i], p[j] - p[i]

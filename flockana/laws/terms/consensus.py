@@ -1,19 +1,14 @@
 """Velocity consensus by itself, over a net other than that of the potential."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from flockana.base.checks import FloatArray
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.listed import no_energy
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Term, TermKernel
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
 @dataclass(frozen=True)
@@ -39,5 +34,5 @@ class Consensus(Term):
         form = self._pairs.compiled(m)
         return None if form is None else form._replace(energy=no_energy)
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         return self._pairs.derivatives(t, q, p)

@@ -10,7 +10,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.copies import Copies
 from flockana.interactions import Gains
 from flockana.interactions.gains import weighted
-from flockana.laws.terms.term import Invariance, Term
+from flockana.laws.terms.term import Term
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,7 @@ class CopiesTerm(Term):
     copies: Copies
     gains: Gains
 
-    @property
-    def invariance(self) -> Invariance:  # noqa: D102
-        return "none"
+    invariance = "none"
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         if self.copies.shape[1] != m:

@@ -12,13 +12,6 @@ from flockana.kernels.listed import no_energy
 from flockana.laws.terms.term import Term, TermKernel
 
 
-def acceleration(path: Harmonic, t: float) -> FloatArray:
-    """d²q_r/dt² of a harmonic path, shape (m,)."""
-    turn = np.cos(path.omega * t) * path.terms[2] + np.sin(path.omega * t) * path.terms[3]
-    push: FloatArray = 0.0 - path.omega**2 * turn
-    return push
-
-
 @dataclass(frozen=True)
 class TargetFeedforward(Term):
     """u_i = d²q_r/dt², the same for all agents.

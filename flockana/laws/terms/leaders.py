@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, sin
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,8 +11,9 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.pair import PairInteraction
+from flockana.kernels.neighbours import pair_list
 from flockana.laws.law import block_diagonal
-from flockana.laws.terms.term import Invariance, Term
+from flockana.laws.terms.term import Derivatives, Term
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,7 @@ class Leaders(Term):
     feedforward: bool = True
 
     conservative: ClassVar[bool] = False  # a leader that moves drags and bends those at rest
-
-    @property
-    def invariance(self) -> Invariance:  # noqa: D102
-        return "none"
+    invariance = "none"
 
     @cached_property
     def members(self) -> tuple[npt.NDArray[np.int64], ...]:
@@ -57,7 +54,8 @@ class Leaders(Term):
 
     def led(self, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return position, velocity and acceleration of each agent's leader, three arrays of shape (n, m)."""
-        states = np.array([_motion(*each, t) for each in zip(self.leaders, self._paths, strict=True)])
+        paths = zip(self.leaders, self._paths, strict=True)
+        states = np.array([(leader.position(t), leader.rate(t), path.acceleration(t)) for leader, path in paths])
         q, p, a = states[list(self.group)].transpose(1, 0, 2)
         return q, p, a
 
@@ -87,22 +85,17 @@ class Leaders(Term):
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return 0.5 * self.pull * float(np.sum(self._pins * (q - self.led(t)[0]) ** 2))
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
-        from scipy.sparse import lil_array
-
-        n, m = q.shape
-        by_position, by_velocity = lil_array((n * m, n * m)), lil_array((n * m, n * m))
-        for own in self.members:
-            rows = (own[:, None] * m + np.arange(m)).ravel()
-            parts = self.pair.jacobian(q[own], p[own], stiffness=0.0, damping=self.damping)
-            for whole, part in zip((by_position, by_velocity), parts, strict=True):
-                whole[np.ix_(rows, rows)] = part.toarray()
-        pins = block_diagonal(self._pins[:, :, None] * np.eye(m))
-        return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
+        (i, j), group = pair_list(q, self.pair.range), np.array(self.group)
+        own = group[i] == group[j]
+        by_position, by_velocity = self.pair.jacobian(
+            q, p, stiffness=0.0, damping=self.damping, pairs=[(i[own], j[own])]
+        )
+        pins = block_diagonal(self._pins[:, :, None] * np.eye(q.shape[1]))
+        return by_position - self.pull * pins, by_velocity - self.drag * pins
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
-        return blocks
+        return self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
 
 
 def known_path(leader: Any) -> Harmonic:
@@ -114,10 +107,3 @@ def known_path(leader: Any) -> Harmonic:
             "velocity, whose acceleration is known"
         )
     return path
-
-
-def _motion(leader: Target, path: Harmonic, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return position, velocity and acceleration of a leader."""
-    c, s = path.terms[2:4]
-    bend: FloatArray = -(path.omega**2) * (c * cos(path.omega * t) + s * sin(path.omega * t))
-    return leader.position(t), leader.rate(t), bend

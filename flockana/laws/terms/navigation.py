@@ -73,12 +73,11 @@ class Navigation(Term):
         """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,); 1 for the linear pull."""
         if self.unit is None:
             return np.ones(len(x))
-        bend: FloatArray = np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
-        return bend
+        return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        form = self._straight
-        if form is None:
+        form, path = self._form, self.target.harmonic
+        if form is None or path is None or path.omega:  # only at rest or on a line it is exact to the last bit
             (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
             still = np.zeros_like(rate)
             t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, still, still, p_r]), factor=0.0))
@@ -95,14 +94,8 @@ class Navigation(Term):
     def _form(self) -> TermKernel | None:
         """Compiled form of a target whose path is harmonic; else None."""
         path = self.target.harmonic
-        if path is None or not overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state")):
-            return None
-        return self._along(path)
-
-    @cached_property
-    def _straight(self) -> TermKernel | None:
-        """`_form` of a target at rest or on a line, where it is exact to the last bit; else None."""
-        return None if self._form is None or self.target.harmonic.omega else self._form  # type: ignore[union-attr]
+        own = overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state"))
+        return None if path is None or not own else self._along(path)
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         return self._form

@@ -66,7 +66,7 @@ class ObstacleTerm(Term):
             return None
         beta, kernels = self.field.beta, []
         for kind in self.field.kinds:
-            numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:])
+            numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind.arrays)
             kernels.append(TermKernel(kind.kernels.act, kind.kernels.energy, numbers, beta.panels, 0.0))
         return tuple(kernels)
 
@@ -81,5 +81,4 @@ class ObstacleTerm(Term):
         return self.damping * by_position - self.stiffness * self.field.hessian_blocks(q), self.damping * by_velocity
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        blocks: FloatArray = self.stiffness * self.field.hessian_blocks(q)
-        return blocks
+        return self.stiffness * self.field.hessian_blocks(q)

@@ -13,6 +13,7 @@ from flockana.kernels.listed import Listed
 from flockana.kernels.runge_kutta import System
 from flockana.kernels.verlet import SKIN, lister
 
+Derivatives = tuple[Any, Any]  # (∂u/∂q, ∂u/∂p), sparse or as blocks
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
 
@@ -129,7 +130,7 @@ class Term(ABC):
         return 0.0
 
     @abstractmethod
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:
         """Return (∂u/∂q, ∂u/∂p) of the term's force."""
 
     def hessian(self, t: float, q: FloatArray) -> Any:

@@ -10,7 +10,6 @@ import numpy as np
 from flockana.dynamics.between import Between
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.terms.feedforward import acceleration
 from flockana.measures.nets import components, links
 from flockana.theorems.limits import Certificate, decays_to_zero
 from flockana.theorems.rounding import EPS
@@ -75,7 +74,7 @@ def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
     place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
-    push = np.array([acceleration(target.harmonic, float(t)) if feedforward else np.zeros(shape[1]) for t in course.t])
+    push = np.array([target.harmonic.acceleration(float(t)) if feedforward else np.zeros(shape[1]) for t in course.t])
     apart = {"q": course.q - place[:, None], "p": course.p - speed[:, None]}
     return {"t": course.t, **apart, "u": course.u - push.reshape(shape)[:, None]}
 

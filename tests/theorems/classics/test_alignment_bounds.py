@@ -8,7 +8,7 @@ import pytest
 
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
-from flockana.laws.cucker_smale import spread
+from flockana.measures.metrics import spreads
 from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate, Guarantee
 from flockana.theorems.observed import Observed
 
@@ -83,8 +83,8 @@ def test_how_exactly_a_fall_is_known_far_from_rest():
     law = fl.CuckerSmale(RationalWeight(strength=1.0, decay=0.25))
     q, p = np.array([[0.0], [1.0]]), np.array([[0.0], [1.0]])
     run = fl.simulate(law, q, p + 1e6, (0.0, 2.0), t_eval=[0.0, 2.0])
-    v0, v = spread(run.p)
-    phi, x0 = AlignmentRate(law.weight, 2.0, sqrt(2.0)), spread(run.q)[0]
+    v0, v = np.sqrt(2.0 * spreads(run.p))
+    phi, x0 = AlignmentRate(law.weight, 2.0, sqrt(2.0)), np.sqrt(2.0 * spreads(run.q)[0])
     x_m = phi.reached(x0, v0)
     rate = phi(x_m)
     claim = Guarantee(Observed.alone(run), sqrt(2.0)).claims([])[1][1]
