@@ -1,7 +1,5 @@
 """A law and a start of the user's own, wherever a scenario of the catalogue does."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Objects as a notebook and `print` show them."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

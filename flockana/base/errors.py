@@ -3,10 +3,8 @@
 Every message names the value it got, what was expected, and the remedy. Anything else that escapes is a bug.
 """
 
-from __future__ import annotations
-
 import math
-from typing import Any
+from typing import Any, Self
 
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all listed
@@ -78,7 +76,7 @@ class UnknownNameError(ArgumentError):
         super().__init__(f"unknown {kind} {format_value(name)}; {rest}")
         self._arguments = (str(kind), text, names)
 
-    def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, list[str]]]:
         return type(self), self._arguments  # so that it travels between processes
 
 

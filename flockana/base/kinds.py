@@ -1,7 +1,5 @@
 """Checks that arguments are of the classes that their annotations name, where a public function begins."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Ensembles of a scenario over seeds and options, in parallel, with a store to resume from."""
 
-from __future__ import annotations
-
 import inspect
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -59,7 +57,7 @@ def ensemble(
     store: str | os.PathLike[str] | None = None,
     retry: bool = False,
     progress: bool = False,
-) -> xarray.Dataset:
+) -> "xarray.Dataset":
     """Run and verify a scenario for many seeds, and for all combinations of given options.
 
     The same seeds give the same numbers, ``seconds`` aside, whoever computes them and in whatever order, on processors

@@ -1,7 +1,5 @@
 """Records of an ensemble as an `xarray.Dataset`, and shares of runs in which each claim holds."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -48,7 +46,7 @@ class Grid:
         return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in self.seeds[:most]]
 
 
-def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> xarray.Dataset:
+def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarray.Dataset":
     """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
 
@@ -125,7 +123,7 @@ def ensure_ensemble(dataset: Any) -> None:
         raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
 
 
-def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
+def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset":
     """Return the shares of runs in which each claim is verified and refuted, with Clopper-Pearson intervals.
 
     The share is of all complete runs on which the claim was checked, those on which it is vacuous or inconclusive
@@ -174,7 +172,7 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     return xarray.Dataset(table, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])
 
 
-def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str, str, str]]:
+def share_cells(table: "xarray.Dataset") -> Iterator[tuple[str, str, str, str, str, str, str]]:
     """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each claim that was checked."""
     # Shares are in per cent, with their intervals; the last two are numbers of runs.
     axes = [str(name) for name in table.runs.dims if name != "claim"]
@@ -189,6 +187,6 @@ def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str
                 yield where, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
 
 
-def _interval(entry: xarray.Dataset) -> str:
+def _interval(entry: "xarray.Dataset") -> str:
     share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
     return f"{share:.1f} [{low:.1f}, {high:.1f}]"

@@ -6,8 +6,6 @@ Like every such file it belongs on a local disk: write-ahead logs do not work on
 cluster are written by the one program that asked for them.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sqlite3
@@ -16,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
@@ -104,7 +103,7 @@ class Store:
                 "or compute with the flockana, numpy, scipy and numba that wrote it"
             )
 
-    def __enter__(self) -> Store:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

@@ -1,13 +1,11 @@
 """Execution of a single run of an ensemble, from plain data to a plain record."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import Any, Self
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
 from flockana.base.interrupts import restore_interrupts
@@ -84,7 +82,7 @@ class Record:
         return json.dumps({**data, SEAL: digest([key, data])}, ensure_ascii=False)
 
     @classmethod
-    def from_json(cls, text: str, key: str = "") -> Record:
+    def from_json(cls, text: str, key: str = "") -> Self:
         """Return the record of a JSON text from `to_json`."""
         data = json.loads(text)
         if data.pop(SEAL, None) != digest([key, data]):

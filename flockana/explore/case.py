@@ -1,10 +1,8 @@
 """Cases of the page: a start with changed parameters and moved agents, as law and flock and as Python."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Self
 
 from flockana.base.checks import (
     ensure_choice,
@@ -54,7 +52,7 @@ class Case:
             raise ArgumentError(f"changes = {self.changes!r}: expected values by name")
 
     @classmethod
-    def of(cls, asked: Any) -> Case:
+    def of(cls, asked: Any) -> Self:
         """Return the case described by a message of the page."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")

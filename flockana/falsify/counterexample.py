@@ -1,14 +1,12 @@
 """Counterexamples as JSON files, to be simulated and checked again."""
 
-from __future__ import annotations
-
 import json
 import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
@@ -135,7 +133,7 @@ class Counterexample:
         return write_atomic(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Counterexample:
+    def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a counterexample that `save` wrote.
 
         Raises

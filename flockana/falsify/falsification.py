@@ -126,8 +126,7 @@ class Falsification:
         claim : str
             Its name.
         """
-        best: FloatArray = np.fmin.accumulate(self.margins[claim])
-        return best
+        return np.fmin.accumulate(self.margins[claim])
 
     def refuting(self, claim: str) -> tuple[int, ...]:
         """Return the evaluations that refute a claim, counted from 0.

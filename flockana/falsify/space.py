@@ -51,8 +51,7 @@ class Space:
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
         shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
-        point: FloatArray = np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
-        return point
+        return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
 
     def case(self, point: FloatArray) -> Scenario:
         """Return the scenario with the state and the parameters of a point.

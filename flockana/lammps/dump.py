@@ -97,8 +97,7 @@ def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
     if len(t) == 1:
         return np.zeros(1)
     whole = CubicSpline(t, rates).antiderivative()
-    values: FloatArray = whole(t) - whole(t[0])
-    return values
+    return whole(t) - whole(t[0])
 
 
 def _ensure_for(law: Any, dimension: int, m: int | None, path: object) -> None:

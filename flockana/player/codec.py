@@ -92,5 +92,4 @@ def _bytes(whole: Any) -> bytes:
 def _dequantise(whole: Any, entry: Mapping[str, Any]) -> FloatArray:
     if entry["step"] == 0.0:
         return np.ascontiguousarray(whole).view("<f4").astype(np.float64)
-    values: FloatArray = entry["origin"] + entry["step"] * whole.astype(np.float64)
-    return values
+    return entry["origin"] + entry["step"] * whole.astype(np.float64)

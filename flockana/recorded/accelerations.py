@@ -1,7 +1,5 @@
 """Accelerations of a recorded flock: recorded ones, mean ones over steps, or those of splines."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,8 +37,7 @@ class Accelerations(NamedTuple):
         if self.basis != "splines":
             return np.ones(self.error.shape)
         typical = float(np.median(self.error)) or 1.0
-        weights: FloatArray = 1.0 / ((self.error / typical) ** 2 + 1e-3)
-        return weights
+        return 1.0 / ((self.error / typical) ** 2 + 1e-3)
 
 
 def accelerations(rec: Recording) -> Accelerations:

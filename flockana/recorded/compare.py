@@ -1,7 +1,5 @@
 """Comparison of a recorded flock with a law: what the law explains, contributions of its parts, findings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -77,14 +75,12 @@ class Comparison:
     @property
     def by_agent(self) -> FloatArray:
         """Root mean square of each agent's residual, shape (n,)."""
-        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
-        return size
+        return np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
 
     @property
     def by_time(self) -> FloatArray:
         """Root mean square of the residual at each time, shape (K,)."""
-        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=1))
-        return size
+        return np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=1))
 
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:

@@ -1,7 +1,5 @@
 """Parts of a law that are proportional to one number each: what each of them contributes to an acceleration."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -89,5 +87,4 @@ def over_steps(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> Float
     middle_q = 0.5 * (q[:-1] + q[1:]) + h / 8.0 * (p[:-1] - p[1:])  # cubic through both ends
     middle_p = 1.5 / h * (q[1:] - q[:-1]) - 0.25 * (p[:-1] + p[1:])
     ends, middle = over_samples(part, t, q, p), over_samples(part, 0.5 * (t[:-1] + t[1:]), middle_q, middle_p)
-    mean: FloatArray = (ends[:-1] + 4.0 * middle + ends[1:]) / 6.0
-    return mean
+    return (ends[:-1] + 4.0 * middle + ends[1:]) / 6.0

@@ -1,7 +1,5 @@
 """Differences between a law and a recording, found by regression: gains and forms, each as a sentence."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

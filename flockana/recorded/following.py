@@ -1,7 +1,5 @@
 """Whether the samples of a recording follow a law, within their stated accuracy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal
 

@@ -1,7 +1,5 @@
 """Measures of a recorded flock over time, each with the error that the accuracy of the samples leaves."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +20,7 @@ _OF_NETS = {"connectivity": connectivity, "giant_share": giant_share}  # they gr
 _OF_VELOCITIES = ("normalised_velocity_mismatch", "velocity_diameter", "order", "coordination")
 
 
-def measured(rec: Recording, d: float, r: float) -> xarray.Dataset:
+def measured(rec: Recording, d: float, r: float) -> "xarray.Dataset":
     """See `Recording.metrics`: agents that are missing at a sample are left out there."""
     import xarray
 
@@ -69,15 +67,13 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
     if name in ("inertia", "normalised_velocity_mismatch"):  # half a square of a norm, which moves by √n off, over n
         off, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
         size = np.sqrt(2.0 * values * share)
-        grown: FloatArray = (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
-        return grown
+        return (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
     if name in ("order", "coordination"):
         speed = lengths(flock.p)
         with np.errstate(divide="ignore", invalid="ignore"):
             turn = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
         turned = np.minimum(turn, 2.0).mean(axis=1) * (1.0 if name == "order" else 2.0)
-        most: FloatArray = np.minimum(turned, 1.0 if name == "order" else 2.0)
-        return most
+        return np.minimum(turned, 1.0 if name == "order" else 2.0)
     return np.array([_net_error(name, flock, k, float(values[k]), float(off_q[k])) for k in range(len(values))])
 
 

@@ -1,11 +1,9 @@
 """Parameters of a law by name: reading them, and the same law with others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import reduce
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -23,7 +21,7 @@ class FreeParameters:
     paths: tuple[tuple[str, ...], ...]
 
     @classmethod
-    def of(cls, law: Any, names: Sequence[str] | None) -> FreeParameters:
+    def of(cls, law: Any, names: Sequence[str] | None) -> Self:
         """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]

@@ -1,7 +1,5 @@
 """`read_recording`: files, arrays and tables of many kinds as a `Recording`."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,12 +1,10 @@
 """A flock that was recorded elsewhere: samples, gaps, and how accurate they are."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -168,7 +166,7 @@ class Recording(ResultCache):
             place, speed = times(self.sd, width), times(self.p_sd, width)
         return Accuracy(place, place / self.interval if speed is None else speed, kind)
 
-    def window(self, start: float, end: float) -> Recording:
+    def window(self, start: float, end: float) -> Self:
         """Return the samples between two times.
 
         Parameters
@@ -183,7 +181,7 @@ class Recording(ResultCache):
         """
         return self.select(samples=(self.t >= start) & (self.t <= end))
 
-    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Recording:
+    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Self:
         """Return some samples of some agents.
 
         Parameters
@@ -199,7 +197,7 @@ class Recording(ResultCache):
             change[name] = value[samples][:, agents] if isinstance(value, np.ndarray) else value
         return replace(self, **change)
 
-    def in_units(self, length: float, time: float) -> Recording:
+    def in_units(self, length: float, time: float) -> Self:
         """Return the same recording in other units (`flockana.rescale`).
 
         Parameters
@@ -225,7 +223,7 @@ class Recording(ResultCache):
                 "window(start, end) or select(samples=, agents=)"
             )
 
-    def filled(self, *, longest: float | None = None) -> Recording:
+    def filled(self, *, longest: float | None = None) -> "Recording":
         """Return the recording with short gaps filled by splines, each filled position with its own error.
 
         Parameters
@@ -235,11 +233,11 @@ class Recording(ResultCache):
         """
         return filled(self, longest)
 
-    def with_velocities(self) -> Recording:
+    def with_velocities(self) -> "Recording":
         """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
         return with_velocities(self)
 
-    def metrics(self, *, d: float, r: float) -> xarray.Dataset:
+    def metrics(self, *, d: float, r: float) -> "xarray.Dataset":
         """Return measures of the flock over time, each with its error as ``<name>_error``.
 
         Parameters

@@ -1,7 +1,5 @@
 """Recognition of the integration scheme behind a recording."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

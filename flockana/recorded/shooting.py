@@ -5,11 +5,9 @@ they are independent with deviation 1, and an error of the integration whose res
 by at most x standard errors; the steps are chosen by it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -173,7 +171,7 @@ class _NormalEquations:
     damping: float
 
     @classmethod
-    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> _NormalEquations:
+    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> Self:
         reduced, corners, across = np.zeros((count, count)), [], []
         for each in slopes:
             whole = each.T @ each
@@ -210,8 +208,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
         return matrix
     size = np.sqrt(np.diag(matrix))
     unit = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
-    found: FloatArray = unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
-    return found
+    return unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
 
 
 def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> MatchResult:

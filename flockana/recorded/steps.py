@@ -1,7 +1,5 @@
 """Predictions by a law of each recorded sample from the one before."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Stand-in for the law of a flock that was recorded elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar

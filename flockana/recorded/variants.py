@@ -1,7 +1,5 @@
 """Forms of Algorithms 1 to 3 that implementations have in place of the paper's, to be tried on a recording."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -81,8 +79,7 @@ def _of_pull(law: Any) -> list[Variant]:
     def pull(bend: Callable[[FloatArray], FloatArray]) -> Part:
         def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
             x = q - law.target.state(t)[0]
-            u: FloatArray = -x / bend(x / unit)
-            return u
+            return -x / bend(x / unit)
 
         return acts
 

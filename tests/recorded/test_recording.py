@@ -1,7 +1,5 @@
 """Recordings: what they hold, what they refuse, and what is measured of them without a law."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

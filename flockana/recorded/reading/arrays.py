@@ -1,7 +1,5 @@
 """Arrays by name: npz, MATLAB and netCDF files, mappings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,9 +1,8 @@
 """The simulation box in a dump of LAMMPS, and places of agents that were wrapped into it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -20,7 +19,7 @@ class Box:
     periodic: tuple[bool, ...] | None
 
     @classmethod
-    def of(cls, words: Sequence[str], rows: FloatArray) -> Box | None:
+    def of(cls, words: Sequence[str], rows: FloatArray) -> Self | None:
         """Return the box of an item ``BOX BOUNDS`` and its three lines; None if they are inconsistent.
 
         Bounds of a tilted box are those of the box around it.

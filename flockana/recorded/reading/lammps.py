@@ -1,7 +1,5 @@
 """Text dumps of LAMMPS: snapshots with their boxes, places unwrapped."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

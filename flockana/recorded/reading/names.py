@@ -1,7 +1,5 @@
 """Names of columns and arrays in files of recordings, and what they mean."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Long and wide tables as arrays: times, positions, velocities, names of agents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
