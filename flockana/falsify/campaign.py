@@ -16,8 +16,9 @@ from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
 from flockana.falsify.search import Search
 from flockana.falsify.space import STATE, search_space
+from flockana.recorded.parameters import law_parameter
 from flockana.scenarios import Flock, Scenario
-from flockana.scenarios.flock import as_scenario, chosen, law_parameter
+from flockana.scenarios.flock import as_scenario, chosen
 from flockana.theorems import Claim, Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
 from flockana.theorems.theorem import Lead

@@ -9,8 +9,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.recorded.parameters import law_parameter, with_parameter
 from flockana.scenarios import Scenario
-from flockana.scenarios.flock import law_parameter, with_parameter
 
 STATE = ("q", "p")
 _ROOM = 0.1  # by which the flock's box is widened on every side, of its longest side
