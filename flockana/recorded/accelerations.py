@@ -8,7 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.recorded.contributions import over_samples, over_steps
 from flockana.recorded.recording import Recording
-from flockana.recorded.schemes import Found, kinematic_scheme
+from flockana.recorded.schemes import kinematic_scheme
 from flockana.recorded.velocities import motions
 
 _FEWEST = 4  # samples for splines
@@ -25,7 +25,7 @@ class Accelerations(NamedTuple):
     u: FloatArray
     error: FloatArray
     states: tuple[FloatArray, FloatArray, FloatArray]
-    scheme: Found | None
+    scheme: str | None
 
     def of(self, part: Any) -> FloatArray:
         """Return the accelerations of a part of a law at the same places and times."""

@@ -157,7 +157,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
     scheme = data.scheme
     if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
         scheme = scheme_by_law(rec, continuous)
-    steps = () if scheme is None else (f"steps are {scheme.name} of {scheme.dt:.6g}",)
+    steps = () if scheme is None else (f"steps are {scheme} of {rec.interval:.6g}",)
     own, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
     texts, noise = (*steps, *found.findings), float(np.nanmedian(data.error))
     return Comparison(

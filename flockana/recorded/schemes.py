@@ -1,6 +1,6 @@
 """Recognition of the integration scheme behind a recording."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -14,20 +14,13 @@ _EVEN = 1e-6  # of the interval, by which intervals may differ
 _BETTER = 0.02  # of the error of the law's flow, which a scheme's must be below
 
 
-class Found(NamedTuple):
-    """Scheme found: its name and its step."""
-
-    name: str
-    dt: float
-
-
 def _even(rec: Recording) -> bool:
     steps = np.diff(rec.t)
     return len(steps) > 1 and bool(np.ptp(steps) <= _EVEN * rec.interval)
 
 
-def kinematic_scheme(rec: Recording) -> Found | None:
-    """Return the scheme of one step a sample that positions and velocities fit to rounding, if one does.
+def kinematic_scheme(rec: Recording) -> str | None:
+    """Return the name of the scheme of one step a sample that positions and velocities fit to rounding, if one does.
 
     Explicit Euler has q' = q + h p, semi-implicit Euler q' = q + h p', a Taylor step q' = q + h (p + p')/2; whatever
     the law is.
@@ -41,12 +34,12 @@ def kinematic_scheme(rec: Recording) -> Found | None:
     turned = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():
         if turned > 100.0 * size and float(np.abs(moved - h * mean).max()) <= size:
-            return Found(name, h)
+            return name
     return None
 
 
-def scheme_by_law(rec: Recording, law: Any) -> Found | None:
-    """Return the scheme whose steps lead far closer to the next sample than the law's flow does."""
+def scheme_by_law(rec: Recording, law: Any) -> str | None:
+    """Return the name of the scheme whose steps lead far closer to the next sample than the law's flow does."""
     if rec.p is None or rec.gaps or isinstance(law, DiscreteLaw) or not _even(rec):
         return None
     some = slice(0, 40)
@@ -58,4 +51,4 @@ def scheme_by_law(rec: Recording, law: Any) -> Found | None:
     exact = off(predicted(law, t, q, p))
     steps = [rk4(law, float(t[k]), h, q[k], p[k]) for k in range(len(t) - 1)]
     by_rk4 = off((np.array([a for a, _ in steps]), np.array([b for _, b in steps])))
-    return Found("Runge-Kutta steps (RK4)", h) if by_rk4 < _BETTER * exact else None
+    return "Runge-Kutta steps (RK4)" if by_rk4 < _BETTER * exact else None

@@ -14,13 +14,6 @@ _MOST = 2000  # steps between two samples
 _WHOLE = 1e-6  # of a step: how far an interval between samples may be from a whole number of steps
 
 
-def substeps(law: Any, interval: float, share: float = SHARE) -> int:
-    """Return the number of integration steps between samples."""
-    scales = law.scales
-    time = interval if scales is None else scales.time
-    return int(min(max(ceil(interval / (share * time)), 1), _MOST))
-
-
 def predicted(
     law: Any, t: FloatArray, q: FloatArray, p: FloatArray, *, refine: int = 1
 ) -> tuple[FloatArray, FloatArray]:
@@ -45,7 +38,8 @@ def led(
         for k in range(steps):
             q, p, _, memory = law.step(t + k * law.dt, q, p, memory)
         return q, p
-    count = substeps(law, h, share) * refine
+    time = h if law.scales is None else law.scales.time
+    count = int(min(max(ceil(h / (share * time)), 1), _MOST)) * refine
     for k in range(count):
         q, p = rk4(law, t + k * h / count, h / count, q, p)
     return q, p
