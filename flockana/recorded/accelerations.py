@@ -24,7 +24,7 @@ class Accelerations(NamedTuple):
     t: FloatArray
     u: FloatArray
     error: FloatArray
-    states: tuple[FloatArray, FloatArray, FloatArray]
+    states: tuple[FloatArray, ...]
     scheme: str | None
 
     def of(self, part: Any) -> FloatArray:
@@ -62,13 +62,13 @@ def _of_steps(rec: Recording, p: FloatArray) -> Accelerations:
     wide: Any = rec.accuracy.speed
     if rec.sd is not None:  # standard deviations, as those of splines are
         wide = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
-    speed = np.broadcast_to(np.asarray(wide, dtype=np.float64), rec.q.shape[:2])
+    speed = np.broadcast_to(wide, rec.q.shape[:2])
     both = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
     error = np.nan_to_num(both / h[:, None], posinf=0.0)
-    scheme = kinematic_scheme(rec)
+    scheme, states = kinematic_scheme(rec), (rec.t, rec.q, p)
     if scheme is not None:  # then u is the input at the beginning of each step
-        return Accelerations("accelerations", rec.t[:-1], u, error, (rec.t[:-1], rec.q[:-1], p[:-1]), scheme)
-    return Accelerations("steps", rec.t[:-1], u, error, (rec.t, rec.q, p), None)
+        return Accelerations("accelerations", rec.t[:-1], u, error, tuple(x[:-1] for x in states), scheme)
+    return Accelerations("steps", rec.t[:-1], u, error, states, None)
 
 
 def _of_splines(rec: Recording) -> Accelerations:

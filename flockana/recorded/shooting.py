@@ -136,8 +136,7 @@ def _within(t: FloatArray, time: float) -> int:
 
 def usual_window(rec: Recording, law: Any) -> float:
     """Return the duration of windows: several of the law's times, and of many samples."""
-    scales = law.scales
-    return max(_TIMES * (0.0 if scales is None else scales.time), _FEWEST * rec.interval)
+    return max(0.0 if law.scales is None else _TIMES * law.scales.time, _FEWEST * rec.interval)
 
 
 def windows(rec: Recording, duration: float) -> list[Window]:
@@ -145,7 +144,7 @@ def windows(rec: Recording, duration: float) -> list[Window]:
     fit = motions(rec)
     count = max(1, round(float(rec.t[-1] - rec.t[0]) / duration))
     edges = np.unique(np.linspace(0, len(rec.t), count + 1).astype(int))
-    sd = np.broadcast_to(np.asarray(fit.noise if rec.sd is None else rec.sd, dtype=np.float64), rec.q.shape[:2])
+    sd = np.broadcast_to(fit.noise if rec.sd is None else rec.sd, rec.present.shape)
     root = np.repeat(np.where(rec.present, 1.0 / np.maximum(sd, 1e-300), 0.0), rec.m, axis=1)
     found = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):

@@ -24,38 +24,36 @@ class Variant:
 
 def variants(law: Any) -> tuple[Variant, ...]:
     """Return the forms to try in place of a law's own."""
-    found: list[Variant] = []
+    if not hasattr(law, "gains"):
+        return ()
     alpha = getattr(law, "alpha", None)
-    if isinstance(alpha, AlphaInteraction) and hasattr(law, "gains"):
-        found += _of_pairs(alpha)
-    if law.target is not None and hasattr(law, "gains"):
-        found += _of_pull(law)
-    return tuple(found)
+    of_pairs = _of_pairs(alpha) if isinstance(alpha, AlphaInteraction) else []
+    return (*of_pairs, *(() if law.target is None else _of_pull(law)))
 
 
 def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
+    def action(s: FloatArray) -> FloatArray:
+        return np.asarray(alpha.phi_alpha(alpha.sigma_norm(s)))[:, None]
+
     def per_axis(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        return np.asarray(alpha.phi_alpha(alpha.sigma_norm(s)))[:, None] * x / np.sqrt(1.0 + alpha.eps * x**2)
+        return action(s) * x / np.sqrt(1.0 + alpha.eps * x**2)
 
     def euclidean(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
         force: FloatArray = np.asarray(alpha.phi_alpha(s)) * (s < alpha.r_alpha)
         return force[:, None] * x / np.sqrt(1.0 + alpha.eps * s**2)[:, None]
 
     def unit(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        return np.asarray(alpha.phi_alpha(alpha.sigma_norm(s)))[:, None] * x / np.maximum(s, 1e-300)[:, None]
-
-    def counted(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        return v * (s < alpha.r)[:, None]
+        return action(s) * x / np.maximum(s, 1e-300)[:, None]
 
     direction = "the pair force's direction n_ij is taken coordinate by coordinate, x_k/√(1 + ε x_k²)"
     farthest = max(alpha.r, alpha.r_alpha)
-    forms = [
-        ("c1_alpha", f"{direction}, not of the vector, x/√(1 + ε‖x‖²)", alpha.r, per_axis),
-        ("c1_alpha", "φ_α is given the distance, not its σ-norm", farthest, euclidean),
-        ("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", alpha.r, unit),
-        ("c2_alpha", "all neighbours within r count alike in the consensus, not by a_ij", alpha.r, counted),
+    alike = "all neighbours within r count alike in the consensus, not by a_ij"
+    return [
+        Variant("c1_alpha", f"{direction}, not of the vector, x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, per_axis)),
+        Variant("c1_alpha", "φ_α is given the distance, not its σ-norm", _pair_sum(farthest, euclidean)),
+        Variant("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, unit)),
+        Variant("c2_alpha", alike, _pair_sum(alpha.r, lambda x, s, v: v * (s < alpha.r)[:, None])),
     ]
-    return [Variant(gain, text, _pair_sum(r, force)) for gain, text, r, force in forms]
 
 
 def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]) -> Part:
