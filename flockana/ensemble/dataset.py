@@ -40,10 +40,9 @@ class Grid:
 
     def jobs(self, most: int | None = None) -> list[Job]:
         """Return all runs, or those of the first seeds."""
-        points = (
-            dict(zip(self.axes, values, strict=True)) | dict(self.fixed) for values in product(*self.axes.values())
-        )
-        return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in self.seeds[:most]]
+        points = (dict(zip(self.axes, values, strict=True)) for values in product(*self.axes.values()))
+        options = (tuple(sorted({**point, **self.fixed}.items())) for point in points)
+        return [Job(seed, each) for each in options for seed in self.seeds[:most]]
 
 
 def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarray.Dataset":
@@ -81,7 +80,9 @@ def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarr
     }
     for name in request.metrics:
         values = [record.metrics.get(name, np.nan) for record in records]
-        variables[metric_name(name)] = over_runs(values, np.float64, **_described(name))
+        own = None if ":" in name else measures()[name]
+        described = {"long_name": metric_name(name)} if own is None else {"long_name": own.summary, "units": own.unit}
+        variables[metric_name(name)] = over_runs(values, np.float64, **described)
     coords: dict[str, Any] = {name: list(values) for name, values in grid.axes.items()} | dict(grid.fixed)
     coords["seed"] = list(grid.seeds)
     coords |= {"claim": np.array(claims, dtype=object), "theorem": np.array(theorems, dtype=object)}
@@ -99,13 +100,6 @@ def metric_name(name: str) -> str:
     return name.rpartition(":")[2]
 
 
-def _described(name: str) -> dict[str, str]:
-    if ":" in name:
-        return {"long_name": metric_name(name)}
-    measure = measures()[name]
-    return {"long_name": measure.summary, "units": measure.unit}
-
-
 def _flags(names: Sequence[str]) -> dict[str, Any]:
     """Return the meanings of status codes in the CF convention; -1 stands for a missing claim or run."""
     return {"flag_values": list(range(len(names))), "flag_meanings": " ".join(names)}
@@ -113,14 +107,6 @@ def _flags(names: Sequence[str]) -> dict[str, Any]:
 
 def _code(names: Sequence[str], name: str | None) -> int:
     return -1 if name is None else names.index(name)
-
-
-def ensure_ensemble(dataset: Any) -> None:
-    """Check that a dataset is one of `ensemble`."""
-    import xarray
-
-    if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):
-        raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
 
 
 def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset":
@@ -158,7 +144,8 @@ def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset
     """
     import xarray
 
-    ensure_ensemble(dataset)
+    if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):
+        raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
     ensure_level(level)
     counts = {name: (dataset.status == code).sum("seed") for code, name in enumerate(STATUSES)}
     runs = (dataset.status >= 0).sum("seed")
