@@ -20,7 +20,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
         number = float(_real(value))
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {format_value(value)}: expected one real number") from None
-    if not np.isfinite(number):
+    if not math.isfinite(number):
         raise ArgumentError(f"{name} = {number}: expected a finite number")
     return number
 
@@ -140,9 +140,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
         raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
     if m is not None and vector.size != m:
         raise ArgumentError(f"{name} has {vector.size} components: expected {m}, the dimension of the flock")
-    if not np.isfinite(vector).all():
-        raise ArgumentError(f"{name} = {vector}: expected finite numbers")
-    return vector
+    return ensure_series(name, vector)
 
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
@@ -198,16 +196,18 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
 
 def ensure_count(name: str, value: Any) -> int:
     """Return `value` as a whole number >= 1."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= 1")
-    return int(value)
+    return _ensure_whole(name, value, 1)
 
 
 def ensure_seed(seed: Any) -> int:
     """Return a seed, a whole number >= 0."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number >= 0")
-    return int(seed)
+    return _ensure_whole("seed", seed, 0)
+
+
+def _ensure_whole(name: str, value: Any, least: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= {least}")
+    return int(value)
 
 
 def ensure_flag(name: str, value: Any) -> bool:

@@ -48,7 +48,6 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
-
     items = {name: texts[name].partition("[")[2].rstrip("]").rpartition(".")[2] for name in kinds}
 
     @functools.wraps(function)
