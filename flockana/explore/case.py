@@ -61,11 +61,6 @@ class Case:
             raise ArgumentError(f"moved = {str(moved)[:80]}: expected places by the agents' numbers")
         return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moved[k] for k in moved}})
 
-    @property
-    def is_unchanged(self) -> bool:
-        """Return whether nothing is changed."""
-        return not (self.changes or self.moved or self.duration)
-
     def start(self) -> Start:
         """Return the start without changes."""
         if self.kind == "file":
@@ -92,9 +87,9 @@ class Case:
             span = ensure_time_span((span[0], span[0] + ensure_finite_scalar("duration", self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
-        recorded, source = (start.recorded, start.source) if self.is_unchanged else (None, None)
         parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
-        return replace(start, **parts, recorded=recorded, source=source)
+        changed_ = {"recorded": None, "source": None} if self.changes or self.moved or self.duration else {}
+        return replace(start, **parts, **changed_)
 
 
 def program(parts: Start) -> str:
