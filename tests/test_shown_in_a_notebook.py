@@ -41,10 +41,6 @@ def test_a_large_linearisation_is_shown_without_its_poles():
     assert "slowest_modes(...)" in shown
 
 
-def test_a_run_writes_its_film(run, tmp_path):
-    assert run.animate(tmp_path / "run.gif", seconds=0.2).stat().st_size > 1000
-
-
 def test_an_ensemble_is_a_table_of_shares():
     law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
     flock = fl.Flock(law, lambda seed: np.random.default_rng(seed).normal(0.0, 6.0, (4, 2)), t_span=(0.0, 1.0))
