@@ -75,9 +75,7 @@ def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
 
 
 def _assignment(source: Path) -> str:
-    files = ["own_law/__init__.py", "own_law/law.py", "own_law/theorem.py", "own_law/proof.py"]
-    files += ["proofs/__init__.py", "proofs/proof.py"]
-    listed = "".join(f"\n  - {name}" for name in files)
+    listed = "".join(f"\n  - {name}" for name in companions() if name.endswith(".py"))
     return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * needs_companions(source)
 
 

@@ -20,7 +20,7 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import atomic_write, ensure_path, ensure_target
+from flockana.base.files import ensure_path, ensure_target, write_atomic
 from flockana.lammps.script import (
     DATA,
     README,
@@ -143,7 +143,11 @@ def export_lammps(
         TABLE: table.text(),
         README: readme_text(title, table, clock, result),
     }
-    files = _write_files(folder, texts)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
+    files = tuple(write_atomic(folder / name, text, remedy="choose another folder") for name, text in texts.items())
     exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
     errors = table.force_error, table.energy_error
     return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)
@@ -212,14 +216,3 @@ def _ensure_own(paths: Iterable[Path]) -> None:
                 f"{path} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; "
                 "choose another folder, or move it away"
             )
-
-
-def _write_files(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
-    for name, text in texts.items():
-        with atomic_write(folder / name, remedy="choose another folder") as partial:
-            partial.write_text(text, encoding="utf-8")
-    return tuple(folder / name for name in texts)
