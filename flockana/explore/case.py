@@ -1,7 +1,9 @@
 """Cases of the page: a start with changed parameters and moved agents, as law and flock and as Python."""
 
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, Self
 
 from flockana.base.checks import (
@@ -13,6 +15,7 @@ from flockana.base.checks import (
     ensure_vector,
 )
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
 from flockana.explore.starts import Start, from_file, from_law, from_scenario
 
@@ -114,3 +117,17 @@ def program(parts: Start) -> str:
     checks += ["print(*item.reported(run))"] if parts.source is not None else []
     head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
     return "\n".join([*head, text, *run, *checks]) + "\n"
+
+
+def run_file(asked: Any) -> bytes:
+    """Return the run of a case as netCDF.
+
+    Examples
+    --------
+    >>> run_file({"kind": "scenario", "name": "hexagon", "duration": 0.1})[1:4]
+    b'HDF'
+    """
+    parts = Case.of(asked).parts
+    run = parts.recorded or simulate(parts.law, parts.q0, parts.p0, parts.t_span, **parts.options)
+    with tempfile.TemporaryDirectory(prefix="flockana-") as folder:
+        return run.save(Path(folder) / "run.nc").read_bytes()

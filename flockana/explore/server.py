@@ -21,8 +21,8 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.interrupts import block_sigint
 from flockana.ensemble.processes import single_threaded_children
+from flockana.explore.case import run_file
 from flockana.explore.page import page
-from flockana.explore.saving import run_file
 from flockana.explore.worker import work
 
 HOST = "127.0.0.1"

@@ -12,7 +12,7 @@ from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
 from flockana.recorded.findings import Share, explained
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.schemes import scheme_by_law
+from flockana.recorded.steps import scheme_by_law
 
 _WORST = 5  # places that are named
 _ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gains are only rough

@@ -73,6 +73,7 @@ def test_the_error_of_the_table_falls_with_the_square_of_its_points(tmp_path):
         for points in (1000, 4000)
     ]
     assert found[0] / found[1] == pytest.approx(16.0, rel=0.1)
+    assert read_table(tmp_path / "pair.table", "PAIR")[0][0] == pytest.approx(8.4e-6**2)  # it begins near contact
 
 
 def ensure_follows(law, flock, folder, *, order):
