@@ -6,14 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
-from flockana.base.checks import (
-    ensure_choice,
-    ensure_finite_scalar,
-    ensure_positive,
-    ensure_seed,
-    ensure_time_span,
-    ensure_vector,
-)
+from flockana.base.checks import ensure_choice, ensure_positive, ensure_seed, ensure_time_span, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
@@ -87,7 +80,7 @@ class Case:
             lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
         span, options = start.t_span, dict(start.options)
         if self.duration is not None:
-            span = ensure_time_span((span[0], span[0] + ensure_finite_scalar("duration", self.duration)))
+            span = ensure_time_span((span[0], span[0] + float(self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
         parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}

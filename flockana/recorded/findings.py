@@ -8,8 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.recorded.accelerations import Accelerations
 from flockana.recorded.clustered import covariance_over_agents
-from flockana.recorded.contributions import contributions, remainder
-from flockana.recorded.variants import variants
+from flockana.recorded.contributions import contributions, remainder, variants
 
 _OTHER = 0.01  # relative difference from which on a gain is reported
 _CHANCE = 3e-5  # probability that noise alone shows a gain as larger, likewise
