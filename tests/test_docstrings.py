@@ -129,12 +129,6 @@ def test_public_functions_have_an_example():
     assert {item.__name__ for item in shown if ">>>" not in (inspect.getdoc(item) or "")} - NO_EXAMPLE == set()
 
 
-def test_the_reader_of_sections_reads_them():
-    text = "Do.\n\nParameters\n----------\nq, p : ndarray\n    Both.\n*names : str\n\nReturns\n-------\nx : int\n"
-    assert documented(text) == {"q", "p", "names"}
-    assert documented("Do.") == set()
-
-
 def test_public_functions_and_inherited_classes_are_reached():
     names = {f"{item.__module__}.{item.__qualname__}" for item in reachable()}
     assert {"flockana.dynamics.simulate.simulate", "flockana.laws.law.LawOfMotion"} <= names

@@ -1,7 +1,5 @@
 """Compiled code on disk: whoever else compiles at the same time, what is loaded is what was asked for."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import re

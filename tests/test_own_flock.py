@@ -1,7 +1,6 @@
 """A law and a start of the user's own, wherever a scenario of the catalogue does."""
 
-from __future__ import annotations
-
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -128,28 +127,11 @@ print(runs.sizes["seed"], "runs")
 def test_a_script_without_a_guard_is_run_once_and_told_why_it_is_slow(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
-    done = subprocess.run(
-        [sys.executable, str(script)], capture_output=True, text=True, timeout=300, env=_environment(), check=False
-    )
+    there = os.environ | {"PYTHONPATH": str(Path(fl.__file__).resolve().parent.parent)}
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300, env=there, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == ["script begins", "3 runs"]
     assert 'line 3 of the script is not under `if __name__ == "__main__":`' in done.stderr
-
-
-def _environment():
-    import os
-
-    return {**os.environ, "PYTHONPATH": str(Path(fl.__file__).resolve().parent.parent)}
-
-
-def test_a_flock_is_filmed_and_exported(tmp_path):
-    flock = fl.Flock(LAW, start, t_span=(0, 1))
-    assert fl.animate(flock, tmp_path / "three.gif", seconds=0.2).stat().st_size > 1000
-    with pytest.raises(ArgumentError, match="expected the one or the other"):
-        fl.animate(flock, tmp_path / "three.gif", law=LAW, q0=PAIR)
-    made = fl.export_lammps(flock, folder=tmp_path / "made")
-    again = fl.export_lammps(LAW, start(0), t_span=(0, 1), folder=tmp_path / "again")
-    assert [path.read_text() for path in made.files] == [path.read_text() for path in again.files]
 
 
 def test_a_start_is_drawn_from_the_seed_by_whatever_shows_or_exports_it(tmp_path):

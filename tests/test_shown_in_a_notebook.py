@@ -1,7 +1,5 @@
 """Objects as a notebook and `print` show them."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
@@ -41,10 +39,6 @@ def test_a_large_linearisation_is_shown_without_its_poles():
     q = fl.lattice.triangular(500, 7.0)
     shown = str(fl.linearise(fl.Algorithm1(), q, np.zeros_like(q)))
     assert "slowest_modes(...)" in shown
-
-
-def test_a_run_writes_its_film(run, tmp_path):
-    assert run.animate(tmp_path / "run.gif", seconds=0.2).stat().st_size > 1000
 
 
 def test_an_ensemble_is_a_table_of_shares():

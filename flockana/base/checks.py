@@ -21,7 +21,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
         number = float(_real(value))
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {format_value(value)}: expected one real number") from None
-    if not np.isfinite(number):
+    if not math.isfinite(number):
         raise ArgumentError(f"{name} = {number}: expected a finite number")
     return number
 
@@ -150,9 +150,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
         raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
     if m is not None and vector.size != m:
         raise ArgumentError(f"{name} has {vector.size} components: expected {m}, the dimension of the flock")
-    if not np.isfinite(vector).all():
-        raise ArgumentError(f"{name} = {vector}: expected finite numbers")
-    return vector
+    return ensure_series(name, vector)
 
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
@@ -208,8 +206,12 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
 
 def ensure_count(name: str, value: Any) -> int:
     """Return `value` as a whole number >= 1."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= 1")
+    return _ensure_whole(name, value, 1)
+
+
+def _ensure_whole(name: str, value: Any, least: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= {least}")
     return int(value)
 
 
@@ -222,11 +224,10 @@ def ensure_index(what: str, value: Any, count: int, kind: str = "a whole number"
 
 def ensure_seed(seed: Any, bits: int | None = None) -> int:
     """Return a seed, a whole number >= 0, of so many bits at most."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number >= 0")
+    seed = _ensure_whole("seed", seed, 0)
     if bits is not None and seed >= 2**bits:
         raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number below 2**{bits}")
-    return int(seed)
+    return seed
 
 
 def ensure_flag(name: str, value: Any) -> bool:

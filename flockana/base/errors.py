@@ -3,10 +3,9 @@
 Every message names the value it got, what was expected, and the remedy. Anything else that escapes is a bug.
 """
 
-from __future__ import annotations
-
 import math
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, Self
 
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all listed
@@ -62,23 +61,21 @@ class UnknownNameError(ArgumentError):
     """
 
     def __init__(self, kind: str, name: object, known: object) -> None:
-        from collections.abc import Iterable
         from difflib import get_close_matches
 
-        names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
+        names = sorted(map(str, known)) if isinstance(known, Iterable) else [str(known)]
         folded = {known_name.casefold(): known_name for known_name in names}
         text = name if isinstance(name, str) else format_value(name)
-        wanted = text.casefold()
-        close = [folded[one] for one in get_close_matches(wanted, folded, n=1)]
-        hint = f"did you mean {close[0]!r}? " if close else ""
-        nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
-        many = len(names) > _FEW
-        rest = f"the nearest of {len(names)}: {', '.join(nearest)}" if many else f"known: {', '.join(names)}"
-        rest = f"{hint}{rest[0].upper()}{rest[1:]}" if hint else rest
+        rest = f"known: {', '.join(names)}"
+        if len(names) > _FEW:
+            nearest = get_close_matches(text.casefold(), folded, n=_NEAREST, cutoff=0.0)
+            rest = f"the nearest of {len(names)}: {', '.join(folded[one] for one in nearest)}"
+        for close in get_close_matches(text.casefold(), folded, n=1):
+            rest = f"did you mean {folded[close]!r}? {rest[0].upper()}{rest[1:]}"
         super().__init__(f"unknown {kind} {format_value(name)}; {rest}")
         self._arguments = (str(kind), text, names)
 
-    def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, list[str]]]:
         return type(self), self._arguments  # so that it travels between processes
 
 

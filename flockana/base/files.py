@@ -28,11 +28,14 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
     """Return the file behind a path, links followed; raise if it is something that must not be replaced."""
     # A device or a pipe is left alone, and so is a link: what it points to is written.
     given = ensure_path(path, action="write", remedy=remedy)
-    target = Path(os.path.realpath(given))
+    target, reason = Path(os.path.realpath(given)), ""
     try:
-        reason = _in_the_way(target)
+        if target.is_symlink():
+            reason = "its links lead in a circle"
+        elif target.exists() and not target.is_file():
+            reason = "it is a folder" if target.is_dir() else "it is no regular file"
     except OSError as error:
-        raise FileError(f"cannot write {str(given)!r}: {error.strerror or error}; {remedy}") from error
+        reason = error.strerror or str(error)
     if reason:
         raise FileError(f"cannot write {str(given)!r}: {reason}; {remedy}")
     return target
@@ -50,15 +53,6 @@ def ensure_folder_of(path: Any) -> Path:
     except OSError as error:
         raise FileError(f"cannot write to {folder}: {error.strerror or error}; choose another folder") from error
     return target
-
-
-def _in_the_way(target: Path) -> str:
-    """Return a description of a path's target that is not a regular file; empty if a file may be written."""
-    if target.is_symlink():
-        return "its links lead in a circle"
-    if target.is_dir():
-        return "it is a folder"
-    return "it is no regular file" if target.exists() and not target.is_file() else ""
 
 
 @contextmanager

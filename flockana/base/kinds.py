@@ -1,7 +1,5 @@
 """Checks that arguments are of the classes that their annotations name, where a public function begins."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -50,7 +48,6 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
-
     items = {name: texts[name].partition("[")[2].rstrip("]").rpartition(".")[2] for name in kinds}
 
     @functools.wraps(function)

@@ -31,15 +31,13 @@ def ensure_consistent(item: Any) -> None:
                         f"{base.__name__} defines {name}, but not {source}, from which it follows: the integrators ask "
                         f"for {source}, so {name} would be ignored; define {source} anew instead"
                     )
-    for name in vars(item) if hasattr(item, "__dict__") else ():
+    for name in getattr(item, "__dict__", ()):
         if isinstance(getattr(kind, name, None), FunctionType):
             raise ArgumentError(
                 f"this {kind.__name__} was given its own {name}, which compiled code would not call: expected the "
                 "method of its class; derive a class that defines it anew"
             )
-    if is_dataclass(item):
-        for field in fields(item):
-            value = getattr(item, field.name)
-            for part in value if isinstance(value, tuple) else (value,):
-                if hasattr(part, "derived_methods"):
-                    ensure_consistent(part)
+    for value in [getattr(item, field.name) for field in fields(item)] if is_dataclass(item) else ():
+        for part in value if isinstance(value, tuple) else (value,):
+            if hasattr(part, "derived_methods"):
+                ensure_consistent(part)

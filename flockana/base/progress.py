@@ -76,15 +76,9 @@ def _console() -> Any:
 
 def _bar(console: Any, counted: bool, steady: bool) -> Any:
     """Return a transient bar of rich with these columns."""
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich import progress as rich
 
-    columns = [BarColumn(24), *[MofNCompleteColumn()] * counted, TimeElapsedColumn()]
-    columns += [TextColumn("left"), TimeRemainingColumn()] * steady
-    return Progress(*columns, TextColumn("{task.description}", markup=False), console=console, transient=True)
+    columns = [rich.BarColumn(24), *[rich.MofNCompleteColumn()] * counted, rich.TimeElapsedColumn()]
+    columns += [rich.TextColumn("left"), rich.TimeRemainingColumn()] * steady
+    text = rich.TextColumn("{task.description}", markup=False)
+    return rich.Progress(*columns, text, console=console, transient=True)

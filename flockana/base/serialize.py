@@ -7,10 +7,12 @@ is read.
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from itertools import chain
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -66,7 +68,7 @@ def from_data(data: Any) -> Any:
     if not ours and module not in sys.modules:
         raise FileError(f"the file needs {name}, which is not part of flockana: import {module} first, then load again")
     try:
-        cls = parameter_classes().get(qualname) if ours else _own_class(module, qualname)
+        cls = parameter_classes().get(qualname) if ours else resolve_name(name)
         if cls is None or not is_dataclass(cls):
             raise TypeError(f"{name} is no parameter class")
         return cls(**{key: from_data(v) for key, v in data.items() if key != "type"})
@@ -84,20 +86,11 @@ def read_json(text: str) -> Any:
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return a JSON object; raise on duplicate keys."""
-    data: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in data:
-            raise ValueError(f"the key {format_value(key)} is given twice")
-        data[key] = value
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        twice, _ = Counter(key for key, _ in pairs).most_common(1)[0]
+        raise ValueError(f"the key {format_value(twice)} is given twice")
     return data
-
-
-def _own_class(module: str, qualname: str) -> Any:
-    """Return a user's class from a module that is already imported."""
-    item: Any = sys.modules[module]
-    for part in qualname.split("."):
-        item = getattr(item, part)
-    return item
 
 
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:

@@ -20,10 +20,8 @@ def lengths(x: FloatArray) -> FloatArray:
 def centres(x: FloatArray) -> FloatArray:
     """Return the means over agents at each instant, (T, n, m) -> (T, m), equal to ``x.mean(axis=1)`` bit by bit."""
     if x.shape[2] == 1:  # numpy's sums of what lies side by side are fast, and are summed in pairs
-        means: FloatArray = x.mean(axis=1)
-        return means
-    along: FloatArray = np.ascontiguousarray(x.swapaxes(0, 1)).mean(axis=0)
-    return along
+        return x.mean(axis=1)
+    return np.ascontiguousarray(x.swapaxes(0, 1)).mean(axis=0)
 
 
 def scaled_near_one(x: FloatArray, *others: float) -> tuple[FloatArray, tuple[float, ...], float]:

@@ -88,7 +88,9 @@ def notebook(source: Path, version: str, *, address: str = "") -> Any:
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
-    book.cells.insert(2, _install(source, address))
+    lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
+    hidden = {"tags": ["install"], "jupyter": {"source_hidden": True}}
+    book.cells.insert(2, nbformat.v4.new_code_cell(lines, metadata=hidden))
     book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
@@ -97,12 +99,6 @@ def notebook(source: Path, version: str, *, address: str = "") -> Any:
         elif {"solution", "check", "facts"} & set(tags(cell)):
             cell.metadata["jupyter"] = {"source_hidden": True}
     return book
-
-
-def _install(source: Path, address: str) -> Any:
-    """Return a cell that installs flockana and fetches companion files where they are missing, as on Colab."""
-    lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")
-    return nbformat.v4.new_code_cell(lines, metadata={"tags": ["install"], "jupyter": {"source_hidden": True}})
 
 
 def needs_companions(source: Path) -> bool:
@@ -118,7 +114,13 @@ def exercises(source: Path) -> Iterator[Exercise]:
             parts += [{}] * (tag == "exercise")
             parts[-1] = parts[-1] | {tag: cell.source}
     for part in parts:
-        number, stars, points, kind = _head(part["exercise"], source)
+        found = _POSED.search(part["exercise"])
+        if found is None or found[4] not in KINDS:
+            raise ArgumentError(
+                f"{source.name}: an exercise begins {part['exercise'][:60]!r}; expected '**1.** ★★ (2 points, kind) "
+                f"...', kind one of {', '.join(KINDS)}"
+            )
+        number, stars, points, kind = int(found[1]), len(found[2]), int(found[3]), found[4]
         if ("check" in part) is (kind in WRITTEN):
             raise ArgumentError(
                 f"{source.name}: exercise {number} is of kind {kind}; expected a check unless it is one of "
@@ -126,16 +128,6 @@ def exercises(source: Path) -> Iterator[Exercise]:
             )
         name, form = asked(part["check"]) if "check" in part else (f"text_{number}", "text")
         yield Exercise(name, number, stars, points, kind, form)
-
-
-def _head(text: str, source: Path) -> tuple[int, int, int, str]:
-    found = _POSED.search(text)
-    if found is None or found[4] not in KINDS:
-        raise ArgumentError(
-            f"{source.name}: an exercise begins {text[:60]!r}; expected '**1.** ★★ (2 points, kind) ...', "
-            f"kind one of {', '.join(KINDS)}"
-        )
-    return int(found[1]), len(found[2]), int(found[3]), found[4]
 
 
 def asked(check: str) -> tuple[str, str]:

@@ -34,11 +34,11 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
     """
     home = ensure_path(folder, action="write to", remedy=_REMEDY)
     paths = {home / name: content for name, content in files.items()}
-    missing = {path: content for path, content in paths.items() if not _is_there(path, content)}
+    missing = [path for path, content in paths.items() if not _is_there(path, content)]
     try:
-        for path, content in missing.items():
+        for path in missing:
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomic(path, content, remedy=_REMEDY)
+            write_atomic(path, paths[path], remedy=_REMEDY)
     except OSError as error:
         reason = getattr(error.__cause__, "strerror", None) or error.strerror or error
         raise FileError(f"cannot write all of the course to {home}: {reason}; {_REMEDY}") from error

@@ -11,16 +11,7 @@ from typing import Any
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_raw_cell
 
 from flockana.base.checks import ensure_choice
-from flockana.course.build import (
-    Exercise,
-    companions,
-    exercises,
-    lecturer_pages,
-    needs_companions,
-    notebook,
-    sources,
-    tags,
-)
+from flockana.course import build
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.pages import number_of
 
@@ -36,14 +27,14 @@ def master(source: Path, grader: str) -> Any:
     """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
-    book, asked = notebook(source, "solutions"), iter(exercises(source))
+    book, asked = build.notebook(source, "solutions"), iter(build.exercises(source))
     cells: list[Any] = [new_raw_cell(_assignment(source))] if grader == "otter" else []
     parts: dict[str, Any] = {}
     for cell in book.cells:
-        kind = next((tag for tag in ("exercise", "solution", "check") if tag in tags(cell)), "")
+        kind = next((tag for tag in ("exercise", "solution", "check") if tag in build.tags(cell)), "")
         if kind:
             parts[kind] = cell
-        elif not {"facts", "install"} & set(tags(cell)):
+        elif not {"facts", "install"} & set(build.tags(cell)):
             cells.append(cell)
         if kind == "check" or (kind == "solution" and cell.cell_type == "markdown"):
             check = cell.source if kind == "check" else ""
@@ -58,30 +49,30 @@ def write_for(folder: Path, grader: str) -> list[Path]:
     """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``."""
     books: dict[str, bytes] = {}
     others: dict[str, bytes] = {}
-    for source in sources():
+    for source in build.sources():
         home = f"source/{source.stem}/" if grader == "nbgrader" else ""
         books[f"{home}{source.stem}.ipynb"] = notebook_bytes(master(source, grader))
-        if needs_companions(source):
-            others |= {f"{home}{name}": content for name, content in companions().items()}
+        if build.needs_companions(source):
+            others |= {f"{home}{name}": content for name, content in build.companions().items()}
     if grader == "nbgrader":
         others["nbgrader_config.py"] = _NBGRADER_CONFIG.encode()
-    return deliver(folder, books | others | lecturer_pages())[: len(books)]
+    return deliver(folder, books | others | build.lecturer_pages())[: len(books)]
 
 
-def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
+def _tests(check: str, exercise: build.Exercise) -> tuple[str, str]:
     """Return the visible and the hidden test of an exercise."""
     seen = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
     return seen, f'assert {check.rstrip()}.status == "right"'
 
 
 def _assignment(source: Path) -> str:
-    files = ["own_law/__init__.py", "own_law/law.py", "own_law/theorem.py", "own_law/proof.py"]
-    files += ["proofs/__init__.py", "proofs/proof.py"]
-    listed = "".join(f"\n  - {name}" for name in files)
-    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * needs_companions(source)
+    listed = "".join(f"\n  - {name}" for name in build.companions() if name.endswith(".py"))
+    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * build.needs_companions(
+        source
+    )
 
 
-def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
+def _otter(exercise: build.Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for Otter: raw cells delimit a question, and the hidden test carries its points."""
     by_hand = not check
     head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
@@ -107,7 +98,7 @@ def _scored(points: int, *, hidden: bool) -> str:
     return f'""" # BEGIN TEST CONFIG\npoints: {points}\nhidden: {str(hidden).lower()}\n""" # END TEST CONFIG\n'
 
 
-def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
+def _nbgrader(exercise: build.Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for nbgrader: cell metadata, and solutions between ``### BEGIN`` and ``### END``."""
     yield new_markdown_cell(text.source)
     if not check:
@@ -121,7 +112,7 @@ def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Itera
         yield _marked(tests, exercise, grade=True, solution=False)
 
 
-def _marked(cell: Any, exercise: Exercise, *, grade: bool, solution: bool) -> Any:
+def _marked(cell: Any, exercise: build.Exercise, *, grade: bool, solution: bool) -> Any:
     marks = {"schema_version": 3, "cell_type": cell.cell_type, "task": False, "grade": grade, "solution": solution}
     marks |= {"locked": not solution, "grade_id": f"{exercise.name}-{'answer' if solution else 'tests'}"}
     cell.metadata["nbgrader"] = marks | ({"points": exercise.points} if grade else {})

@@ -51,17 +51,12 @@ def course_map(folder: Path) -> list[Lecture]:
         if early:
             raise ArgumentError(f"lecture {number} builds on {early}: expected earlier entries of lectures.toml")
         references = tuple(as_text(cite(key)) for key in entry["references"])
-        title = _title(files[number])
+        title = re.search(r"^# # (.+)$", files[number].read_text(encoding="utf-8"), re.MULTILINE)
+        if title is None:
+            raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
         after, further = tuple(entry["after"]), tuple(entry["further"])
-        found.append(Lecture(number, title, after, entry["minutes"], references, further))
+        found.append(Lecture(number, title[1], after, entry["minutes"], references, further))
     return found
-
-
-def _title(source: Path) -> str:
-    found = re.search(r"^# # (.+)$", source.read_text(encoding="utf-8"), re.MULTILINE)
-    if found is None:
-        raise ArgumentError(f"{source.name} has no title: expected a line '# # ...'")
-    return found[1]
 
 
 def as_text(bibtex: str) -> str:

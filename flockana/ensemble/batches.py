@@ -16,6 +16,9 @@ from flockana.ensemble.executors import WorkerPool
 _TICK = 0.2  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
 HOPELESS = 3  # workers that died in a row, without one batch done in between
+_REMEDY = (
+    "a script that starts them must do so under `if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
+)
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -65,7 +68,7 @@ def map_in_batches(
                         break  # what else is done is still pending, or under suspicion
                     dead.append((batch[0], None))
                     if len(dead) == HOPELESS:
-                        raise _workers_died() from error
+                        raise SolverError(f"{HOPELESS} worker processes died one after the other: {_REMEDY}") from error
                 else:
                     size = batch_size(results)
                     yield (*dead, *zip(batch, results, strict=True))
@@ -108,10 +111,3 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Wo
         workers.executor = workers.renew()
         return suspected
     raise error
-
-
-def _workers_died() -> SolverError:
-    return SolverError(
-        f"{HOPELESS} worker processes died one after the other: a script that starts them must do so under "
-        "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"
-    )

@@ -1,9 +1,8 @@
 """Ensembles of a scenario over seeds and options, in parallel, with a store to resume from."""
 
-from __future__ import annotations
-
 import inspect
 import os
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
@@ -11,12 +10,13 @@ from hashlib import sha256
 from itertools import islice
 from math import prod
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flockana.base.checks import ensure_known
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
@@ -26,7 +26,7 @@ from flockana.ensemble.guard import can_start_processes
 from flockana.ensemble.processes import cores
 from flockana.ensemble.runs import make_runs
 from flockana.ensemble.store import Store
-from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
+from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
@@ -59,7 +59,7 @@ def ensemble(
     store: str | os.PathLike[str] | None = None,
     retry: bool = False,
     progress: bool = False,
-) -> xarray.Dataset:
+) -> "xarray.Dataset":
     """Run and verify a scenario for many seeds, and for all combinations of given options.
 
     The same seeds give the same numbers, ``seconds`` aside, whoever computes them and in whatever order, on processors
@@ -128,15 +128,16 @@ def ensemble(
     if (runs := prod(grid.shape)) > MOST:
         raise ArgumentError(f"{runs} runs: expected at most {MOST}, seeds times values of options; {_REMEDY}")
     chosen = _ensure_metrics(metrics)
-    _ensure_names((*grid.axes, *grid.fixed, *map(metric_name, chosen)))
+    names = Counter((*RESERVED, *grid.axes, *grid.fixed, *map(metric_name, chosen)))
+    for name in (name for name, count in names.items() if count > 1):
+        raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
     if tolerances is not None and not isinstance(tolerances, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
     given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
-    flock = given if isinstance(given, Flock) else None
-    if flock is None:
-        name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
+    if isinstance(given, Flock):
+        name, checked, flock = given.name, _ensure_flock(given, grid, theorems), given
     else:
-        name, checked = flock.name, _ensure_flock(flock, grid, theorems)
+        name, checked, flock = _ensure_scenario(given, grid), _ensure_theorems(theorems), None
     request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
     all_jobs = grid.jobs()
     with ExitStack() as stack:
@@ -168,19 +169,18 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
     """Return seeds as a tuple of whole numbers >= 0, each of them once."""
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ArgumentError(f"seeds = {seeds!r}: expected several whole numbers, such as range(200)")
-    given = tuple(islice(seeds, MOST + 1))  # there may be no end of them
-    if len(given) > MOST:
-        raise ArgumentError(f"seeds: there are more than {MOST}; expected at most so many, {_REMEDY}")
-    for seed in given:
+    given: dict[int, None] = {}
+    for seed in islice(seeds, MOST + 1):  # there may be no end of them
         if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
             raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
+        if seed in given:
+            raise ArgumentError(f"seed {seed} comes twice: expected different seeds")
+        given[int(seed)] = None
     if not given:
         raise ArgumentError("seeds: empty; expected at least one, such as range(200)")
-    whole = tuple(int(seed) for seed in given)
-    if len(set(whole)) < len(whole):
-        twice = next(seed for k, seed in enumerate(whole) if seed in whole[:k])
-        raise ArgumentError(f"seed {twice} comes twice: expected different seeds")
-    return whole
+    if len(given) > MOST:
+        raise ArgumentError(f"seeds: there are more than {MOST}; expected at most so many, {_REMEDY}")
+    return tuple(given)
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
@@ -214,21 +214,7 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
         return tuple(measures())
     if isinstance(metrics, str) or not isinstance(metrics, Iterable):
         raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
-    names = []
-    for metric in metrics:
-        if not callable(metric) and not (isinstance(metric, str) and metric in measures()):
-            raise UnknownNameError("metric", metric, measures())
-        names.append(reference(metric) if callable(metric) else metric)
-    return tuple(names)
-
-
-def _ensure_names(names: Iterable[str]) -> None:
-    """Raise if two variables share a name in the dataset."""
-    seen = {*RESERVED}
-    for name in names:
-        if name in seen:
-            raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
-        seen.add(name)
+    return tuple(reference(each) if callable(each) else ensure_known("metric", each, measures()) for each in metrics)
 
 
 def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
@@ -282,9 +268,9 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
 
 
 def _source_digest(name: str, *, strict: bool) -> str:
-    file = inspect.getsourcefile(resolve(name))
-    if file is not None and Path(file).is_file():
-        return sha256(Path(file).read_bytes()).hexdigest()
+    file = Path(inspect.getsourcefile(resolve_name(name)) or "")
+    if file.is_file():
+        return sha256(file.read_bytes()).hexdigest()
     if strict:
         raise ArgumentError(
             f"{name}: its source file is not known, so a store cannot tell its versions apart; leave "

@@ -39,7 +39,7 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
         client = _client(own or address, address)
         try:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
-            yield client.get_executor(pure=False), _ClusterSize(client)
+            yield client.get_executor(pure=False), _size_of(client)
         finally:
             _end(client)
     finally:
@@ -129,15 +129,14 @@ def _threads(client: Any, limit: float) -> int:
     return int(sum(client.sync(client.scheduler.ncores, callback_timeout=limit).values()))
 
 
-class _ClusterSize:
-    """Number of runs that a cluster can make at once, at present."""
+def _size_of(client: Any) -> Callable[[], int]:
+    """Return a function for the number of runs that a cluster can make at once, at present."""
+    seen = time.monotonic()
 
-    def __init__(self, client: Any) -> None:
-        self.client, self.seen = client, time.monotonic()
-
-    def __call__(self) -> int:
+    def size() -> int:
+        nonlocal seen
         try:
-            threads = _threads(self.client, ALONE)
+            threads = _threads(client, ALONE)
         except Exception as error:  # whatever Dask makes of a scheduler that is gone
             raise SolverError(
                 f"the executor failed: Dask's scheduler does not answer ({_reason(error)}); runs in a store are kept, "
@@ -145,13 +144,15 @@ class _ClusterSize:
             ) from error
         now = time.monotonic()
         if threads:
-            self.seen = now
-        elif now - self.seen > ALONE:
+            seen = now
+        elif now - seen > ALONE:
             raise SolverError(
                 f"the executor failed: the cluster has had no worker for {ALONE:g} s; runs in a store are kept, so "
                 "start workers and go on"
             )
         return max(1, threads)
+
+    return size
 
 
 def _end(closing: Any) -> None:

@@ -1,7 +1,5 @@
 """Records of an ensemble as an `xarray.Dataset`, and shares of runs in which each claim holds."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -42,13 +40,12 @@ class Grid:
 
     def jobs(self, most: int | None = None) -> list[Job]:
         """Return all runs, or those of the first seeds."""
-        points = (
-            dict(zip(self.axes, values, strict=True)) | dict(self.fixed) for values in product(*self.axes.values())
-        )
-        return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in self.seeds[:most]]
+        points = (dict(zip(self.axes, values, strict=True)) for values in product(*self.axes.values()))
+        options = (tuple(sorted({**point, **self.fixed}.items())) for point in points)
+        return [Job(seed, each) for each in options for seed in self.seeds[:most]]
 
 
-def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> xarray.Dataset:
+def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarray.Dataset":
     """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
 
@@ -83,7 +80,9 @@ def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> xarra
     }
     for name in request.metrics:
         values = [record.metrics.get(name, np.nan) for record in records]
-        variables[metric_name(name)] = over_runs(values, np.float64, **_described(name))
+        own = None if ":" in name else measures()[name]
+        described = {"long_name": metric_name(name)} if own is None else {"long_name": own.summary, "units": own.unit}
+        variables[metric_name(name)] = over_runs(values, np.float64, **described)
     coords: dict[str, Any] = {name: list(values) for name, values in grid.axes.items()} | dict(grid.fixed)
     coords["seed"] = list(grid.seeds)
     coords |= {"claim": np.array(claims, dtype=object), "theorem": np.array(theorems, dtype=object)}
@@ -101,13 +100,6 @@ def metric_name(name: str) -> str:
     return name.rpartition(":")[2]
 
 
-def _described(name: str) -> dict[str, str]:
-    if ":" in name:
-        return {"long_name": metric_name(name)}
-    measure = measures()[name]
-    return {"long_name": measure.summary, "units": measure.unit}
-
-
 def _flags(names: Sequence[str]) -> dict[str, Any]:
     """Return the meanings of status codes in the CF convention; -1 stands for a missing claim or run."""
     return {"flag_values": list(range(len(names))), "flag_meanings": " ".join(names)}
@@ -117,15 +109,7 @@ def _code(names: Sequence[str], name: str | None) -> int:
     return -1 if name is None else names.index(name)
 
 
-def ensure_ensemble(dataset: Any) -> None:
-    """Check that a dataset is one of `ensemble`."""
-    import xarray
-
-    if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):
-        raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
-
-
-def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
+def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset":
     """Return the shares of runs in which each claim is verified and refuted, with Clopper-Pearson intervals.
 
     The share is of all complete runs on which the claim was checked, those on which it is vacuous or inconclusive
@@ -160,7 +144,8 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     """
     import xarray
 
-    ensure_ensemble(dataset)
+    if not (isinstance(dataset, xarray.Dataset) and {"status", "run"} <= {*dataset} and "seed" in dataset.dims):
+        raise ArgumentError(f"dataset is {type(dataset).__name__}: expected what flockana.ensemble returned")
     ensure_level(level)
     counts = {name: (dataset.status == code).sum("seed") for code, name in enumerate(STATUSES)}
     runs = (dataset.status >= 0).sum("seed")
@@ -174,7 +159,7 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     return xarray.Dataset(table, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])
 
 
-def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str, str, str]]:
+def share_cells(table: "xarray.Dataset") -> Iterator[tuple[str, str, str, str, str, str, str]]:
     """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each claim that was checked."""
     # Shares are in per cent, with their intervals; the last two are numbers of runs.
     axes = [str(name) for name in table.runs.dims if name != "claim"]
@@ -189,6 +174,6 @@ def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str
                 yield where, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
 
 
-def _interval(entry: xarray.Dataset) -> str:
+def _interval(entry: "xarray.Dataset") -> str:
     share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
     return f"{share:.1f} [{low:.1f}, {high:.1f}]"

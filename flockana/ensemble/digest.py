@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError
-from flockana.base.files import atomic_write
+from flockana.base.files import write_atomic
 
 _DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
@@ -46,16 +46,13 @@ def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
     for name, source in sorted(sources.items()):
         exact.update(f"\0{name}\0{len(source)}\0".encode() + source)
     kept = folder / f"mathematics.{exact.hexdigest()[:32]}.txt"
-    try:
-        digest = kept.read_text(encoding="ascii")
-    except (OSError, UnicodeDecodeError):
-        digest = ""
-    if _DIGEST.fullmatch(digest):
-        return digest
+    with suppress(OSError, UnicodeDecodeError):
+        if _DIGEST.fullmatch(digest := kept.read_text(encoding="ascii")):
+            return digest
     digest = digest_of_sources(sources)
     if not sys.dont_write_bytecode and folder.is_dir():
-        with suppress(FileError), atomic_write(kept) as partial:
-            partial.write_text(digest, encoding="ascii")
+        with suppress(FileError):
+            write_atomic(kept, digest)
     return digest
 
 

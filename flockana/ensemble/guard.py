@@ -1,12 +1,11 @@
 """Check that worker processes can be started without running the user's script again."""
 
 import ast
-import inspect
 import pickle
 import sys
 import warnings
 from pathlib import Path
-from types import FrameType
+from traceback import walk_stack
 from typing import Any
 
 GUARD = 'if __name__ == "__main__":'
@@ -15,28 +14,27 @@ GUARD = 'if __name__ == "__main__":'
 def can_start_processes(request: Any) -> bool:
     """Return whether processes can make the runs; warn and return False if this process must."""
     # A started process imports the script that called. Without a guard that would run it again.
+    reason = ""
     if (line := unguarded_line()) is not None:
-        _warn(f"line {line} of the script is not under `{GUARD}`, so the runs are made in this process, one by one")
-        return False
+        reason = f"line {line} of the script is not under `{GUARD}`"
     try:
         pickle.dumps(request)
     except Exception as error:  # pickle raises errors of many kinds
-        _warn(f"the runs are made in this process, one by one: the flock cannot be sent to another ({error})")
-        return False
-    return True
+        reason = reason or f"the flock cannot be sent to another ({error})"
+    if reason:
+        warnings.warn(f"ensemble: the runs are made in this process, one by one: {reason}", stacklevel=3)
+    return not reason
 
 
 def unguarded_line() -> int | None:
     """Return the line of the running script that called, if it is not under a guard."""
-    frame: FrameType | None = inspect.currentframe()
-    while frame is not None:
+    for frame, line in walk_stack(None):
         if frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") in ("__main__", "__mp_main__"):
-            break
-        frame = frame.f_back
-    path = None if frame is None else Path(frame.f_code.co_filename)
-    if frame is None or path is None or not hasattr(sys.modules["__main__"], "__file__") or not path.is_file():
-        return None  # a notebook or a prompt, which no process imports
-    return None if is_guarded(path.read_text(encoding="utf-8"), frame.f_lineno) else frame.f_lineno
+            path = Path(frame.f_code.co_filename)
+            if not hasattr(sys.modules["__main__"], "__file__") or not path.is_file():
+                return None  # a notebook or a prompt, which no process imports
+            return None if is_guarded(path.read_text(encoding="utf-8"), line) else line
+    return None
 
 
 def is_guarded(source: str, line: int) -> bool:
@@ -47,7 +45,3 @@ def is_guarded(source: str, line: int) -> bool:
         and any(isinstance(part, ast.Name) and part.id == "__name__" for part in ast.walk(node.test))
         for node in ast.parse(source).body
     )
-
-
-def _warn(text: str) -> None:
-    warnings.warn(f"ensemble: {text}", stacklevel=4)

@@ -1,7 +1,5 @@
 """Classification of runs by their end: flocking, fragmentation, collapse."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,8 +18,8 @@ _FORMER = {"deviation_energy": "normalised_deviation_energy"}  # what saved ense
 
 
 def phases(
-    dataset: xarray.Dataset, *, contact: float = CONTACT, tolerances: Tolerances | None = None
-) -> xarray.DataArray:
+    dataset: "xarray.Dataset", *, contact: float = CONTACT, tolerances: Tolerances | None = None
+) -> "xarray.DataArray":
     """Return the phase in which each run of an ensemble ended, from its measures at the end.
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its

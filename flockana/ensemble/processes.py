@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing.connection import wait as wait_for_end
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 from flockana.base.garbage import SELDOM, freeze_gc
@@ -55,26 +55,23 @@ def _begin_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(SELDOM)
     atexit.register(freeze_gc)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+    if (parent := multiprocessing.parent_process()) is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
 
-def _end_with(sentinel: int) -> None:
-    wait_for_end([sentinel])
+def _end_with(parent: BaseProcess) -> None:
+    parent.join()
     os._exit(1)
 
 
 @contextmanager
 def single_threaded_children() -> Iterator[None]:
     """Limit processes started inside to one thread of linear algebra each."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    before = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
     os.environ |= dict.fromkeys(_ONE_THREAD, "1")
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+        for name in _ONE_THREAD:
+            os.environ.pop(name, None)
+        os.environ |= before

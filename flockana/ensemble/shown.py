@@ -32,6 +32,5 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
 
     def _title(self) -> str:
         lost = int((self.run != 0).sum())
-        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs" + (
-            f", {lost} did not complete" if lost else ""
-        )
+        lacking = f", {lost} did not complete" if lost else ""
+        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{lacking}"

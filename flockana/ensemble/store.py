@@ -6,20 +6,16 @@ Like every such file it belongs on a local disk: write-ahead logs do not work on
 cluster are written by the one program that asked for them.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
-from types import TracebackType
+from contextlib import AbstractContextManager, contextmanager
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import ensure_path
+from flockana.base.files import ensure_path, ensure_target
 from flockana.ensemble.digest import numerics_version
 from flockana.ensemble.work import COMPLETE, Record
 
@@ -43,12 +39,17 @@ _INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UP
     WHERE runs.status <> '{COMPLETE}' AND excluded.status = '{COMPLETE}'"""
 
 
-class Store:
+class Store(AbstractContextManager["Store"]):
     """File of runs by key; a context manager."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = ensure_path(path, action="write")
-        _ensure_place(self.path)
+        ensure_target(self.path)
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            reason = error.strerror or error
+            raise FileError(f"cannot make {self.path.parent}: {reason}; choose another folder") from error
         with self._explained():
             self._file = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
             try:
@@ -64,11 +65,12 @@ class Store:
         if self._pragma("user_version") > FORMAT:
             raise FileError(f"{self.path} is a store of a newer format: update flockana, or choose another file")
         if tables:
-            self._ensure_whole()
+            if (fault := self._file.execute("PRAGMA quick_check(1)").fetchone()[0]) != "ok":
+                raise sqlite3.DatabaseError(fault)
             self._ensure_version()
         self._prepare()
-        with self._transaction():  # a second program may be doing the same: nothing is done twice
-            for statement in _SCHEMA:
+        with self._file:  # a second program may be doing the same: nothing is done twice
+            for statement in ("BEGIN IMMEDIATE", *_SCHEMA):
                 self._file.execute(statement)
             facts = (("mathematics", numerics_version()), ("flockana", __version__))
             self._file.executemany("INSERT OR IGNORE INTO facts VALUES (?, ?)", facts)
@@ -90,11 +92,6 @@ class Store:
                     raise
                 time.sleep(0.01)
 
-    def _ensure_whole(self) -> None:
-        fault = self._file.execute("PRAGMA quick_check(1)").fetchone()[0]
-        if fault != "ok":
-            raise sqlite3.DatabaseError(fault)
-
     def _ensure_version(self) -> None:
         facts = dict(self._file.execute("SELECT name, value FROM facts"))
         if facts.get("mathematics") != numerics_version():
@@ -104,12 +101,7 @@ class Store:
                 "or compute with the flockana, numpy, scipy and numba that wrote it"
             )
 
-    def __enter__(self) -> Store:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def __len__(self) -> int:
@@ -137,23 +129,13 @@ class Store:
             (key, scenario, r.job.seed, json.dumps(dict(r.job.options)), r.status, r.to_json(key))
             for key, r in records.items()
         ]
-        with self._explained(), self._transaction():
+        with self._explained(), self._file:
+            self._file.execute("BEGIN IMMEDIATE")
             self._file.executemany(_INSERT, rows)
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
-
-    @contextmanager
-    def _transaction(self) -> Iterator[None]:
-        self._file.execute("BEGIN IMMEDIATE")
-        try:
-            yield
-        except BaseException:
-            if self._file.in_transaction:  # on a full disk SQLite has ended it already
-                self._file.execute("ROLLBACK")
-            raise
-        self._file.execute("COMMIT")
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
@@ -170,14 +152,3 @@ class Store:
                 f"{self.path} is damaged or no store of flockana ({reason}); it was left as it is: move it away, or "
                 "choose another file"
             ) from error
-
-
-def _ensure_place(path: Path) -> None:
-    if os.path.isdir(path):
-        raise FileError(f"{path} is a folder: expected a file name, such as {path / 'runs.sqlite'}")
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise FileError(f"{path} is no regular file: expected a file name, such as runs.sqlite")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot make {path.parent}: {error.strerror or error}; choose another folder") from error

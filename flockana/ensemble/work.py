@@ -1,13 +1,12 @@
 """Execution of a single run of an ensemble, from plain data to a plain record."""
 
-from __future__ import annotations
-
-import importlib
 import json
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from pkgutil import resolve_name
+from typing import Any, Self
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
 from flockana.base.interrupts import restore_interrupts
@@ -84,7 +83,7 @@ class Record:
         return json.dumps({**data, SEAL: digest([key, data])}, ensure_ascii=False)
 
     @classmethod
-    def from_json(cls, text: str, key: str = "") -> Record:
+    def from_json(cls, text: str, key: str = "") -> Self:
         """Return the record of a JSON text from `to_json`."""
         data = json.loads(text)
         if data.pop(SEAL, None) != digest([key, data]):
@@ -97,23 +96,12 @@ class Record:
 def reference(function: Callable[..., Any]) -> str:
     """Return ``"module:name"`` of a function that another process can import."""
     name = f"{getattr(function, '__module__', None)}:{getattr(function, '__qualname__', None)}"
-    try:
-        if resolve(name) is function:
+    with suppress(ImportError, AttributeError, ValueError):
+        if resolve_name(name) is function:
             return name
-    except (ImportError, AttributeError):
-        pass
     raise ArgumentError(
         f"{function!r}: other processes cannot import it; expected a function defined at the top of a module"
     )
-
-
-def resolve(name: str) -> Any:
-    """Return the function of a ``"module:name"``."""
-    module, _, path = name.partition(":")
-    item: Any = importlib.import_module(module)
-    for part in path.split("."):
-        item = getattr(item, part)
-    return item
 
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
@@ -136,10 +124,10 @@ def run_one(request: Request, job: Job) -> Record:
             run = item.run()
             if run.status == "interrupted":
                 raise KeyboardInterrupt
-            if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
-                record = Record(job, FAILED, run.message, stats=_stats(run))
-            else:
+            if run.status == COMPLETE:
                 record = _judge_run(request, job, item, run)
+            else:  # of a part of the run no claim about the whole follows
+                record = Record(job, FAILED, run.message, stats=_stats(run))
     except Exception as error:
         record = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
     return replace(record, seconds=time.perf_counter() - started)
@@ -152,7 +140,7 @@ def build(request: Request, job: Job) -> Scenario:
     name = request.scenario
     if ":" not in name:
         return scenario(name, job.seed, **dict(job.options))
-    made = resolve(name)(job.seed, **dict(job.options))
+    made = resolve_name(name)(job.seed, **dict(job.options))
     if not isinstance(made, Scenario):
         raise ArgumentError(f"{name} returned {type(made).__name__}: expected a Scenario")
     return made
@@ -160,13 +148,13 @@ def build(request: Request, job: Job) -> Scenario:
 
 def _judge_run(request: Request, job: Job, item: Scenario, run: Trajectory) -> Record:
     verdicts = _verdicts(request, item, run)
-    claims = {
-        f"{verdict.theorem}:{claim.name}": (claim.status, _number(claim.margin), _number(claim.error))
-        for verdict in verdicts
-        for claim in verdict.claims
-    }
+    claims: dict[str, Any] = {}
+    for verdict in verdicts:
+        for claim in verdict.claims:
+            numbers = (None if x is None else float(x) for x in (claim.margin, claim.error))
+            claims[f"{verdict.theorem}:{claim.name}"] = (claim.status, *numbers)
     metrics = {
-        name: float((resolve(name) if ":" in name else measures()[name].number)(run)) for name in request.metrics
+        name: float((resolve_name(name) if ":" in name else measures()[name].number)(run)) for name in request.metrics
     }
     statuses: dict[str, str] = {verdict.theorem: verdict.status for verdict in verdicts}
     return Record(job, COMPLETE, "", statuses, claims, metrics, _stats(run))
@@ -181,10 +169,6 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
 
 
 def _stats(run: Trajectory) -> dict[str, int]:

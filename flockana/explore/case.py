@@ -1,20 +1,14 @@
 """Cases of the page: a start with changed parameters and moved agents, as law and flock and as Python."""
 
-from __future__ import annotations
-
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
 
-from flockana.base.checks import (
-    ensure_choice,
-    ensure_finite_scalar,
-    ensure_positive,
-    ensure_seed,
-    ensure_time_span,
-    ensure_vector,
-)
+from flockana.base.checks import ensure_choice, ensure_positive, ensure_seed, ensure_time_span, ensure_vector
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
 from flockana.explore.starts import Start, from_file, from_law, from_scenario
 
@@ -54,7 +48,7 @@ class Case:
             raise ArgumentError(f"changes = {self.changes!r}: expected values by name")
 
     @classmethod
-    def of(cls, asked: Any) -> Case:
+    def of(cls, asked: Any) -> Self:
         """Return the case described by a message of the page."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
@@ -62,11 +56,6 @@ class Case:
         if not isinstance(moved, Mapping) or not all(str(key).isdecimal() for key in moved):
             raise ArgumentError(f"moved = {str(moved)[:80]}: expected places by the agents' numbers")
         return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moved[k] for k in moved}})
-
-    @property
-    def is_unchanged(self) -> bool:
-        """Return whether nothing is changed."""
-        return not (self.changes or self.moved or self.duration)
 
     def start(self) -> Start:
         """Return the start without changes."""
@@ -91,12 +80,12 @@ class Case:
             lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
         span, options = start.t_span, dict(start.options)
         if self.duration is not None:
-            span = ensure_time_span((span[0], span[0] + ensure_finite_scalar("duration", self.duration)))
+            span = ensure_time_span((span[0], span[0] + float(self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
-        recorded, source = (start.recorded, start.source) if self.is_unchanged else (None, None)
         parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
-        return replace(start, **parts, recorded=recorded, source=source)
+        changed_ = {"recorded": None, "source": None} if self.changes or self.moved or self.duration else {}
+        return replace(start, **parts, **changed_)
 
 
 def program(parts: Start) -> str:
@@ -121,3 +110,17 @@ def program(parts: Start) -> str:
     checks += ["print(*item.reported(run))"] if parts.source is not None else []
     head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
     return "\n".join([*head, text, *run, *checks]) + "\n"
+
+
+def run_file(asked: Any) -> bytes:
+    """Return the run of a case as netCDF.
+
+    Examples
+    --------
+    >>> run_file({"kind": "scenario", "name": "hexagon", "duration": 0.1})[1:4]
+    b'HDF'
+    """
+    parts = Case.of(asked).parts
+    run = parts.recorded or simulate(parts.law, parts.q0, parts.p0, parts.t_span, **parts.options)
+    with tempfile.TemporaryDirectory(prefix="flockana-") as folder:
+        return run.save(Path(folder) / "run.nc").read_bytes()

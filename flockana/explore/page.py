@@ -19,7 +19,10 @@ def _text(name: str) -> str:
 
 def page(first: dict[str, Any], nonce: str) -> str:
     """Return the HTML of the page."""
-    groups = [{"label": source, "kind": "scenario", "names": names} for source, names in _scenarios().items()]
+    scenarios: dict[str, dict[str, str]] = {}  # titles by source and name
+    for entry in scenario_entries():
+        scenarios.setdefault(entry["source"], {})[entry["name"]] = entry["title"]
+    groups = [{"label": source, "kind": "scenario", "names": names} for source, names in scenarios.items()]
     groups.append({"label": "Laws, with a flock at random", "kind": "law", "names": dict.fromkeys(law_names(), "")})
     if first["kind"] == "file":
         groups.append({"label": "File", "kind": "file", "names": {first["name"]: ""}})
@@ -32,12 +35,3 @@ def page(first: dict[str, Any], nonce: str) -> str:
         .replace("/*SCRIPT*/", scripts)
         .replace("NONCE", nonce)
     )
-
-
-@cache
-def _scenarios() -> dict[str, dict[str, str]]:
-    """Return titles of scenarios by source and name."""
-    groups: dict[str, dict[str, str]] = {}
-    for entry in scenario_entries():
-        groups.setdefault(entry["source"], {})[entry["name"]] = entry["title"]
-    return groups

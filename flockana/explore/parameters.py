@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_finite_scalar, ensure_vector
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.checks import ensure_finite_scalar, ensure_flag, ensure_vector
+from flockana.base.errors import UnknownNameError
 
 Value = bool | int | float | tuple[float, ...]
 Tree = dict[str, Any]  # changed fields by name, or places in a tuple; a leaf is a value
@@ -47,19 +47,14 @@ def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
             yield from _listed(getattr(item, name), (*path, name))
     elif isinstance(item, bool | int | float | np.number):
         yield Number(".".join(path), item if isinstance(item, bool | int) else float(item))
-    elif _is_vector(item):
-        place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
-        yield Number(".".join(path), tuple(float(x) for x in item), place)
-    elif isinstance(item, tuple):
+    elif isinstance(item, tuple | np.ndarray):
+        numeric = all(isinstance(x, int | float | np.number) and not isinstance(x, bool) for x in item)
+        if numeric and 1 <= len(item) <= _COMPONENTS:
+            place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
+            yield Number(".".join(path), tuple(float(x) for x in item), place)
         for k, each in enumerate(item):
             if is_dataclass(each):
                 yield from _listed(each, (*path, str(k)))
-
-
-def _is_vector(item: Any) -> bool:
-    if not isinstance(item, tuple | np.ndarray) or not 1 <= len(item) <= _COMPONENTS:
-        return False
-    return all(isinstance(x, int | float | np.number) and not isinstance(x, bool) for x in item)
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
@@ -88,9 +83,7 @@ def _convert(path: str, old: Value, given: Any) -> Value:
     if isinstance(old, tuple):
         return tuple(ensure_vector(path, given, len(old)).tolist())
     if isinstance(old, bool):
-        if not isinstance(given, bool):
-            raise ArgumentError(f"{path} = {given!r}: expected true or false")
-        return given
+        return ensure_flag(path, given)
     number = ensure_finite_scalar(path, given)
     return int(number) if isinstance(old, int) and number.is_integer() else number
 

@@ -21,8 +21,8 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.interrupts import block_sigint
 from flockana.ensemble.processes import single_threaded_children
+from flockana.explore.case import run_file
 from flockana.explore.page import page
-from flockana.explore.saving import run_file
 from flockana.explore.worker import work
 
 HOST = "127.0.0.1"
@@ -50,14 +50,11 @@ class Process:
         threading.Thread(target=self._read, args=(loop,), daemon=True).start()
 
     def _read(self, loop: asyncio.AbstractEventLoop) -> None:
-        message: Any = ()
         with suppress(RuntimeError):  # the server is gone
-            while message is not None:
-                try:
-                    message = self.pipe.recv()
-                except (EOFError, OSError):
-                    message = None
-                loop.call_soon_threadsafe(self._forward, message)
+            with suppress(EOFError, OSError):
+                while True:
+                    loop.call_soon_threadsafe(self._forward, self.pipe.recv())
+            loop.call_soon_threadsafe(self._forward, None)
 
     def _forward(self, message: Any) -> None:
         self.ready = True
@@ -139,11 +136,10 @@ class _Run(_Guarded):
         try:
             case = self.server.admitted(json.loads(self.get_query_argument("case")))
             data = await asyncio.to_thread(run_file, case)
+            self.set_header("Content-Type", "application/x-netcdf")
         except (ValueError, AttributeError, FlockanaError) as error:
             self.set_status(400)
-            self.finish(f"the run cannot be written: {error}")
-            return
-        self.set_header("Content-Type", "application/x-netcdf")
+            data = f"the run cannot be written: {error}".encode()
         self.finish(data)
 
 
@@ -217,17 +213,13 @@ class _Tab(_Guarded, WebSocketHandler):
         if number != self.number:
             return
         self.analysing = kind not in ("begun", "form", "run", "done")
-        if kind == "run":
-            self._write(number.to_bytes(4, "little") + content, binary=True)
-        else:
-            self._say({"number": number, "kind": kind, **content})
+        self._say(
+            number.to_bytes(4, "little") + content if kind == "run" else {"number": number, "kind": kind, **content}
+        )
 
-    def _say(self, data: dict[str, Any]) -> None:
-        self._write(json.dumps(data), binary=False)
-
-    def _write(self, data: str | bytes, *, binary: bool) -> None:
+    def _say(self, data: dict[str, Any] | bytes) -> None:
         try:
-            self.write_message(data, binary=binary)
+            self.write_message(data, binary=isinstance(data, bytes))  # a dictionary becomes JSON
         except WebSocketClosedError:
             self.on_close()
 

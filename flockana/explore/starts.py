@@ -68,8 +68,8 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
         radius = round(side / 8.0, 3)
         target, text = StaticTarget(there), f"fl.StaticTarget({there}), obstacles=(fl.Sphere({between}, {radius}),)"
         return Algorithm3(target=target, obstacles=(Sphere(between, radius),)), f"fl.Algorithm3(target={text})"
-    laws: tuple[Any, ...] = (Algorithm1, CuckerSmale, DeadZoneFlocking)
-    return next(law() for law in laws if law.__name__ == name), f"fl.{name}()"
+    laws = {"Algorithm1": Algorithm1, "CuckerSmale": CuckerSmale, "DeadZoneFlocking": DeadZoneFlocking}
+    return laws[name](), f"fl.{name}()"
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:

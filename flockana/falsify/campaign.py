@@ -13,12 +13,12 @@ from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
-from flockana.falsify.grade import FAILED
 from flockana.falsify.search import Search
 from flockana.falsify.space import STATE, search_space
+from flockana.recorded.parameters import law_parameter
 from flockana.scenarios import Flock, Scenario
-from flockana.scenarios.flock import as_scenario, chosen, law_parameter
-from flockana.theorems import Claim, Theorem, Tolerances
+from flockana.scenarios.flock import as_scenario, chosen
+from flockana.theorems import Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
 from flockana.theorems.theorem import Lead
 
@@ -108,27 +108,33 @@ def falsify(
     begin = as_scenario(chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span), seed)
     space = search_space(begin, vary=vary, region=region, speed=speed, parameters=parameters)
     problem = Problem(space, theorem, tolerances or Tolerances(), claim, surrogate)
-    problem, first = _at_the_start(problem, begin)
+    run, verdict = problem.judged(begin)  # with the scenario's own start, which gives the margins their units
+    if verdict is not None:
+        if claim not in (None, *(names := [each.name for each in verdict.claims])):
+            raise UnknownNameError("claim", claim, names)
+        problem = replace(problem, scales=units(verdict))
     record = _Record()
-    record.add(None, first)
+    record.add(None, problem.graded(run, verdict))
     search = Search(space.start, seed)
     ended: Ending = "budget"
     with progress_bar(budget, enabled=progress, steady=True) as advance:
         try:
-            while len(record.rows) < budget and (deepen or not record.best.found):
+            while len(record.rows) < budget and (deepen or record.best.status != "refuted"):
                 points = search.ask()
                 batch, grades = points[: budget - len(record.rows)], []
                 for point, evaluation in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
                     grades.append(evaluation.grade)
                     record.add(point, evaluation)
-                    advance(len(record.rows), f"{item.id} on {begin.name}, worst: {_worst(record.best)}")
-                    if evaluation.found and not deepen:
+                    advance(
+                        len(record.rows), f"{item.id} on {begin.name}, worst: {record.best.claim} {record.best.status}"
+                    )
+                    if evaluation.status == "refuted" and not deepen:
                         break
                 if len(grades) == len(points):
                     search.tell(grades)
         except KeyboardInterrupt:
             ended = "interrupted"
-    if record.best.found and not deepen:
+    if record.best.status == "refuted" and not deepen:
         ended = "found"
     case, best = begin if record.point is None else space.case(record.point), record.best
     name = best.claim or claim or ""
@@ -161,22 +167,6 @@ def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
         raise ArgumentError(f"surrogate = {surrogate!r}: expected a function of a trajectory and a claim")
 
 
-def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluation]:
-    """Return the evaluation of the scenario's own start, and the problem with units for margins."""
-    with np.errstate(all="ignore"):
-        run = begin.run()
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        if run.status != "complete":
-            return problem, Evaluation(FAILED, message=run.message)
-        verdict = problem.verdict(begin, run)
-        names = [claim.name for claim in verdict.claims]
-        if problem.claim is not None and problem.claim not in names:
-            raise UnknownNameError("claim", problem.claim, names)
-        problem = replace(problem, scales=units(verdict))
-        return problem, problem.graded(run, verdict)
-
-
 class _Record:
     """Statuses and margins of all evaluations, and the worst case found."""
 
@@ -187,7 +177,8 @@ class _Record:
 
     def add(self, point: FloatArray | None, evaluation: Evaluation) -> None:
         claims = () if evaluation.verdict is None else evaluation.verdict.claims
-        self.rows.append({c.name: (c.status, _margin(c)) for c in claims})
+        judged = {c.name: np.nan if c.status == "vacuous" or c.margin is None else float(c.margin) for c in claims}
+        self.rows.append({c.name: (c.status, judged[c.name]) for c in claims})
         self.message = evaluation.message or self.message
         if evaluation.grade < self.best.grade:
             self.best, self.point = evaluation, point
@@ -199,13 +190,3 @@ class _Record:
         table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}
         margins = {name: np.array([margin for _, margin in column]) for name, column in table.items()}
         return margins, {name: tuple(status for status, _ in column) for name, column in table.items()}
-
-
-def _margin(claim: Claim) -> float:
-    """Return the margin of a claim; NaN if it is vacuous."""
-    return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
-
-
-def _worst(best: Evaluation) -> str:
-    """Return the worst claim so far and its status, for the progress bar."""
-    return "all failed" if best.verdict is None else f"{best.claim} {best.verdict.claim(best.claim).status}"

@@ -24,14 +24,14 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
     run = simulate(case.law, case.q0, case.p0, case.t_span, **tightened_options(case.options))
     if run.status == "interrupted":
         raise KeyboardInterrupt
-    statuses = {claim.name: claim.status for claim in judge(run).claims} if run.status == "complete" else {}
+    again = judge(run).claims if run.status == "complete" else ()
+    sure = {claim.name for claim in again if claim.status == "refuted"}
     reason = "a run at a thousandth of the tolerance takes this back"
-    claims = (
-        replace(claim, status="inconclusive", detail=f"{claim.detail}; {reason}".lstrip("; "))
-        if claim.status == "refuted" and statuses.get(claim.name) != "refuted"
-        else claim
-        for claim in verdict.claims
-    )
+    claims = list(verdict.claims)
+    for k, claim in enumerate(claims):
+        if claim.status == "refuted" and claim.name not in sure:
+            detail = f"{claim.detail}; {reason}".lstrip("; ")
+            claims[k] = replace(claim, status="inconclusive", detail=detail)
     return replace(verdict, claims=tuple(claims))
 
 

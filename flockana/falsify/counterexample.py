@@ -1,14 +1,13 @@
 """Counterexamples as JSON files, to be simulated and checked again."""
 
-from __future__ import annotations
-
 import json
 import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
@@ -111,9 +110,7 @@ class Counterexample:
         """
         self._ensure_found()
 
-        def judge(run: Trajectory) -> Verdict:
-            return self.verify(run, theorem=theorem)
-
+        judge = partial(self.verify, theorem=theorem)
         return confirmed(judge(self.run()), judge, self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -135,7 +132,7 @@ class Counterexample:
         return write_atomic(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Counterexample:
+    def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a counterexample that `save` wrote.
 
         Raises
@@ -156,12 +153,12 @@ class Counterexample:
                 f"wrote it ({data.get('flockana_version')}), or search again"
             )
         try:
-            theorem, claim, scenario, version = (_text(data[name]) for name in (*_TEXTS, "flockana_version"))
-            numbers = [_number(data[name]) for name in _NUMBERS]
+            names = [_text(data[name]) for name in (*_TEXTS, "flockana_version")]
+            numbers = [math.nan if data[name] is None else float(data[name]) for name in _NUMBERS]
             law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
             state = ensure_state(data["q0"], data["p0"])
             start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
-            found = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
+            found = cls(*names[:3], law, *start, tolerances, *numbers, names[3])
             without_digest(data, keys=_KEYS)
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
@@ -203,7 +200,3 @@ def _options(data: Any) -> dict[str, Any]:
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")
     return {key: from_data(value) for key, value in data.items()}
-
-
-def _number(value: Any) -> float:
-    return math.nan if value is None else float(value)

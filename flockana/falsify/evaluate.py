@@ -28,9 +28,9 @@ class Evaluation:
     message: str = ""  # why it failed
 
     @property
-    def found(self) -> bool:
-        """Return whether the claim is refuted."""
-        return self.verdict is not None and self.verdict.claim(self.claim).status == "refuted"
+    def status(self) -> str:
+        """Status of the claim."""
+        return "all failed" if self.verdict is None else self.verdict.claim(self.claim).status
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,30 +49,29 @@ class Problem:
         """Evaluate a point of the search space; an error becomes the grade of a failed run."""
         try:
             with restore_interrupts():
-                return self.judged(self.space.case(point))
+                run, verdict = self.judged(self.space.case(point))
+                return self.graded(run, verdict)
         except Exception as error:  # a search must outlive every state that it tries
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 
-    def judged(self, case: Scenario) -> Evaluation:
-        """Return the graded verdict on a case's run; errors are raised."""
-        with np.errstate(all="ignore"):
-            run = case.run()
-            if run.status == "interrupted":
-                raise KeyboardInterrupt
-            if run.status != "complete":  # of a part of the run no claim about the whole follows
-                return Evaluation(FAILED, message=run.message)
-            return self.graded(run, self.verdict(case, run))
-
-    def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
-        """Return the verdict on a case's run, refutations confirmed by a finer run."""
+    @np.errstate(all="ignore")
+    def judged(self, case: Scenario) -> tuple[Trajectory, Verdict | None]:
+        """Return a case's run, and the verdict on a complete one, refutations confirmed by a finer run."""
 
         def judge(again: Trajectory) -> Verdict:
             return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
 
-        return confirmed(judge(run), judge, case)
+        run = case.run()
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        # of a part of a run no claim about the whole follows
+        return run, confirmed(judge(run), judge, case) if run.status == "complete" else None
 
-    def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
+    @np.errstate(all="ignore")
+    def graded(self, run: Trajectory, verdict: Verdict | None) -> Evaluation:
         """Return the evaluation of a run: its verdict, its worst claim, and that claim's grade for the search."""
+        if verdict is None:
+            return Evaluation(FAILED, message=run.message)
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
         chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]

@@ -1,10 +1,11 @@
 """Result of a search for a counterexample: the worst run, and every claim's margin over the search."""
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from flockana.base.seals import ensure_sealed, sealed
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.counterexample import Counterexample
 from flockana.scenarios import Scenario
-from flockana.theorems import Claim, Verdict
+from flockana.theorems import Verdict
 
 Ending = Literal["found", "budget", "interrupted"]
 _WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")
@@ -79,24 +80,24 @@ class Falsification:
         """Velocities of the worst start, shape (n, m)."""
         return self.case.p0
 
-    @property
-    def _worst(self) -> Claim | None:
-        return None if self.verdict is None else self.verdict.claim(self.claim)
+    def _worst(self, name: str, none: Any) -> Any:
+        found = None if self.verdict is None else getattr(self.verdict.claim(self.claim), name)
+        return none if found is None else found
 
     @property
     def margin(self) -> float:
         """Margin of the claim on the worst run; NaN without one."""
-        return _format_number(None if self._worst is None else self._worst.margin)
+        return float(self._worst("margin", math.nan))
 
     @property
     def error(self) -> float:
         """Numerical error of `margin`; NaN without one."""
-        return _format_number(None if self._worst is None else self._worst.error)
+        return float(self._worst("error", math.nan))
 
     @property
     def status(self) -> str:
         """Status of the claim on the worst run, ``"failed"`` if every run failed."""
-        return "failed" if self._worst is None else self._worst.status
+        return str(self._worst("status", "failed"))
 
     @property
     def found(self) -> bool:
@@ -126,8 +127,7 @@ class Falsification:
         claim : str
             Its name.
         """
-        best: FloatArray = np.fmin.accumulate(self.margins[claim])
-        return best
+        return np.fmin.accumulate(self.margins[claim])
 
     def refuting(self, claim: str) -> tuple[int, ...]:
         """Return the evaluations that refute a claim, counted from 0.
@@ -189,7 +189,3 @@ class Falsification:
             If it cannot be written.
         """
         return self.counterexample().save(path)
-
-
-def _format_number(value: float | None) -> float:
-    return float("nan") if value is None else float(value)

@@ -9,8 +9,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.recorded.parameters import law_parameter, with_parameter
 from flockana.scenarios import Scenario
-from flockana.scenarios.flock import law_parameter, with_parameter
 
 STATE = ("q", "p")
 _ROOM = 0.1  # by which the flock's box is widened on every side, of its longest side
@@ -51,8 +51,7 @@ class Space:
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
         shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
-        point: FloatArray = np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
-        return point
+        return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
 
     def case(self, point: FloatArray) -> Scenario:
         """Return the scenario with the state and the parameters of a point.
@@ -153,26 +152,24 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
 
 def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return bounds of each coordinate of each agent, shape (n, m)."""
-    if isinstance(region, int | float | np.number):
-        around, farthest = ensure_positive("region", region), float(np.abs(q).max())
-        low, high = q - around, q + around
-        if not np.all(low < high):
-            raise ArgumentError(
-                f"region = {around:g}: expected more than the rounding of positions up to {farthest:.3g}, such as "
-                f"{max(1e-9 * farthest, 1e-9):.1g}; vary='p' leaves positions as they are"
-            )
-        _ensure_width("region", region, low, high)
-        return low, high
     if region is None:
         low, high = q.min(axis=0), q.max(axis=0)
         room = _ROOM * float((high - low).max()) or 1.0
-        low, high = low - room, high + room
+        return np.broadcast_to(low - room, q.shape), np.broadcast_to(high + room, q.shape)
+    if isinstance(region, int | float | np.number):
+        around, farthest = ensure_positive("region", region), float(np.abs(q).max())
+        low, high = q - around, q + around
+        fault = (
+            f"region = {around:g}: expected more than the rounding of positions up to {farthest:.3g}, such as "
+            f"{max(1e-9 * farthest, 1e-9):.1g}; vary='p' leaves positions as they are"
+        )
     else:
-        low, high = (_corner(end, q.shape[1]) for end in _ends("region", region))
-        if not np.all(low < high):
-            raise ArgumentError(f"region = ({low}, {high}): expected low < high on every axis")
-        _ensure_width("region", region, low, high)
-    return np.broadcast_to(low, q.shape), np.broadcast_to(high, q.shape)
+        low, high = (np.broadcast_to(_corner(end, q.shape[1]), q.shape) for end in _ends("region", region))
+        fault = f"region = ({low[0]}, {high[0]}): expected low < high on every axis"
+    if not np.all(low < high):
+        raise ArgumentError(fault)
+    _ensure_width("region", region, low, high)
+    return low, high
 
 
 def _corner(end: Any, m: int) -> FloatArray:
@@ -187,9 +184,9 @@ def _corner(end: Any, m: int) -> FloatArray:
 
 def _speeds(speed: Any, p: FloatArray) -> tuple[FloatArray, FloatArray]:
     bound = _FASTER * float(np.abs(p).max()) or 1.0 if speed is None else ensure_positive("speed", speed)
-    low, high = np.full(p.shape, -bound), np.full(p.shape, bound)
-    _ensure_width("speed", bound, low, high)
-    return low, high
+    high = np.full(p.shape, bound)
+    _ensure_width("speed", bound, -high, high)
+    return -high, high
 
 
 def _ensure_width(name: str, given: Any, low: FloatArray, high: FloatArray) -> None:

@@ -11,7 +11,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_path
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
-from flockana.recorded.reading.lammps import dimension, ensure_rising, places, snapshots, stacked, time_of
+from flockana.recorded.reading.lammps import read_dump
 
 
 def read_lammps(
@@ -61,6 +61,8 @@ def read_lammps(
     >>> run.q.tolist(), float(run.extra["force_residual"][0])
     ([[[3.0]]], 0.0)
     """
+    from scipy.interpolate import CubicSpline
+
     ensure_law(law)
     if law.continuous is not law:
         raise ArgumentError(
@@ -68,37 +70,22 @@ def read_lammps(
         )
     start = ensure_finite_scalar("start", start)
     step = None if dt is None else ensure_positive("dt", dt)
-    found = snapshots(ensure_path(path))
-    t = np.array([start + time_of(snapshot, step, path) for snapshot in found])
-    ensure_rising(t, path)
-    m_ = dimension(found[0], m, path)
-    _ensure_for(law, m_, m, path)
-    q = np.stack([places(snapshot, m_, path) for snapshot in found])
-    p = stacked(found, "vx", m_, path)
+    dump = read_dump(ensure_path(path), step, m, start=start, needed="p")
+    t, q, p = dump["t"], dump["q"], dump["p"]
+    _ensure_for(law, q.shape[2], m, path)
     law.check_agents(q.shape[1])
     flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
     own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
     u, extra = own, dict[str, FloatArray]()
-    if "fx" in found[0].columns:
-        u = stacked(found, "fx", m_, path)
+    if "u" in dump:
+        u = dump["u"]
         largest = float(np.abs(own).max())
         extra["force_residual"] = np.abs(u - own).max(axis=(1, 2)) / (largest if largest > 0.0 else 1.0)
     if np.isfinite(rates).all():
-        extra["work"] = _integral(t, rates)
-    steps = found[-1].step - found[0].step
-    stats = {"method": "LAMMPS", "steps": steps, "evaluations": steps}
+        work = CubicSpline(t, rates).antiderivative() if len(t) > 1 else np.zeros_like  # ∫ from the first sample
+        extra["work"] = work(t) - work(t[0])
+    stats = {"method": "LAMMPS", "steps": dump["steps"], "evaluations": dump["steps"]}
     return Trajectory(t, q, p, u, law, extra, "complete", f"read from {Path(path).name}", stats)
-
-
-def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    """∫ from the first sample, of the cubic spline through them."""
-    from scipy.interpolate import CubicSpline
-
-    if len(t) == 1:
-        return np.zeros(1)
-    whole = CubicSpline(t, rates).antiderivative()
-    values: FloatArray = whole(t) - whole(t[0])
-    return values
 
 
 def _ensure_for(law: Any, dimension: int, m: int | None, path: object) -> None:

@@ -20,18 +20,8 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import atomic_write, ensure_path, ensure_target
-from flockana.lammps.script import (
-    DATA,
-    README,
-    SCRIPT,
-    TABLE,
-    Clock,
-    data_text,
-    readme_text,
-    script_text,
-    translated,
-)
+from flockana.base.files import ensure_path, ensure_target, write_atomic
+from flockana.lammps import script
 from flockana.lammps.table import inner_cutoff, pair_table
 from flockana.laws.discrete import ensure_law
 from flockana.laws.law import Law
@@ -125,7 +115,7 @@ def export_lammps(
         law, q0, p0, t_span = flock.law, flock.q0, flock.p0, flock.t_span
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
-    _ensure_own(folder / name for name in (SCRIPT, DATA, TABLE, README))
+    _ensure_own(folder / name for name in (script.SCRIPT, script.DATA, script.TABLE, script.README))
     q0, p0 = draw_start(q0, p0, ensure_seed(seed))
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -135,15 +125,19 @@ def export_lammps(
     start, end = ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)
     table = pair_table(term, points, first)
-    result = translated(law, q0.shape[1], table, nearest=consensus == "nearest")
+    result = script.translated(law, q0.shape[1], table, nearest=consensus == "nearest")
     title = f"{len(q0)} agents of {type(law).__name__}, t = {start:g} to {end:g}"
     texts = {
-        SCRIPT: script_text(title, q0.shape[1], table, clock, result),
-        DATA: data_text(q0, p0, term.pair.range, title),
-        TABLE: table.text(),
-        README: readme_text(title, table, clock, result),
+        script.SCRIPT: script.script_text(title, q0.shape[1], table, clock, result),
+        script.DATA: script.data_text(q0, p0, term.pair.range, title),
+        script.TABLE: table.text(),
+        script.README: script.readme_text(title, table, clock, result),
     }
-    files = _write_files(folder, texts)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
+    files = tuple(write_atomic(folder / name, text, remedy="choose another folder") for name, text in texts.items())
     exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
     errors = table.force_error, table.energy_error
     return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)
@@ -184,13 +178,13 @@ def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float
     return first
 
 
-def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> Clock:
+def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> script.Clock:
     """Return equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {type(law).__name__} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
     every = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
-    return Clock(start, (end - start) / (samples * every), samples * every, every)
+    return script.Clock(start, (end - start) / (samples * every), samples * every, every)
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:
@@ -212,14 +206,3 @@ def _ensure_own(paths: Iterable[Path]) -> None:
                 f"{path} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; "
                 "choose another folder, or move it away"
             )
-
-
-def _write_files(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
-    for name, text in texts.items():
-        with atomic_write(folder / name, remedy="choose another folder") as partial:
-            partial.write_text(text, encoding="utf-8")
-    return tuple(folder / name for name in texts)

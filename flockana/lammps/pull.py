@@ -1,7 +1,5 @@
 """Pull to a γ-agent in LAMMPS: variables of each agent added to its force, and viscous drag."""
 
-from functools import singledispatch
-
 from flockana.environment.target import Target
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.laws.terms.navigation import Navigation
@@ -12,43 +10,36 @@ TIME = "v_t"  # the equal-style variable of the script
 Formulas = tuple[tuple[str, str], ...]  # (q_r, p_r) along each axis
 
 
-@singledispatch
 def path(target: Target) -> Formulas | None:
     """Return (q_r, p_r) along each axis as formulas in time; None without a known formula."""
+    match target:
+        case StaticTarget():
+            return tuple((repr(q), repr(p)) for q, p in zip(target.q, target.p, strict=True))
+        case LinearTarget():
+            return tuple((_line(q, p), repr(p)) for q, p in zip(target.q, target.p, strict=True))
+        case SineTarget():
+            omega, angle = _turning(target)
+            formulas = [(_line(q, p), repr(p)) for q, p in zip(target.start, target.velocity, strict=True)]
+            q, p = formulas[target.axis]
+            a = _number(target.amplitude)
+            formulas[target.axis] = (f"{q}+{a}*sin({angle})", f"{p}+{a}*{omega}*cos({angle})")
+            return tuple(formulas)
+        case CircleTarget():
+            (omega, angle), r = _turning(target), repr(target.radius)
+            swing = [(f"{r}*cos({angle})", f"-{r}*{omega}*sin({angle})")]
+            swing += [(f"{r}*sin({angle})", f"{r}*{omega}*cos({angle})"), ("0.0", "0.0")]
+            return tuple((f"{c!r}+{q}", p) for c, (q, p) in zip(target.centre, swing, strict=False))
+        case RescaledVelocity():
+            return _rescaled(target)
     return None
 
 
-@path.register
-def _static(target: StaticTarget) -> Formulas:
-    return tuple((repr(q), repr(p)) for q, p in zip(target.q, target.p, strict=True))
-
-
-@path.register
-def _linear(target: LinearTarget) -> Formulas:
-    return tuple((_line(q, p), repr(p)) for q, p in zip(target.q, target.p, strict=True))
-
-
-@path.register
-def _sine(target: SineTarget) -> Formulas:
+def _turning(target: SineTarget | CircleTarget) -> tuple[str, str]:
+    """Return the angular frequency and the angle."""
     omega = f"2.0*PI*{_number(target.frequency)}"
-    angle = f"{omega}*{TIME}+{_number(target.phase)}"
-    formulas = [(_line(q, p), repr(p)) for q, p in zip(target.start, target.velocity, strict=True)]
-    q, p = formulas[target.axis]
-    a = _number(target.amplitude)
-    formulas[target.axis] = (f"{q}+{a}*sin({angle})", f"{p}+{a}*{omega}*cos({angle})")
-    return tuple(formulas)
+    return omega, f"{omega}*{TIME}+{_number(target.phase)}"
 
 
-@path.register
-def _circle(target: CircleTarget) -> Formulas:
-    omega = f"2.0*PI*{_number(target.frequency)}"
-    angle, r = f"{omega}*{TIME}+{_number(target.phase)}", repr(target.radius)
-    swing = [(f"{r}*cos({angle})", f"-{r}*{omega}*sin({angle})"), (f"{r}*sin({angle})", f"{r}*{omega}*cos({angle})")]
-    swing += [("0.0", "0.0")] * (len(target.centre) - 2)
-    return tuple((f"{c!r}+{q}", p) for c, (q, p) in zip(target.centre, swing, strict=True))
-
-
-@path.register
 def _rescaled(target: RescaledVelocity) -> Formulas | None:
     inner, true = path(target.target), target.target
     if inner is None or isinstance(true, StaticTarget):  # whose p_r need not be its rate, which is 0

@@ -46,9 +46,8 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
         if isinstance(term, PairTerm):
             result.exact.append(f"pair forces: a table, off by at most {table.force_error:.2g}")
             if table.jumps:
-                result.near.append(
-                    f"jumps of the force at {', '.join(f'{x:g}' for x in table.jumps)}: over one interval"
-                )
+                places = ", ".join(f"{x:g}" for x in table.jumps)
+                result.near.append(f"jumps of the force at {places}: over one interval")
             _translate_consensus(term, m, result, nearest=nearest)
         elif isinstance(term, Navigation):
             commands = pull_commands(term)
@@ -57,15 +56,9 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
             else:
                 result.fixes += commands
                 result.exact.append("pull to the γ-agent: fix addforce and fix viscous")
-        elif not _is_empty(term):
+        elif getattr(term, "field", None) is None or term.field.obstacles:  # else obstacles of which there are none
             result.missing.append(f"{type(term).__name__}: no style of LAMMPS is this force")
     return result
-
-
-def _is_empty(term: object) -> bool:
-    """Return whether a term is an obstacle term without obstacles."""
-    own = getattr(term, "field", None)
-    return own is not None and not own.obstacles
 
 
 def _translate_consensus(term: PairTerm, m: int, result: Translation, *, nearest: bool) -> None:
@@ -112,15 +105,11 @@ def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
     if m == 1:
         low[1], high[1] = -reach, reach
     box = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for a, b, x in zip(low.tolist(), high.tolist(), AXES, strict=True))
-    flat = [0.0] * (3 - m)
-    places = "".join(f"{k} 1 {_row(x + flat)}\n" for k, x in enumerate(q.tolist(), 1))
-    speeds = "".join(f"{k} {_row(v + flat)}\n" for k, v in enumerate(p.tolist(), 1))
+    rows = [[" ".join(map(repr, x + [0.0] * (3 - m))) for x in each.tolist()] for each in (q, p)]
+    places = "".join(f"{k} 1 {row}\n" for k, row in enumerate(rows[0], 1))
+    speeds = "".join(f"{k} {row}\n" for k, row in enumerate(rows[1], 1))
     header = f"{title}\n\n{n} atoms\n1 atom types\n\n{box}\n"
     return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{places}\nVelocities\n\n{speeds}"
-
-
-def _row(values: list[float]) -> str:
-    return " ".join(map(repr, values))
 
 
 def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Translation) -> str:
@@ -145,7 +134,7 @@ def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Tran
         f"variable t equal {clock.start!r}+step*{clock.dt!r}",
         "fix move all nve",
         *result.fixes,
-        *([] if m == 3 else ["fix plane all enforce2d"]),
+        *["fix plane all enforce2d"] * (m < 3),
         f"dump flock all custom {clock.every} {DUMP} id type {columns}",
         "dump_modify flock sort id format float %.17g time yes",
         f"thermo {clock.every}",

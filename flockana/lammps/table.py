@@ -51,17 +51,14 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
     over = force / r
     read_force = (over[:-1] + shares * np.diff(over)) * between
     read_energy = energy[:-1] + shares * np.diff(energy)
-    jumps = tuple(x for x in term.pair.surfaces if inner < x < outer and _jumps(term, x, float(np.abs(force).max())))
+    beside = np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
+    large = _JUMP * float(np.abs(force).max())
+    inside = [x for x in term.pair.surfaces if inner < x < outer]
+    jumps = tuple(x for x in inside if abs(np.diff(energy_and_force(term, x * beside)[1])[0]) > large)
     smooth = np.ones(points - 1, bool)
     smooth[np.searchsorted(r, jumps) - 1] = False
     off = [np.abs(a - b)[:, smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
     return PairTable(r, energy, force, float(off[0]), float(off[1]), jumps)
-
-
-def _jumps(term: PairTerm, x: float, largest: float) -> bool:
-    """Return whether the force jumps at a distance."""
-    sides = energy_and_force(term, x * np.array([1.0 - _BESIDE, 1.0 + _BESIDE]))[1]
-    return bool(abs(sides[1] - sides[0]) > _JUMP * largest)
 
 
 def inner_cutoff(term: PairTerm) -> float:

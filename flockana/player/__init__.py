@@ -6,8 +6,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from flockana.base.checks import ensure_count, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.files import atomic_write
+from flockana.base.files import write_atomic
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player.marks import marks_of
 from flockana.player.page import page, script, style
@@ -28,9 +29,7 @@ class Player:
     verdicts: Sequence[Verdict] = ()  # on the run: the instants that their claims point to are marked
 
     def __post_init__(self) -> None:
-        for name in ("height", "values"):
-            if not isinstance(getattr(self, name), int) or getattr(self, name) < 1:
-                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number > 0")
+        normalise(self, ensure_count, "height", "values")
 
     def __repr__(self) -> str:
         """Return a one-line description."""
@@ -45,10 +44,7 @@ class Player:
 
     def save(self, path: str) -> Path:
         """Write the player as a page; an existing file is replaced only once the new one is complete."""
-        target = Path(path)
-        with atomic_write(target, remedy="choose another file") as partial:
-            partial.write_text(self.html(), encoding="utf-8")
-        return target
+        return write_atomic(path, self.html())
 
     def _repr_html_(self) -> str:
         look = f"width:100%;height:{self.height}px;border:0"

@@ -43,7 +43,9 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
         values = np.asarray(packed.values, dtype=np.float64)
         whole, origin = _quantise(name, values, packed.step)
         entries.append({"name": name, "shape": values.shape, "step": packed.step, "origin": origin})
-        bodies.append(_bytes(whole.reshape(len(values), int(np.prod(values.shape[1:])))))
+        flat = whole.reshape(len(values), int(np.prod(values.shape[1:])))
+        change = np.diff(flat, axis=0, prepend=np.zeros((1, flat.shape[1]), dtype="<u4"))
+        bodies.append(np.ascontiguousarray(change.T).view(np.uint8).reshape(-1, 4).T.tobytes())
     text = json.dumps(dict(header) | {"arrays": entries}, ensure_ascii=False, allow_nan=False).encode("utf-8")
     return _MAGIC + zlib.compress(b"".join([len(text).to_bytes(4, "little"), text, *bodies]), 9)
 
@@ -63,7 +65,11 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
             start += 4 * size
             whole = np.ascontiguousarray(planes.T).view("<u4").reshape(size // max(rows, 1), rows).T
             whole = np.cumsum(whole, axis=0, dtype=np.uint32)
-            arrays[entry["name"]] = _dequantise(whole, entry).reshape(entry["shape"])
+            if entry["step"] == 0.0:
+                values = np.ascontiguousarray(whole).view("<f4").astype(np.float64)
+            else:
+                values = entry["origin"] + entry["step"] * whole.astype(np.float64)
+            arrays[entry["name"]] = values.reshape(entry["shape"])
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
         raise ArgumentError(f"{len(data)} bytes: expected those of a run for the player ({error})") from None
     return header, arrays
@@ -82,15 +88,3 @@ def _quantise(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
     if steps.size and steps.max() > _STEPS:
         raise ArgumentError(f"{name}: step = {step:g} for a span of {np.ptp(values):g}: expected a longer step")
     return steps.astype("<u4"), origin
-
-
-def _bytes(whole: Any) -> bytes:
-    change = np.diff(whole, axis=0, prepend=np.zeros((1, whole.shape[1]), dtype="<u4"))
-    return np.ascontiguousarray(change.T).view(np.uint8).reshape(-1, 4).T.tobytes()
-
-
-def _dequantise(whole: Any, entry: Mapping[str, Any]) -> FloatArray:
-    if entry["step"] == 0.0:
-        return np.ascontiguousarray(whole).view("<f4").astype(np.float64)
-    values: FloatArray = entry["origin"] + entry["step"] * whole.astype(np.float64)
-    return values

@@ -1,7 +1,5 @@
 """Accelerations of a recorded flock: recorded ones, mean ones over steps, or those of splines."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.recorded.contributions import over_samples, over_steps
 from flockana.recorded.recording import Recording
-from flockana.recorded.schemes import Found, kinematic_scheme
+from flockana.recorded.steps import kinematic_scheme
 from flockana.recorded.velocities import motions
 
 _FEWEST = 4  # samples for splines
@@ -26,8 +24,8 @@ class Accelerations(NamedTuple):
     t: FloatArray
     u: FloatArray
     error: FloatArray
-    states: tuple[FloatArray, FloatArray, FloatArray]
-    scheme: Found | None
+    states: tuple[FloatArray, ...]
+    scheme: str | None
 
     def of(self, part: Any) -> FloatArray:
         """Return the accelerations of a part of a law at the same places and times."""
@@ -39,8 +37,7 @@ class Accelerations(NamedTuple):
         if self.basis != "splines":
             return np.ones(self.error.shape)
         typical = float(np.median(self.error)) or 1.0
-        weights: FloatArray = 1.0 / ((self.error / typical) ** 2 + 1e-3)
-        return weights
+        return 1.0 / ((self.error / typical) ** 2 + 1e-3)
 
 
 def accelerations(rec: Recording) -> Accelerations:
@@ -65,13 +62,13 @@ def _of_steps(rec: Recording, p: FloatArray) -> Accelerations:
     wide: Any = rec.accuracy.speed
     if rec.sd is not None:  # standard deviations, as those of splines are
         wide = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
-    speed = np.broadcast_to(np.asarray(wide, dtype=np.float64), rec.q.shape[:2])
+    speed = np.broadcast_to(wide, rec.q.shape[:2])
     both = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
     error = np.nan_to_num(both / h[:, None], posinf=0.0)
-    scheme = kinematic_scheme(rec)
+    scheme, states = kinematic_scheme(rec), (rec.t, rec.q, p)
     if scheme is not None:  # then u is the input at the beginning of each step
-        return Accelerations("accelerations", rec.t[:-1], u, error, (rec.t[:-1], rec.q[:-1], p[:-1]), scheme)
-    return Accelerations("steps", rec.t[:-1], u, error, (rec.t, rec.q, p), None)
+        return Accelerations("accelerations", rec.t[:-1], u, error, tuple(x[:-1] for x in states), scheme)
+    return Accelerations("steps", rec.t[:-1], u, error, states, None)
 
 
 def _of_splines(rec: Recording) -> Accelerations:

@@ -1,7 +1,5 @@
 """Accuracy of recorded numbers: a bound, or a band that holds for all samples at once."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any, Literal

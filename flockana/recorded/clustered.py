@@ -1,7 +1,5 @@
 """Covariance of least-squares estimates from residuals that are independent between agents only."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

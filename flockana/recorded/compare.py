@@ -1,7 +1,5 @@
 """Comparison of a recorded flock with a law: what the law explains, contributions of its parts, findings."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +12,7 @@ from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
 from flockana.recorded.findings import Share, explained
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.schemes import scheme_by_law
+from flockana.recorded.steps import scheme_by_law
 
 _WORST = 5  # places that are named
 _ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gains are only rough
@@ -77,14 +75,12 @@ class Comparison:
     @property
     def by_agent(self) -> FloatArray:
         """Root mean square of each agent's residual, shape (n,)."""
-        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
-        return size
+        return np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
 
     @property
     def by_time(self) -> FloatArray:
         """Root mean square of the residual at each time, shape (K,)."""
-        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=1))
-        return size
+        return np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=1))
 
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:
@@ -161,7 +157,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
     scheme = data.scheme
     if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
         scheme = scheme_by_law(rec, continuous)
-    steps = () if scheme is None else (f"steps are {scheme.name} of {scheme.dt:.6g}",)
+    steps = () if scheme is None else (f"steps are {scheme} of {rec.interval:.6g}",)
     own, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
     texts, noise = (*steps, *found.findings), float(np.nanmedian(data.error))
     return Comparison(

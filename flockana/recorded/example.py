@@ -1,7 +1,5 @@
 """The synthetic recording that is shipped, made by `tools/make_recording.py`: noise, gaps and an identity switch."""
 
-from __future__ import annotations
-
 from importlib.resources import as_file, files
 
 from flockana.recorded.read import read_recording

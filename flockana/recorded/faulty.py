@@ -4,8 +4,6 @@ The functions are written as a student writes them, all pairs at once, and are n
 recordings start alike and have 12 agents.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from math import pi, sqrt
 from typing import Any

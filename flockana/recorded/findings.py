@@ -1,7 +1,5 @@
 """Differences between a law and a recording, found by regression: gains and forms, each as a sentence."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.recorded.accelerations import Accelerations
 from flockana.recorded.clustered import covariance_over_agents
-from flockana.recorded.contributions import contributions, remainder
-from flockana.recorded.variants import variants
+from flockana.recorded.contributions import contributions, remainder, variants
 
 _OTHER = 0.01  # relative difference from which on a gain is reported
 _CHANCE = 3e-5  # probability that noise alone shows a gain as larger, likewise
@@ -88,6 +85,8 @@ class Regression:
 
 def explained(data: Accelerations, law: Any) -> Explained:
     """Return what a law explains of accelerations and what differs: other forms first, then gains."""
+    from scipy.stats import t as student
+
     work, parts = Regression(data, law), contributions(law)
     columns = [data.of(part.acts) for part in parts]
     residual = work.target - sum(part.stated * column for part, column in zip(parts, columns, strict=True))
@@ -101,7 +100,10 @@ def explained(data: Accelerations, law: Any) -> Explained:
         for part, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
     )
     if left > _EXACT * total and solution.left < 0.5 * total:
-        texts += [_of_gain(one) for one in shares if _differs(one, solution.freedom)]
+        chance = float(student.isf(_CHANCE, solution.freedom))
+        for one in shares:
+            if abs(one.found - one.stated) > max(chance * one.error, _OTHER * abs(one.stated)):
+                texts.append(f"{one.text} is {one.symbol} = {one.found:.4g} here, {one.stated:.4g} in the law")
     if total and 1.0 - solution.left / total < _FITS and data.basis != "splines":
         most = 1.0 - solution.left / total
         texts.append(f"{most:.1%} is the most that these terms explain with any gains: another law acts")
@@ -127,14 +129,3 @@ def _with_better_forms(
         texts.append(best.finding)
         open_ = [each for each in open_ if each[0].gain != best.gain]
     return current, texts
-
-
-def _differs(one: Share, freedom: float) -> bool:
-    from scipy.stats import t
-
-    off = abs(one.found - one.stated)
-    return off > float(t.isf(_CHANCE, freedom)) * one.error and off > _OTHER * abs(one.stated)
-
-
-def _of_gain(one: Share) -> str:
-    return f"{one.text} is {one.symbol} = {one.found:.4g} here, {one.stated:.4g} in the law"

@@ -1,7 +1,5 @@
 """Parameters of a law fitted to a recording, with standard errors and what the data cannot determine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, sqrt

@@ -1,7 +1,5 @@
 """Whether the samples of a recording follow a law, within their stated accuracy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -63,38 +61,29 @@ def following(rec: Recording, law: Any) -> Following:
 def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     """Compare each sample with the law's prediction from the one before, and from one law time before."""
     assert rec.p is not None
-    shape = rec.q.shape[:2]
-    place, speed = (
-        np.broadcast_to(np.asarray(each, dtype=np.float64), shape) for each in (rec.accuracy.place, rec.accuracy.speed)
-    )
+    place, speed = (np.broadcast_to(x, rec.present.shape) for x in (rec.accuracy.place, rec.accuracy.speed))
     known = bool(np.isfinite(place).all())
     worst: list[tuple[float, float, str, float, int]] = []
-    strides, scales = [slice(None)], law.scales
-    if scales is not None and (wide := int(scales.time / rec.interval)) > 1 and len(rec.t) > wide:
-        strides.append(slice(None, None, wide))  # dense samples are compared one law time apart too
-    for samples in strides:
-        times, q, p = rec.t[samples], rec.q[samples], rec.p[samples]
-        widths = [x[samples] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
+    wide = 1 if law.scales is None else max(1, int(law.scales.time / rec.interval))
+    for stride in {1, wide} if len(rec.t) > wide else {1}:  # dense samples are compared one law time apart too
+        times, q, p = rec.t[::stride], rec.q[::stride], rec.p[::stride]
+        widths = [x[::stride] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
         off, allowed = _differences(law, times, q, p, *widths)
         for name, apart, room in zip(("q", "p"), off, allowed, strict=True):
             ratio = apart / room
             k, i = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             worst.append((float(ratio[k, i]), float(apart[k, i]), name, float(times[k + 1]), int(i)))
     excess, size, name, t, agent = max(worst)
-    largest = {kind: max((one[1] for one in worst if one[2] == kind), default=0.0) for kind in "qp"}
-    where = f"worst: {name} of agent {rec.ids[agent]} at t = {t:.6g}"
+    where, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
+    reach = " and ".join(f"{max(one[1] for one in worst if one[2] == kind):.3g} in {kind}" for kind in "qp")
+    status: Literal["met", "unmet", "assumed"] = "met" if accuracy.decides else "assumed"
     if not known:
-        text = f"off by {largest['q']:.3g} in q and {largest['p']:.3g} in p ({where}); no accuracy is stated"
-        return Following("assumed", 0.0, text, rec.q[0], rec.p[0], rec.p, speed)
-    if excess > 1.0:
-        text = (
-            f"{name} of agent {rec.ids[agent]} at t = {t:.6g} is off by {size:.3g} where {size / excess:.3g} is allowed"
-        )
-        status: Any = "unmet"
+        excess, text = 1.0, f"off by {reach} (worst: {where}); no accuracy is stated"
+    elif excess > 1.0:
+        status, text = "unmet", f"{where} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
     else:
-        text = f"within {largest['q']:.3g} in q and {largest['p']:.3g} in p from sample to sample ({where})"
-        status = "met" if rec.accuracy.decides else "assumed"
-    return Following(status, 1.0 - excess, f"{text}, {rec.accuracy}", rec.q[0], rec.p[0], rec.p, speed)
+        text = f"within {reach} from sample to sample (worst: {where}), {accuracy}"
+    return Following(status, 1.0 - excess, text, rec.q[0], rec.p[0], rec.p, speed)
 
 
 def _differences(
@@ -148,12 +137,11 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     ratio = max(misfit / most, size / band)
     where = f"worst: {size:.3g} deviations, agent {rec.ids[agent]} at t = {t:.6g}"
     q0, p0 = found.starts[0].reshape(2, rec.n, rec.m)
-    status: Literal["met", "unmet", "assumed"] = "assumed"
-    if rec.sd is not None and not rec.estimated:
-        status = "met" if ratio <= 1.0 else "unmet"
-        text = f"solutions of the law over {duration:.3g} each are off by {misfit:.4g} times the stated noise ({where})"
-        if ratio > 1.0:
-            text += f", where {most:.4g} times, and {band:.3g} deviations at one place, are allowed"
-    else:
+    status: Literal["met", "unmet", "assumed"] = "met" if ratio <= 1.0 else "unmet"
+    text = f"solutions of the law over {duration:.3g} each are off by {misfit:.4g} times the stated noise ({where})"
+    if rec.sd is None or rec.estimated:
+        status = "assumed"
         text = f"solutions of the law are off by {misfit:.3g} times the noise, which is only estimated ({where})"
+    elif ratio > 1.0:
+        text += f", where {most:.4g} times, and {band:.3g} deviations at one place, are allowed"
     return Following(status, 1.0 - ratio, text, q0, p0, smooth.p, smooth.accuracy.speed)

@@ -1,7 +1,5 @@
 """Measures of a recorded flock over time, each with the error that the accuracy of the samples leaves."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,18 +20,18 @@ _OF_NETS = {"connectivity": connectivity, "giant_share": giant_share}  # they gr
 _OF_VELOCITIES = ("normalised_velocity_mismatch", "velocity_diameter", "order", "coordination")
 
 
-def measured(rec: Recording, d: float, r: float) -> xarray.Dataset:
+def measured(rec: Recording, d: float, r: float) -> "xarray.Dataset":
     """See `Recording.metrics`: agents that are missing at a sample are left out there."""
     import xarray
 
     if rec.p is None:
         rec = rec.with_velocities()
     assert rec.p is not None
-    p, shape = rec.p, rec.q.shape[:2]
+    p, shape = rec.p, rec.present.shape
     law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)
     used = {name: it for name, it in measures().items() if it.over_time is not None and it.defined(law)}
     values, errors = ({name: np.full(len(rec.t), np.nan) for name in used} for _ in range(2))
-    widths = [np.broadcast_to(np.asarray(x, dtype=np.float64), shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
+    widths = [np.broadcast_to(x, shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
     moving = rec.present & ~np.isnan(p[:, :, 0])
     for of_velocities, seen in ((False, rec.present), (True, moving)):
         for agents, samples in _alike(seen):
@@ -62,22 +60,18 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
     n = flock.q.shape[1]
     if not np.isfinite(off_q).all():
         return np.full(len(values), np.inf)
-    if name in ("cohesion_radius", "min_distance", "position_diameter"):
-        return np.multiply(2.0, off_q)
-    if name == "velocity_diameter":
-        return np.multiply(2.0, off_p)
+    if name in ("cohesion_radius", "min_distance", "position_diameter", "velocity_diameter"):
+        return np.multiply(2.0, off_p if name == "velocity_diameter" else off_q)
     if name in ("inertia", "normalised_velocity_mismatch"):  # half a square of a norm, which moves by √n off, over n
         off, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
         size = np.sqrt(2.0 * values * share)
-        grown: FloatArray = (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
-        return grown
+        return (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
     if name in ("order", "coordination"):
         speed = lengths(flock.p)
         with np.errstate(divide="ignore", invalid="ignore"):
             turn = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
-        turned = np.minimum(turn, 2.0).mean(axis=1) * (1.0 if name == "order" else 2.0)
-        most: FloatArray = np.minimum(turned, 1.0 if name == "order" else 2.0)
-        return most
+        most = 1.0 if name == "order" else 2.0
+        return np.minimum(most * np.minimum(turn, 2.0).mean(axis=1), most)
     return np.array([_net_error(name, flock, k, float(values[k]), float(off_q[k])) for k in range(len(values))])
 
 

@@ -1,11 +1,9 @@
 """Parameters of a law by name: reading them, and the same law with others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import reduce
-from typing import Any
+from operator import attrgetter
+from typing import Any, Self
 
 import numpy as np
 
@@ -20,15 +18,16 @@ class FreeParameters:
 
     law: Any
     names: tuple[str, ...]
-    paths: tuple[tuple[str, ...], ...]
+    paths: tuple[str, ...]  # dotted names from the law on
 
     @classmethod
-    def of(cls, law: Any, names: Sequence[str] | None) -> FreeParameters:
+    def of(cls, law: Any, names: Sequence[str] | None) -> Self:
         """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:
-                raise ArgumentError(f"free = None: {type(law).__name__} has no gains; name parameters: {_known(law)}")
+                known = ", ".join(_names(law)) or "it has none"
+                raise ArgumentError(f"free = None: {type(law).__name__} has no gains; name parameters: {known}")
         if not isinstance(names, list | tuple) or not names or len(set(map(str, names))) < len(names):
             got = format_value(names)
             raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
@@ -44,7 +43,7 @@ class FreeParameters:
         """Values in the law."""
         found = []
         for name, path in zip(self.names, self.paths, strict=True):
-            value = reduce(getattr, path, self.law)
+            value = law_parameter(self.law, path)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
                 raise ArgumentError(f"{name} = {format_value(value)}: expected a parameter that is one number")
             found.append(float(value))
@@ -54,21 +53,31 @@ class FreeParameters:
         """Return the law with other values."""
         law = self.law
         for path, value in zip(self.paths, values, strict=True):
-            law = _replaced(law, path, float(value))
+            law = with_parameter(law, path, float(value))
         return law
 
 
-def _replaced(item: Any, path: tuple[str, ...], value: float) -> Any:
-    first, *rest = path
-    return replace(item, **{first: _replaced(getattr(item, first), tuple(rest), value) if rest else value})
+def law_parameter(law: Any, name: str) -> Any:
+    """Return the value of a law's parameter by its dotted name, such as ``"gains.c1_alpha"``."""
+    return attrgetter(name)(law)
 
 
-def _path(law: Any, name: str) -> tuple[str, ...]:
-    path = tuple(name.split("."))
-    if len(path) == 1 and not hasattr(law, name) and hasattr(getattr(law, "gains", None), name):
-        path = ("gains", name)
+def with_parameter(law: Any, name: str, value: Any) -> Any:
+    """Return the law with another value of a parameter."""
+    head, _, rest = name.partition(".")
+    try:
+        return replace(law, **{head: with_parameter(getattr(law, head), rest, value) if rest else value})
+    except (AttributeError, TypeError):
+        raise ArgumentError(
+            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
+        ) from None
+
+
+def _path(law: Any, name: str) -> str:
+    """Return the dotted name of a parameter; a gain may be given by its name alone."""
+    path = f"gains.{name}" if not hasattr(law, name) and hasattr(getattr(law, "gains", None), name) else name
     item = law
-    for part in path:
+    for part in path.split("."):
         if not is_dataclass(item) or part not in {field.name for field in fields(item)}:
             raise UnknownNameError("parameter", name, _names(law))
         item = getattr(item, part)
@@ -86,7 +95,3 @@ def _names(law: Any) -> tuple[str, ...]:
         elif isinstance(value, float):
             found.append(field.name)
     return tuple(found)
-
-
-def _known(law: Any) -> str:
-    return ", ".join(_names(law)) or "it has none"

@@ -1,19 +1,15 @@
 """`read_recording`: files, arrays and tables of many kinds as a `Recording`."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
 from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
-from flockana.recorded.reading.lammps import dimension, ensure_rising, places, snapshots, stacked, time_of
+from flockana.recorded.reading.lammps import read_dump
 from flockana.recorded.reading.table import table_arrays
 from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
@@ -113,7 +109,8 @@ def _contents(
         by_name, arrays = columns if isinstance(columns, Mapping) else None, _ARRAYS[suffix](path)
         return _read_metadata(arrays) | named_arrays(arrays, str(path), columns=by_name, dt=dt)
     if suffix in _DUMPS or _starts_with_item(path):
-        return _dumped(path, dt, m)
+        dump = read_dump(path, dt, m)
+        return {name: dump[name] for name in "tqpu" if name in dump} | {"ids": [f"{i:g}" for i in dump["ids"]]}
     names = None if columns is None or isinstance(columns, Mapping) else list(columns)
     return table_arrays(read_text(path, names), columns=columns, dt=dt, clock=clock)
 
@@ -132,14 +129,3 @@ def _starts_with_item(path: Path) -> bool:
             return file.read(len(_ITEM)) == _ITEM
     except OSError:
         return False  # the reader of tables says why
-
-
-def _dumped(path: Path, dt: float | None, m: int | None) -> dict[str, Any]:
-    """Snapshots of LAMMPS; velocities and forces where the dump has them."""
-    found = snapshots(path)
-    t = np.array([time_of(snapshot, dt, path) for snapshot in found])
-    ensure_rising(t, path)
-    size, columns = dimension(found[0], m, path), found[0].columns
-    arrays: dict[str, Any] = {"t": t, "q": np.stack([places(each, size, path) for each in found])}
-    arrays |= {kind: stacked(found, name, size, path) for kind, name in (("p", "vx"), ("u", "fx")) if name in columns}
-    return arrays | {"ids": [f"{i:g}" for i in columns["id"]]}

@@ -1,7 +1,5 @@
 """Recognition of a recording's law among several: a ranked table of comparisons."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,12 +1,10 @@
 """A flock that was recorded elsewhere: samples, gaps, and how accurate they are."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -95,17 +93,14 @@ class Recording(ResultCache):
             raise ArgumentError(
                 f"t has shape {t.shape}: expected {len(q)} times without gaps, one for each sample of q"
             )
-        if len(t) > 1 and not (np.diff(t) > 0.0).all():
-            k = int(np.argmax(~(np.diff(t) > 0.0)))
+        if (late := ~(np.diff(t) > 0.0)).any():
+            k = int(np.argmax(late))
             raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times; sort them")
-        object.__setattr__(self, "t", _frozen(t))
-        object.__setattr__(self, "q", _frozen(q))
-        for name in ("p", "u"):
-            if (value := getattr(self, name)) is not None:
-                array = _with_gaps(name, value)
-                if array.shape != q.shape:
-                    raise ArgumentError(f"{name} has shape {array.shape}: expected {q.shape}, as q has")
-                object.__setattr__(self, name, _frozen(array))
+        arrays = {"t": t, "q": q} | {k: _with_gaps(k, getattr(self, k)) for k in "pu" if getattr(self, k) is not None}
+        for name, array in arrays.items():
+            if name in "pu" and array.shape != q.shape:
+                raise ArgumentError(f"{name} has shape {array.shape}: expected {q.shape}, as q has")
+            object.__setattr__(self, name, _frozen(array))
         unseen = np.flatnonzero(~self.present.any(axis=0))
         if unseen.size:
             raise ArgumentError(f"q[:, {unseen[0]}] is NaN throughout: expected agents that are seen; leave it out")
@@ -116,15 +111,12 @@ class Recording(ResultCache):
 
     def _check_accuracy(self) -> None:
         ensure_flag("estimated", self.estimated)
-        given = {name for name in _ERRORS if getattr(self, name) is not None}
-        for one, other in (("bound", "sd"), ("p_bound", "p_sd")):
-            if {one, other} <= given:
-                raise ArgumentError(f"{one} and {other} are both given: expected one of them")
+        given = [name for name in _ERRORS if getattr(self, name) is not None]
+        if len({name.removeprefix("p_") for name in given}) > 1:
+            raise ArgumentError(
+                f"{' and '.join(given)} are given: expected one kind of accuracy, bound and p_bound, or sd and p_sd"
+            )
         normalise(self, lambda name, value: ensure_error(name, value, self.q.shape[:2]), *_ERRORS)
-        for one, other, wanted in (("sd", "p_bound", "p_sd"), ("bound", "p_sd", "p_bound")):
-            if {one, other} <= given:
-                kind = "as a recording has one kind of accuracy"
-                raise ArgumentError(f"{one} and {other} are given: expected {wanted}, {kind}")
 
     def __repr__(self) -> str:
         gaps = f", {self.gaps} gaps" if self.gaps else ""
@@ -163,12 +155,12 @@ class Recording(ResultCache):
             return Accuracy(np.inf, np.inf, "unknown")
         kind: Kind = "estimated" if self.estimated else "sd" if self.bound is None else "bound"
         place, speed = self.bound, self.p_bound
-        if self.bound is None:
+        if place is None:
             width = band(2 * self.q.shape[0] * self.n, self.m)
             place, speed = times(self.sd, width), times(self.p_sd, width)
         return Accuracy(place, place / self.interval if speed is None else speed, kind)
 
-    def window(self, start: float, end: float) -> Recording:
+    def window(self, start: float, end: float) -> Self:
         """Return the samples between two times.
 
         Parameters
@@ -183,7 +175,7 @@ class Recording(ResultCache):
         """
         return self.select(samples=(self.t >= start) & (self.t <= end))
 
-    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Recording:
+    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Self:
         """Return some samples of some agents.
 
         Parameters
@@ -199,7 +191,7 @@ class Recording(ResultCache):
             change[name] = value[samples][:, agents] if isinstance(value, np.ndarray) else value
         return replace(self, **change)
 
-    def in_units(self, length: float, time: float) -> Recording:
+    def in_units(self, length: float, time: float) -> Self:
         """Return the same recording in other units (`flockana.rescale`).
 
         Parameters
@@ -225,7 +217,7 @@ class Recording(ResultCache):
                 "window(start, end) or select(samples=, agents=)"
             )
 
-    def filled(self, *, longest: float | None = None) -> Recording:
+    def filled(self, *, longest: float | None = None) -> "Recording":
         """Return the recording with short gaps filled by splines, each filled position with its own error.
 
         Parameters
@@ -235,11 +227,11 @@ class Recording(ResultCache):
         """
         return filled(self, longest)
 
-    def with_velocities(self) -> Recording:
+    def with_velocities(self) -> "Recording":
         """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
         return with_velocities(self)
 
-    def metrics(self, *, d: float, r: float) -> xarray.Dataset:
+    def metrics(self, *, d: float, r: float) -> "xarray.Dataset":
         """Return measures of the flock over time, each with its error as ``<name>_error``.
 
         Parameters

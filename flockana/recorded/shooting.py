@@ -5,11 +5,9 @@ they are independent with deviation 1, and an error of the integration whose res
 by at most x standard errors; the steps are chosen by it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -138,8 +136,7 @@ def _within(t: FloatArray, time: float) -> int:
 
 def usual_window(rec: Recording, law: Any) -> float:
     """Return the duration of windows: several of the law's times, and of many samples."""
-    scales = law.scales
-    return max(_TIMES * (0.0 if scales is None else scales.time), _FEWEST * rec.interval)
+    return max(0.0 if law.scales is None else _TIMES * law.scales.time, _FEWEST * rec.interval)
 
 
 def windows(rec: Recording, duration: float) -> list[Window]:
@@ -147,7 +144,7 @@ def windows(rec: Recording, duration: float) -> list[Window]:
     fit = motions(rec)
     count = max(1, round(float(rec.t[-1] - rec.t[0]) / duration))
     edges = np.unique(np.linspace(0, len(rec.t), count + 1).astype(int))
-    sd = np.broadcast_to(np.asarray(fit.noise if rec.sd is None else rec.sd, dtype=np.float64), rec.q.shape[:2])
+    sd = np.broadcast_to(fit.noise if rec.sd is None else rec.sd, rec.present.shape)
     root = np.repeat(np.where(rec.present, 1.0 / np.maximum(sd, 1e-300), 0.0), rec.m, axis=1)
     found = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
@@ -173,7 +170,7 @@ class _NormalEquations:
     damping: float
 
     @classmethod
-    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> _NormalEquations:
+    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> Self:
         reduced, corners, across = np.zeros((count, count)), [], []
         for each in slopes:
             whole = each.T @ each
@@ -210,8 +207,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
         return matrix
     size = np.sqrt(np.diag(matrix))
     unit = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
-    found: FloatArray = unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
-    return found
+    return unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
 
 
 def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> MatchResult:

@@ -6,8 +6,6 @@ at each sample, across gaps too. The intensity of the jerk is the largest that t
 reject, so that a flock that settles is smoothed more than one that has just been let go, and an encounter less.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

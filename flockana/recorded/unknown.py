@@ -1,12 +1,10 @@
 """Stand-in for the law of a flock that was recorded elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -35,8 +33,7 @@ class UnknownLaw(DiscreteLaw):
     units: ClassVar[Mapping[str, Powers]] = {"time": (0, 1), "dt": (0, 1)}
 
     def __post_init__(self) -> None:
-        for name in ("time", "dt"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "time", "dt")
 
     @property
     def scales(self) -> Scales | None:  # noqa: D102

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,18 +45,15 @@ def motions(rec: Recording) -> Motions:
 
 
 def _motions(rec: Recording) -> Motions:
-    few = np.flatnonzero(rec.present.sum(axis=0) < _FEWEST)
-    if few.size:
-        i = int(few[0])
-        raise ArgumentError(
-            f"agent {rec.ids[i]} has {int(rec.present[:, i].sum())} samples: expected {_FEWEST} or more for velocities "
-            "from positions; leave it out by select(agents=...)"
-        )
-    stated = rec.sd if rec.sd is not None else None if rec.bound is None else 0.5 * np.asarray(rec.bound)
+    for name, samples in zip(rec.ids, rec.present.sum(axis=0), strict=True):
+        if samples < _FEWEST:
+            raise ArgumentError(
+                f"agent {name} has {samples} samples: expected {_FEWEST} or more for velocities from positions; leave "
+                "it out by select(agents=...)"
+            )
+    stated = rec.sd if rec.bound is None else 0.5 * rec.bound
     count, n, m = rec.q.shape
-    noise = None
-    if stated is not None:
-        noise = np.repeat(np.broadcast_to(np.asarray(stated, dtype=np.float64), (count, n)), m, axis=1)
+    noise = None if stated is None else np.repeat(np.broadcast_to(stated, (count, n)), m, axis=1)
     fit = smoothed(rec.t, rec.q.reshape(count, n * m), noise, groups=m)
     (q, p, u), deviations = ([x[:, :, k].reshape(count, n, m) for k in range(3)] for x in (fit.mean, fit.sd))
     q_sd, p_sd, u_sd = (each.max(axis=2) for each in deviations)
@@ -64,7 +62,10 @@ def _motions(rec: Recording) -> Motions:
         x[~within] = np.nan
     usual = np.sqrt(np.nanmean(np.where(rec.present, lengths(u) ** 2, np.nan), axis=0) / m)
     known = within & (np.nan_to_num(u_sd, nan=np.inf) <= _TOLD * usual)
-    return Motions(q, p, u, q_sd, p_sd, u_sd, _whole_gaps(rec, known), fit.noise)
+    carried = rec.present.copy()
+    for i, gap, _ in _gaps(rec):
+        carried[gap, i] = known[gap, i].all()
+    return Motions(q, p, u, q_sd, p_sd, u_sd, carried, fit.noise)
 
 
 def with_velocities(rec: Recording) -> Recording:
@@ -87,8 +88,9 @@ def filled(rec: Recording, longest: float | None) -> Recording:
         return rec
     fit = motions(rec)
     fill = ~rec.present & fit.carried
-    if longest is not None:
-        fill &= _gap_lengths(rec) <= ensure_positive("longest", longest)
+    most = np.inf if longest is None else ensure_positive("longest", longest)
+    for i, gap, duration in _gaps(rec):
+        fill[gap, i] &= duration <= most
     change = _in_band(rec, fit)
     change["sd"] = sd = np.where(fill, np.nan_to_num(fit.q_sd), change["sd"])
     if rec.p is not None:
@@ -101,25 +103,9 @@ def filled(rec: Recording, longest: float | None) -> Recording:
     return replace(rec, **change)
 
 
-def _gaps(rec: Recording) -> Iterator[tuple[int, int, int]]:
-    """Gaps as (agent, last sample before, first sample after)."""
+def _gaps(rec: Recording) -> Iterator[tuple[int, slice, float]]:
+    """Yield gaps as agent, missing samples, and time from the sample before to the one after."""
     for i in range(rec.n):
-        seen = np.flatnonzero(rec.present[:, i])
-        for k in np.flatnonzero(np.diff(seen) > 1).tolist():
-            yield i, int(seen[k]), int(seen[k + 1])
-
-
-def _whole_gaps(rec: Recording, known: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return a mask of samples that were seen or lie in a gap that `known` covers wholly, shape (T, n)."""
-    carried = rec.present.copy()
-    for i, a, b in _gaps(rec):
-        carried[a + 1 : b, i] = known[a + 1 : b, i].all()
-    return carried
-
-
-def _gap_lengths(rec: Recording) -> FloatArray:
-    """Length in time of the gap that each missing sample lies in, shape (T, n); 0 where an agent was seen."""
-    durations = np.zeros(rec.present.shape)
-    for i, a, b in _gaps(rec):
-        durations[a + 1 : b, i] = rec.t[b] - rec.t[a]
-    return durations
+        for a, b in pairwise(np.flatnonzero(rec.present[:, i]).tolist()):
+            if b > a + 1:
+                yield i, slice(a + 1, b), float(rec.t[b] - rec.t[a])

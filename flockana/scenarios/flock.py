@@ -1,8 +1,7 @@
 """A user's own flock: a law, a start and a time span, accepted wherever a scenario of the catalogue is."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from functools import reduce
+from dataclasses import dataclass, field
 from typing import Any
 
 from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_time_span
@@ -10,6 +9,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
+from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario
 from flockana.theorems import Tolerances
@@ -125,19 +125,3 @@ def run_of(given: Any = None, *, seed: int = 0, **parts: Any) -> Trajectory:
     """
     item = chosen(given, **parts)
     return as_scenario(item, seed).run() if isinstance(item, str | Flock | Scenario) else ensure_run(item)
-
-
-def law_parameter(law: Any, name: str) -> Any:
-    """Return the value of a law's parameter by its dotted name, such as ``"gains.c1_alpha"``."""
-    return reduce(getattr, name.split("."), law)
-
-
-def with_parameter(law: Any, name: str, value: Any) -> Any:
-    """Return the law with another value of a parameter."""
-    head, _, rest = name.partition(".")
-    try:
-        return replace(law, **{head: with_parameter(getattr(law, head), rest, value) if rest else value})
-    except (AttributeError, TypeError):
-        raise ArgumentError(
-            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
-        ) from None

@@ -63,11 +63,6 @@ def test_a_signal_to_the_process_is_held_too(another_thread):
     assert done == [4999950000]
 
 
-def test_without_ctrl_c_nothing_comes():
-    held(lambda: None)
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-
-
 def test_one_in_another_ends_with_the_outer():
     done = []
 

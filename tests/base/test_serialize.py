@@ -45,7 +45,7 @@ def test_round_trip_through_json_is_exact(value):
 
 
 def test_arrays_and_numpy_scalars_become_numbers():
-    assert to_data({1: 2}.get(1)) == 2
+    assert type(to_data_mapping({"steps": np.int64(3)})["steps"]) is int
     assert to_data([np.float32(0.5), np.arange(2), np.bool_(True)]) == [0.5, [0, 1], True]
 
 
@@ -95,7 +95,3 @@ def test_functions_cannot_be_written():
 def test_strange_data(data, message):
     with pytest.raises(FileError, match=re.escape(message)):
         from_data(data)
-
-
-def test_numbers_of_numpy_become_plain_ones():
-    assert type(to_data_mapping({"steps": np.int64(3)})["steps"]) is int

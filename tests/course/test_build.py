@@ -120,14 +120,6 @@ def test_a_figure_that_is_named_exists():
     assert named == drawn
 
 
-@pytest.mark.parametrize("source", SOURCES[:-2], ids=lambda path: path.stem)
-def test_a_lecture_is_more_than_a_companion_to_its_code(source):
-    texts = [c.source for c in build.notebook(source, "student").cells if c.cell_type == "markdown"]
-    taught = " ".join(texts[:1] + texts[2:-1])  # without the table of symbols and the references
-    words = len(re.findall(r"[^\W\d_]{2,}", re.sub(r"\$\$.*?\$\$|\$[^$]+\$", " x ", taught, flags=re.DOTALL)))
-    assert words >= (1000 if number_of(source) == "00" else 2000)
-
-
 @pytest.mark.parametrize("source", SOURCES[1:-2], ids=lambda path: path.stem)
 def test_a_theorem_that_a_lecture_teaches_is_stated_and_proved_in_it(source):
     text, number = source.read_text(encoding="utf-8"), number_of(source)

@@ -1,6 +1,3 @@
-from __future__ import annotations
-
-import gc
 import json
 import os
 import time
@@ -15,7 +12,6 @@ import xarray
 
 from flockana import Tolerances, scenario, verify
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.base.garbage import SELDOM
 from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, numerics_version, run_key
@@ -214,12 +210,6 @@ def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
             break
     assert found.compilations.values.tolist() == [0.0] * 4
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
-
-
-@pytest.mark.slow
-def test_workers_seldom_look_for_garbage():
-    with ProcessPool(1) as pool:
-        assert pool.submit(gc.get_threshold).result()[0] == SELDOM
 
 
 @pytest.mark.parametrize("metric", [tiny_flocks.interrupts, tiny_flocks.interrupts_a_kernel])

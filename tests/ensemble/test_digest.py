@@ -1,11 +1,9 @@
-from __future__ import annotations
-
 import sys
 
 import pytest
 
 from flockana.ensemble import digest as digests
-from flockana.ensemble.digest import cached_digest, digest_of_sources, numerics_version
+from flockana.ensemble.digest import cached_digest, digest_of_sources
 
 SOURCES = {"a.py": b"x = 1  # one\n", "b.json": b"{}"}
 
@@ -68,9 +66,3 @@ def test_where_nothing_may_be_written_nothing_is(tmp_path, parsed, monkeypatch):
     assert cached_digest(SOURCES, tmp_path) == digest_of_sources(SOURCES)
     assert list(tmp_path.iterdir()) == []
     assert len(parsed) == 2
-
-
-def test_the_version_of_the_mathematics_is_the_digest_of_its_sources():
-    root = digests.Path(digests.__file__).resolve().parent.parent
-    sources = {str(path.relative_to(root)): path.read_bytes() for path in digests.source_files(root)}
-    assert numerics_version() == digest_of_sources(sources)

@@ -88,13 +88,19 @@ def test_a_newer_question_breaks_off_what_is_under_way(ask, under_way):
     assert [number for number, kind, _ in found if kind == "done" and number % 2 == 0] == list(range(2, 42, 2))
 
 
-def test_a_process_of_its_own_answers_and_ends_with_the_server():
-    """Four seconds: it is the only test that starts one without a browser."""
+def started():
+    """A process that works, and its pipe."""
     context = get_context("spawn")
     mine, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, 60.0), daemon=True)
     process.start()
     theirs.close()
+    return process, mine
+
+
+def test_a_process_of_its_own_answers_and_ends_with_the_server():
+    """Four seconds: it is the only test that starts one without a browser."""
+    process, mine = started()
     assert mine.poll(120.0)
     assert mine.recv() == (0, "ready", {})
     mine.send((1, {"kind": "law", "name": "Algorithm1", "n": 3, "duration": 0.1}))
@@ -105,11 +111,7 @@ def test_a_process_of_its_own_answers_and_ends_with_the_server():
 
 
 def test_where_the_server_is_ended_by_force_it_ends_without_a_word(capfd):
-    context = get_context("spawn")
-    mine, theirs = context.Pipe()
-    process = context.Process(target=work, args=(theirs, 60.0), daemon=True)
-    process.start()
-    theirs.close()
+    process, mine = started()
     mine.close()  # before it says that it is ready
     process.join(120)
     assert (process.exitcode, capfd.readouterr().err) == (0, "")

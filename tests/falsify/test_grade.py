@@ -57,7 +57,7 @@ class TestGrades:
         claim = judged("i", Enclosure.of(margin), proof="cohesion")
         assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
         assert grade(claim, []) == 0.0
-        assert not Evaluation(0.0, "i", Verdict("x", (), (claim,))).found
+        assert Evaluation(0.0, "i", Verdict("x", (), (claim,))).status == "inconclusive"
 
     def test_a_surrogate_never_outweighs_a_count(self):
         for k in range(30):

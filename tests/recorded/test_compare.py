@@ -7,10 +7,9 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.recorded.contributions import contributions, remainder
+from flockana.recorded.contributions import contributions, remainder, variants
 from flockana.recorded.recording import recording_of
-from flockana.recorded.schemes import kinematic_scheme, scheme_by_law
-from flockana.recorded.variants import variants
+from flockana.recorded.steps import kinematic_scheme, scheme_by_law
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
 
 T = np.linspace(0.0, 2.0, 101)

@@ -160,11 +160,6 @@ def test_a_step_solves_the_damped_normal_equations_of_all_starts_at_once(damping
     np.testing.assert_allclose(normal.covariance, np.linalg.inv(whole)[4:, 4:])
 
 
-def test_differences_of_a_polynomial_are_its_slopes():
-    found = _differences(lambda x: np.array([[x[0, 0] ** 2 + 3.0 * x[1, 0]], [x[1, 0]]]), np.array([[2.0], [5.0]]))
-    np.testing.assert_allclose(found, [[4.0, 3.0], [0.0, 1.0]], atol=1e-8)
-
-
 def test_errors_of_steps_count_how_agents_differ_if_there_are_others():
     """Places and velocities after a step of 0.1 are those of the closed form; three agents that feel only the pull.
 

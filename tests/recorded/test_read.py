@@ -1,7 +1,5 @@
 """Files of recordings: whole ones are read as written, damaged ones are refused in one line that says where."""
 
-from __future__ import annotations
-
 import io
 import time
 

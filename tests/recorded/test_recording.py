@@ -1,7 +1,5 @@
 """Recordings: what they hold, what they refuse, and what is measured of them without a law."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -43,8 +41,8 @@ def test_gaps_are_whole_vectors_and_are_counted(run):
         ({"t": T * 1e52}, r"t\[1\] = 1e\+51: expected numbers up to 1e\+50"),
         ({"q": np.full((11, 12, 2), np.nan)}, "NaN throughout"),
         ({"bound": -1.0}, "bound = -1: expected a number >= 0"),
-        ({"bound": 1.0, "sd": 1.0}, "bound and sd are both given"),
-        ({"sd": 1.0, "p_bound": 1.0}, "expected p_sd"),
+        ({"bound": 1.0, "sd": 1.0}, "bound and sd are given: expected one kind of accuracy"),
+        ({"sd": 1.0, "p_bound": 1.0}, "sd and p_bound are given: .* or sd and p_sd"),
         ({"bound": np.zeros(3)}, r"bound has shape \(3,\)"),
         ({"bound": np.full((11, 12), np.nan)}, "expected a finite number >= 0"),
         ({"bound": [[0.1], [0.1, 0.1]]}, "expected one real number"),

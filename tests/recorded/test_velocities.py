@@ -1,7 +1,5 @@
 """Velocities from positions lie within their errors, and nothing is invented across long gaps."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

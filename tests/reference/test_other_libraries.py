@@ -1,4 +1,4 @@
-"""Nets by scipy's tree, networkx and shapely; A by finite differences of the flow."""
+"""Nets by scipy's tree, networkx and shapely."""
 
 import networkx as nx
 import numpy as np
@@ -50,33 +50,3 @@ def test_crossings_are_those_of_shapely(seed):
     expected = sorted({(min(a, b), max(a, b)) for a, b in zip(first.tolist(), second.tolist(), strict=True)})
     assert len(expected) > 10
     assert sorted(tuple(sorted(pair)) for pair in lattice.crossings(q, pairs).tolist()) == expected
-
-
-Q = lattice.hexagonal_spiral(5, 7.0) + np.random.default_rng(1).uniform(-0.5, 0.5, (5, 2))
-LAWS = {
-    "free": fl.Algorithm1(),
-    "led": fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))),
-    "by a wall": fl.Algorithm3(
-        target=fl.StaticTarget((0.0, 0.0)), obstacles=[fl.Wall((0.0, Q[:, 1].min() - 3.0), (0.0, 1.0))]
-    ),
-    "dead zone": fl.DeadZoneFlocking(),
-}
-
-
-@pytest.mark.parametrize("name", sorted(LAWS))
-def test_a_linearisation_is_the_difference_of_the_flow(name):
-    """A by central differences of (p, u), of fourth order: every entry to 1e-6 of the largest."""
-    law, size, step = LAWS[name], Q.size, 1e-4
-
-    def flow(x):
-        places, speeds = x[:size].reshape(Q.shape), x[size:].reshape(Q.shape)
-        return np.concatenate([x[size:], law.acceleration(0.0, places, speeds).ravel()])
-
-    rest, columns = np.concatenate([Q.ravel(), np.zeros(size)]), []
-    for k in range(2 * size):
-        unit = np.zeros(2 * size)
-        unit[k] = step
-        near, far = flow(rest + unit) - flow(rest - unit), flow(rest + 2 * unit) - flow(rest - 2 * unit)
-        columns.append((8.0 * near - far) / (12.0 * step))
-    found = fl.linearise(law, Q, allow_residual=True).A
-    np.testing.assert_allclose(np.transpose(columns), found, rtol=0.0, atol=1e-6 * np.abs(found).max())

@@ -1,7 +1,5 @@
 """Arrays by name: npz, MATLAB and netCDF files, mappings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,13 +26,10 @@ def named_arrays(
     lower = {str(name).lower(): name for name in arrays if name not in given.values()}
     found: dict[str, Any] = {}
     for kind, names in _NAMES.items():
-        if kind in given:
-            if given[kind] not in list(arrays):
-                raise ArgumentError(
-                    f"{where} has no array {given[kind]!r}: expected one of {', '.join(map(str, arrays))}"
-                )
-            found[kind] = _array(arrays[given[kind]], kind, where)
-        elif (name := next((lower[each] for each in names if each in lower), None)) is not None:
+        name = given.get(kind, next((lower[each] for each in names if each in lower), None))
+        if kind in given and name not in list(arrays):
+            raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
+        if name is not None:
             found[kind] = _array(arrays[name], kind, where)
     shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in found:
@@ -46,16 +41,14 @@ def named_arrays(
         raise ArgumentError(
             f"{where}: {shown}: expected positions of shape (T, n, m), such as q.reshape(T, n, m) or stack([x, y], 2)"
         )
-    if "t" not in found:
-        if dt is None:
-            raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
-        found["t"] = dt * np.arange(len(q))
-    found["t"] = found["t"].reshape(-1)  # MATLAB has no vectors
-    if len(found["t"]) != len(q):
-        turned = [k for k in range(3) if q.shape[k] == len(found["t"])]
+    if "t" not in found and dt is None:
+        raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
+    t = found["t"].reshape(-1) if "t" in found else dt * np.arange(len(q))  # MATLAB has no vectors
+    if len(t) != len(q):
+        turned = [k for k in range(3) if q.shape[k] == len(t)]
         hint = f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0)" if turned else ""
-        raise ArgumentError(f"{where}: {len(found['t'])} times and q of shape {q.shape}: expected (T, n, m){hint}")
-    return found
+        raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}: expected (T, n, m){hint}")
+    return found | {"t": t}
 
 
 def _array(value: Any, kind: str, where: str) -> Any:

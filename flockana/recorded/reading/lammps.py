@@ -1,22 +1,55 @@
 """Text dumps of LAMMPS: snapshots with their boxes, places unwrapped."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import islice, pairwise, takewhile
 from pathlib import Path
-from typing import TextIO
+from typing import Any, Self, TextIO
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.box import AXES, Box
 
+AXES = "xyz"
 _WORDS = ("element", "typelabel")  # columns of words
 _LARGEST = 2**53  # up to which every whole number is a float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Edges of a box as rows, shape (3, 3), and along which it is periodic; None where the dump does not say."""
+
+    edges: FloatArray
+    periodic: tuple[bool, ...] | None
+
+    @classmethod
+    def of(cls, words: Sequence[str], rows: FloatArray) -> Self | None:
+        """Return the box of an item ``BOX BOUNDS`` and its three lines; None if they are inconsistent.
+
+        Bounds of a tilted box are those of the box around it.
+
+        Examples
+        --------
+        >>> Box.of(["xy", "xz", "yz", "pp", "pp", "ss"], np.array([[0.0, 12.0, 2.0], [0, 5, 0], [0, 1, 0]])).edges[1]
+        array([2., 5., 0.])
+        """
+        flags = [word for word in words if len(word) == 2 and set(word) <= set("pfsm")]
+        periodic = tuple(flag[0] == "p" for flag in flags) if len(flags) == 3 else None
+        if "abc" in words:
+            return cls(rows[:, :3], periodic) if rows.shape[1] == 4 else None
+        if rows.shape[1] not in (2, 3):
+            return None
+        xy, xz, yz = rows[:, 2] if rows.shape[1] == 3 else np.zeros(3)
+        tilts = np.array([np.ptp([0.0, xy, xz, xy + xz]), np.ptp([0.0, yz]), 0.0])
+        edges = np.diag(rows[:, 1] - rows[:, 0] - tilts)
+        edges[1, 0], edges[2, 0], edges[2, 1] = xy, xz, yz
+        return cls(edges, periodic)
+
+    def crossed(self, axes: Sequence[int]) -> list[int]:
+        """Return the periodic edges that have a component along one of some axes."""
+        return [k for k in range(3) if (self.periodic is None or self.periodic[k]) and self.edges[k, list(axes)].any()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,30 +65,35 @@ class Snapshot:
     columns: dict[str, FloatArray]
 
 
-def time_of(snapshot: Snapshot, dt: float | None, path: object) -> float:
-    """Return the time of a snapshot, by its step where the dump has no times."""
-    if snapshot.time is not None:
-        return snapshot.time
-    if dt is None:
+def read_dump(path: Path, dt: float | None, m: int | None, *, start: float = 0.0, needed: str = "") -> dict[str, Any]:
+    """Return t, ids, q, and p and u where the dump has velocities and forces or `needed` names them, and the steps."""
+    found = _snapshots(path)
+    columns = found[0].columns
+    if dt is None and any(each.time is None for each in found):
         raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
-    return snapshot.step * dt
-
-
-def ensure_rising(t: FloatArray, path: object) -> None:
-    """Raise unless the times rise."""
+    t = np.array([start + (each.step * (dt or 0.0) if each.time is None else each.time) for each in found])
     if not (np.diff(t) > 0.0).all():
         k = int(np.argmin(np.diff(t)))
         raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
+    size = _dimension(columns, m, path)
+    arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path) for each in found])}
+    for kind, name in (("p", "v"), ("u", "f")):
+        if f"{name}x" in columns or kind in needed:
+            axes = [f"{name}{axis}" for axis in AXES[:size]]
+            if not columns.keys() >= set(axes):
+                raise ArgumentError(
+                    f"{path} has the columns {', '.join(columns)}: expected {' '.join(axes)} among them"
+                )
+            arrays[kind] = np.stack([np.stack([each.columns[axis] for axis in axes], axis=1) for each in found])
+    return arrays | {"steps": found[-1].step - found[0].step}
 
 
-def dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
+def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
     """Return the dimension that is asked for, by default that of the positions in the dump."""
-    there = 0
-    while there < 3 and ({AXES[there], f"{AXES[there]}u"} & snapshot.columns.keys()):
-        there += 1
+    there = len([*takewhile(lambda axis: {axis, f"{axis}u"} & {*columns}, AXES)])
     if there == 0:
         raise ArgumentError(
-            f"{path} has the columns {', '.join(snapshot.columns)}: expected positions x, y, z or xu, yu, zu "
+            f"{path} has the columns {', '.join(columns)}: expected positions x, y, z or xu, yu, zu "
             "(not scaled ones), such as `dump ... custom N FILE id x y vx vy fx fy`"
         )
     if m is None:
@@ -65,7 +103,7 @@ def dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
     return m
 
 
-def places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
+def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
     """Return the positions of a snapshot, shape (n, m), unwrapped."""
     columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
     q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
@@ -86,16 +124,7 @@ def places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
     return q
 
 
-def stacked(snapshots: list[Snapshot], name: str, m: int, path: object) -> FloatArray:
-    """Return velocities or forces over time, shape (T, n, m)."""
-    axes = [name.replace("x", axis) for axis in AXES[:m]]
-    if not all(axis in snapshots[0].columns for axis in axes):
-        there = ", ".join(snapshots[0].columns)
-        raise ArgumentError(f"{path} has the columns {there}: expected {' '.join(axes)} among them")
-    return np.stack([np.stack([s.columns[axis] for axis in axes], axis=1) for s in snapshots])
-
-
-def snapshots(path: Path) -> list[Snapshot]:
+def _snapshots(path: Path) -> list[Snapshot]:
     """Return the snapshots of a dump, all of the same agents."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise FileError(f"cannot read {str(path)!r}: it is no regular file; expected a text dump of LAMMPS")

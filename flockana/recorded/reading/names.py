@@ -1,7 +1,5 @@
 """Names of columns and arrays in files of recordings, and what they mean."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -54,23 +52,26 @@ def coordinate(name: str) -> tuple[str, int] | None:
     return None
 
 
+def _agent_and_coordinate(name: str) -> tuple[str, str, int] | None:
+    """Return agent, kind and axis that a plain name stands for; the agent is empty in a long table."""
+    numbered, first = _NUMBERED.match(name), _AGENT_FIRST.match(name)
+    ways = [("", name), *([(numbered[2], numbered[1].rstrip("_"))] if numbered else [])]
+    ways += [(first[1], first[2])] if first else []
+    return next(((agent, *found) for agent, each in ways if (found := coordinate(each)) is not None), None)
+
+
 def layout_of(names: Sequence[Any], where: str) -> Layout:
     """Return the layout of a table by its header."""
     by_name = {plain(name): str(name) for name in names}
     time, frame, agent = (
         next((by_name[each] for each in known if each in by_name), None) for known in (TIMES, FRAMES, AGENTS)
     )
-    long: dict[str, dict[int, str]] = {}
     wide: dict[str, dict[str, dict[int, str]]] = {}
     for name, column in by_name.items():
-        if column in (time, frame, agent):
-            continue
-        if (found := coordinate(name)) is not None:
-            long.setdefault(found[0], {})[found[1]] = column
-        elif (match := _NUMBERED.match(name)) and (found := coordinate(match[1].rstrip("_"))) is not None:
-            wide.setdefault(match[2], {}).setdefault(found[0], {})[found[1]] = column
-        elif (match := _AGENT_FIRST.match(name)) and (found := coordinate(match[2])) is not None:
-            wide.setdefault(match[1], {}).setdefault(found[0], {})[found[1]] = column
+        if column not in (time, frame, agent) and (found := _agent_and_coordinate(name)) is not None:
+            owner, kind, axis = found
+            wide.setdefault(owner, {}).setdefault(kind, {})[axis] = column
+    long = wide.pop("", {})
     shown = ", ".join(map(str, list(names)[:12])) + (", ..." if len(names) > 12 else "")
     if not long and not wide:
         raise ArgumentError(

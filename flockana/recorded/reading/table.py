@@ -1,7 +1,5 @@
 """Long and wide tables as arrays: times, positions, velocities, names of agents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -32,11 +30,15 @@ def table_arrays(
     names = list(frame)
     layout = given_layout(columns, names, where) if isinstance(columns, Mapping) else layout_of(names, where)
     if layout.wide:
-        return _wide(frame, layout, _times(frame, layout, dt, clock, where))
+        return _wide(frame, layout.wide, _times(frame, layout, dt, clock, where))
     if layout.time is None and layout.frame is None:
         return _one_instant(frame, layout, where)
     t = _times(frame, layout, dt, clock, where)
-    return _of_one_agent(frame, layout, t, where) if layout.agent is None else _long(frame, layout, t, where)
+    if layout.agent is not None:
+        return _long(frame, layout, t, where)
+    if len(np.unique(t)) < len(t):
+        raise ArgumentError(f"{where} has several rows at one time and no column id: expected the agent of each row")
+    return _wide(frame, {"0": layout.long}, t)
 
 
 def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, where: str) -> FloatArray:
@@ -67,11 +69,7 @@ def _is_date(value: Any) -> bool:
 
     if not isinstance(value, str) or not any(mark in value for mark in "-:/"):
         return False
-    try:
-        pd.to_datetime(value)
-    except (ValueError, TypeError):
-        return False
-    return True
+    return not pd.isna(pd.to_datetime(value, errors="coerce"))
 
 
 def _read_dates(series: Any, clock: float | None, where: str, name: str) -> FloatArray:
@@ -125,25 +123,17 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
     return found
 
 
-def _wide(frame: Any, layout: Layout, t: FloatArray) -> dict[str, Any]:
+def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: FloatArray) -> dict[str, Any]:
     """A row for each time, with columns for each agent."""
     order = np.argsort(t, kind="stable")
     if (np.diff(t[order]) == 0.0).any():
         k = int(order[1:][np.diff(t[order]) == 0.0].min())
         raise FileError(f"{row_name(frame, k)}: t = {t[k]:g} a second time; expected rising times, a row for each")
-    kinds = list(next(iter(layout.wide.values())))
-    found: dict[str, Any] = {"t": t[order], "ids": list(layout.wide)}
-    for kind in kinds:
-        found[kind] = np.stack([_values(frame, names[kind])[order] for names in layout.wide.values()], axis=1)
-    return found
-
-
-def _of_one_agent(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, Any]:
-    """Rows without names: one agent over time."""
-    if len(np.unique(t)) < len(t):
-        raise ArgumentError(f"{where} has several rows at one time and no column id: expected the agent of each row")
-    order = np.argsort(t, kind="stable")
-    return {"t": t[order]} | {kind: _values(frame, names)[order][:, None] for kind, names in layout.long.items()}
+    arrays = {
+        kind: np.stack([_values(frame, names[kind])[order] for names in columns.values()], axis=1)
+        for kind in next(iter(columns.values()))
+    }
+    return {"t": t[order], "ids": list(columns)} | arrays
 
 
 def _one_instant(frame: Any, layout: Layout, where: str) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """Tables in text files: CSV and TSV, with messages that name row, column and remedy."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A slab |x| <= h across the plane, with agents on either side: a toy of one file."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A Morse pair potential, cut off at a range: a toy of one file."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import exp, sqrt
 
