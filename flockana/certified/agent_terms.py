@@ -8,7 +8,7 @@ from typing import Any
 from flint import arb
 
 from flockana.base.checks import FloatArray
-from flockana.certified.balls import square
+from flockana.certified.balls import dot, norm2
 from flockana.certified.series import Piece
 
 Block = list[list[Any]]
@@ -59,8 +59,7 @@ class Pull(AgentTerm):
 
     def _saturation(self, away: Sequence[Any], unit: arb) -> Any:
         """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
-        squares = list(map(square, away))
-        return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
+        return (1 + norm2(away) / (unit * unit)).rsqrt()
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
         away = self._away(t, x)
@@ -71,25 +70,19 @@ class Pull(AgentTerm):
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:  # noqa: D102
-        m = len(x)
-        drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
-        if self.unit is None:
-            return [[-self.stiffness if k == h else 0 for h in range(m)] for k in range(m)], drag
-        away = self._away(t, x)
-        slant = self._saturation(away, self.unit)
-        cube = slant * slant * slant / (self.unit * self.unit)
-        pull = [
-            [-self.stiffness * ((slant if k == h else 0) - cube * away[k] * away[h]) for h in range(m)]
-            for k in range(m)
-        ]
+        rows = list(enumerate(away := self._away(t, x)))
+        pull, drag = ([[-gain * (k == h) for h, _ in rows] for k, _ in rows] for gain in (self.stiffness, self.damping))
+        if self.unit is not None:
+            slant = self._saturation(away, self.unit)
+            cube = slant * slant * slant / (self.unit * self.unit)
+            pull = [[-self.stiffness * ((slant if k == h else 0) - cube * a * b) for h, b in rows] for k, a in rows]
         return pull, drag
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
-        speed = sum(map(square, v), 0 * v[0])
-        return -self.damping * (speed - sum((w * p for w, p in zip(v, self.declared, strict=True)), 0 * v[0]))
+        return -self.damping * (norm2(v) - dot(v, self.declared))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Return the derivative of the force by time, from the motion of q_r."""
         pull = self.slopes(t, x, x, Piece.CORE)[0]
-        return [-sum((a * b for a, b in zip(row, self.velocity, strict=True)), arb(0)) for row in pull]
+        return [-dot(row, self.velocity) for row in pull]

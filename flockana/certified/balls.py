@@ -59,6 +59,11 @@ def norm2(x: Sequence[Any]) -> Any:
     return sum(map(square, x[1:]), square(x[0]))
 
 
+def norm(x: Sequence[arb]) -> arb:
+    """Return ‖x‖ of balls, never below 0."""
+    return norm2(x).nonnegative_part().sqrt()
+
+
 def monotone(f: Callable[[Any], Any], x: Any) -> Any:
     """Return the range of a monotone function on a ball, from the ends of the ball; the function of a series."""
     return f(x) if not isinstance(x, arb) or x.is_exact() else hull(f(x.lower()), f(x.upper()))

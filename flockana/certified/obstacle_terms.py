@@ -7,7 +7,7 @@ With a = (x − y)/‖x − y‖ and the clearance c = ‖x − y‖ − R the �
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from flint import arb
 
 from flockana.base.checks import FloatArray
 from flockana.certified.agent_terms import AgentTerm, Block
-from flockana.certified.balls import dot, square
+from flockana.certified.balls import dot, norm, norm2, square
 from flockana.certified.series import PairNumbers, Piece
 
 
@@ -32,14 +32,12 @@ class SphereTerm(AgentTerm):
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
         """Return ((x − y)/‖x − y‖, ‖x − y‖)."""
         away = [a - b for a, b in zip(x, self.centre, strict=True)]
-        squares = list(map(square, away))
-        distance = sum(squares[1:], squares[0]).sqrt()
+        distance = norm2(away).sqrt()
         return [a / distance for a in away], distance
 
     def clearance(self, x: Sequence[arb]) -> arb:
         """Return ‖x − y‖ − R, negative inside."""
-        squares = sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0))
-        return squares.nonnegative_part().sqrt() - self.radius
+        return norm([a - b for a, b in zip(x, self.centre, strict=True)]) - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
         """Return the piece of ρ_h that holds the clearance, anywhere in a box."""
@@ -50,15 +48,13 @@ class SphereTerm(AgentTerm):
         away = x - np.array([float(y) for y in self.centre])
         distance = float(np.linalg.norm(away))
         speed = float(away @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
-        eps, clearance = float(self.beta.eps), distance - float(self.radius)
-        meet = [sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (self.beta.knee, self.beta.cutoff)]
-        return [(clearance - switch, speed) for switch in meet]
+        return [(distance - float(self.radius) - switch, speed) for switch in self.beta.switches]
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
-        across = sum((square(w - radial * k) for k, w in zip(a, v, strict=True)), 0 * radial)
+        across = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
         adjacency = self.beta.pair(square(clearance), piece)[1]
         if isinstance(adjacency, arb):
             adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
@@ -82,19 +78,11 @@ class SphereTerm(AgentTerm):
         steeper, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
         across = [w - radial * k for k, w in zip(a, v, strict=True)]
         slip = [-free * w - radial * k for k, w in zip(a, across, strict=True)]
-        by_x, by_v = [], []
-        for k in range(len(x)):
-            push, brake = [], []
-            for h in range(len(x)):
-                aside = (1 if k == h else 0) - a[k] * a[h]
-                turn = -mu / distance * (across[k] * a[h] + radial * aside + a[k] * across[h])
-                push.append(
-                    -stiff * (free * aside + a[k] * a[h])
-                    - steeper * a[k] * a[h]
-                    + fading * slip[k] * a[h]
-                    + drag * turn
-                )
-                brake.append(-drag * (free * aside + a[k] * a[h]))
-            by_x.append(push)
-            by_v.append(brake)
+        size = range(len(x))
+        by_x, by_v = ([[0] * len(x) for _ in size] for _ in range(2))
+        for k, h in product(size, repeat=2):
+            along, aside = a[k] * a[h], (1 if k == h else 0) - a[k] * a[h]
+            turn = -mu / distance * (across[k] * a[h] + radial * aside + a[k] * across[h])
+            by_v[k][h] = -drag * (free * aside + along)
+            by_x[k][h] = -stiff * (free * aside + along) - steeper * along + fading * slip[k] * a[h] + drag * turn
         return by_x, by_v

@@ -16,15 +16,10 @@ BITS = 100
 def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
     """Return the energy of Algorithm 1 or 2 in the moving frame, on a box of states."""
     with ctx.workprec(BITS):
-        s2 = [norm2([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
-        return energy_of(law, s2, q, p)
-
-
-def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """Return the structural energy from squared distances, positions and velocities of a box."""
-    pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, s2), arb(0))
-    total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
-    return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
+        s2 = (norm2([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2))
+        pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, s2), arb(0))
+        total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
+        return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
 
 
 def _inertia(x: Sequence[Sequence[arb]]) -> arb:

@@ -25,7 +25,6 @@ _ORDERS = 8  # of the first derivative that is not 0
 _CLOSED, _CLOSED_OF_SCALE = 1e-13, 1e-15  # to which a least value is known, relative to it or to the scale
 _NARROWEST = 80  # halvings of an interval on which a least value is sought
 _BITS = 96
-Place = Callable[[float], float]
 
 
 def down(x: arb) -> float:
@@ -67,12 +66,16 @@ class Region(NamedTuple):
     left: fmpq
     right: fmpq
     ends: tuple[sp.Expr, sp.Expr]
-    place: Place
+    place: Callable[[fmpq], float]
 
     @property
     def exact(self) -> sp.Expr:
         """The formula with its numbers inserted."""
         return self.expression.xreplace(self.numbers)
+
+    def between(self, left: fmpq, right: fmpq) -> tuple[float, float]:
+        """Distances of the ends of an interval, for messages."""
+        return self.place(left), self.place(right)
 
     @property
     def enclosed(self) -> Enclosed:
@@ -85,12 +88,9 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
     of, whole = region.enclosed, region.right - region.left
     open_: list[Fact] = []
     stack, looked = [(region.left, region.right, 0)], 0
-    while stack:
+    while stack and looked < MOST and len(open_) < _FEW:
         left, right, depth = stack.pop()
         looked += 1
-        if looked > MOST or len(open_) >= _FEW:
-            stack.append((left, right, depth))
-            break
         with precision(64 + 4 * depth, 2):
             if of.series(interval(left, right)) is not None:
                 continue
@@ -102,12 +102,12 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
         if fact.status == "unmet":
             return [fact]
         open_.append(fact)
-    rest = float(sum(float(arb(right - left)) for left, right, _ in stack))
+    rest = sum(_float(right - left) for left, right, _ in stack)
     if rest:
-        text = f"whether {name} is smooth is open from s = {region.place(_float(stack[-1][0])):.6g} on"
-        open_.append(Fact("assumed", text, _ends(region, stack[-1][0], stack[0][1]), rest))
+        text = f"whether {name} is smooth is open from s = {region.place(stack[-1][0]):.6g} on"
+        open_.append(Fact("assumed", text, region.between(stack[-1][0], stack[0][1]), rest))
     elif open_:
-        open_[0] = Fact("assumed", open_[0].detail, open_[0].witness, len(open_) * float(arb(whole)) * 2.0**-_DEEPEST)
+        open_[0] = Fact("assumed", open_[0].detail, open_[0].witness, len(open_) * _float(whole) * 2.0**-_DEEPEST)
     return open_[:1] if not rest else open_[-1:]
 
 
@@ -115,18 +115,12 @@ def _float(x: fmpq) -> float:
     return float(arb(x))
 
 
-def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
-    return region.place(_float(left)), region.place(_float(right))
-
-
-def _visible_faults(
-    of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
-) -> Fact:  # fmt: skip
+def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
     """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""
-    whole, place = region.right - region.left, region.place(_float(at))
+    whole, place = region.right - region.left, region.place(at)
     near, far = whole / 2**100, whole / 2**50
     sides: list[list[list[arb] | None]] = []
-    witness = _ends(region, max(at - near, region.left), min(at + near, region.right))
+    witness = region.between(max(at - near, region.left), min(at + near, region.right))
     with precision(900, 2):
         for sign in (-1, 1):
             points = [at + sign * step for step in (near, far)]
@@ -151,15 +145,14 @@ def _visible_faults(
 def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
     """Return the fact whether a formula is nonnegative on an interval, and positive inside."""
     if region.expression == 0:
-        return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", _ends(region, region.left, region.right))
+        return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", region.between(region.left, region.right))
     left, right = region.left, region.right
     for side in (0, 1):
         sign, width = _at_end(region, side)
         if sign < 0:
             box = (left, left + width) if side == 0 else (right - width, right)
-            fact = Fact("unmet", f"{name} is negative beside s = {region.place(_float(box[side])):.6g}",
-                        _ends(region, *box))  # fmt: skip
-            return fact, fact
+            text = f"{name} is negative beside s = {region.place(box[side]):.6g}"
+            return (Fact("unmet", text, region.between(*box)),) * 2
         left, right = (left + width, right) if side == 0 else (left, right - width)
     return _sign_inside(region, left, right, name)
 
@@ -200,9 +193,8 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
             middle = (left + right) / 2
             at = of.series(arb(middle))
             if at is not None and at[0] < 0:
-                value, place = float(at[0]), region.place(_float(middle))
-                fact = Fact("unmet", f"{name} is {value:.3g} at s = {place:.6g}", (place, place))
-                return fact, fact
+                place = region.place(middle)
+                return (Fact("unmet", f"{name} is {float(at[0]):.3g} at s = {place:.6g}", (place, place)),) * 2
         if sign == POSITIVE or (sign == NONNEGATIVE and depth >= _STRICT):
             weak += [(left, right)] * (sign == NONNEGATIVE)
             continue
@@ -210,17 +202,15 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
             stack.append((left, right, depth))
             break
         stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
-    rest = sum(_float(b) - _float(a) for a, b, _ in stack)
     if stack:
-        where = _ends(region, stack[-1][0], stack[0][1])
-        fact = Fact("assumed", f"whether {name} is negative is open from s = {where[0]:.6g} on", where, rest)
-        return fact, fact
+        where, rest = region.between(stack[-1][0], stack[0][1]), sum(_float(b) - _float(a) for a, b, _ in stack)
+        text = f"whether {name} is negative is open from s = {where[0]:.6g} on"
+        return (Fact("assumed", text, where, rest),) * 2
     met = Fact("met", f"{name} is enclosed at every distance")
-    if weak:
-        where = _ends(region, weak[0][0], weak[-1][1])
-        width = sum(_float(b) - _float(a) for a, b in weak)
-        return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
-    return met, met
+    if not weak:
+        return met, met
+    where, width = region.between(weak[0][0], weak[-1][1]), sum(_float(b) - _float(a) for a, b in weak)
+    return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
 
 
 def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
@@ -261,15 +251,14 @@ def least_on(region: Region, scale: float) -> Least:
         while looked < MOST // 2:
             looked += 1
             low, _, left, right = heap[0]
-            if low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best))):
-                break
-            if (right - left) * 2**_NARROWEST < region.right - region.left:
+            close = low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best)))
+            if close or (right - left) * 2**_NARROWEST < region.right - region.left:
                 break
             heapq.heappop(heap)
             middle = (left + right) / 2
             bound_part(left, middle)
             bound_part(middle, right)
-        return Least(min(heap[0][0], down(best)), up(best), region.place(_float(where)))
+        return Least(min(heap[0][0], down(best)), up(best), region.place(where))
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:

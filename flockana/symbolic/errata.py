@@ -54,6 +54,12 @@ class RisingEnergy:
     true_rate: sp.Expr
 
 
+def with_pair_law(expression: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
+    """Return an expression with the paper's functions for phi_alpha and a_ij."""
+    concrete = expression.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
+    return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+
+
 def e1_counterexample() -> RisingEnergy:
     """Return two agents on a line, too close and separating, at which the printed H rises.
 
@@ -69,8 +75,6 @@ def e1_counterexample() -> RisingEnergy:
     def rate(factor: sp.Expr) -> sp.Expr:
         flock = ConcreteFlock("algorithm1", 2, 1, gains, factor)
         values = {row[0]: x for part, state in ((flock.q, q), (flock.p, p)) for row, x in zip(part, state, strict=True)}
-        at_state = flock.rate.subs({**values, EPS: alpha.eps})
-        concrete = at_state.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
-        return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+        return with_pair_law(flock.rate.subs({**values, EPS: alpha.eps}), alpha)
 
     return RisingEnergy(alpha, gains, q, p, rate(sp.S.One), rate(HALF))

@@ -1,12 +1,13 @@
 """Leading behaviour of a formula just above a point: a power of the distance times an enclosed factor."""
 
 from fractions import Fraction
+from math import prod
 from typing import Any, NamedTuple
 
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.symbolic.enclosed import Enclosed
+from flockana.symbolic.enclosed import Enclosed, rational
 
 _ODD = (sp.sin, sp.tan, sp.sinh, sp.tanh, sp.asin, sp.atan, sp.asinh, sp.atanh)  # they vanish at 0
 _SLOW = Fraction(1, 64)  # a logarithm grows slower than this power
@@ -55,11 +56,8 @@ class _GermVisitor:
         if node.is_Add:
             return self._sum([self.of(each) for each in node.args])
         if node.is_Mul:
-            power, factor = Fraction(0), arb(1)
-            for each in node.args:
-                one = self.of(each)
-                power, factor = power + one.power, factor * one.factor
-            return Germ(power, factor)
+            powers, factors = zip(*(self.of(each) for each in node.args), strict=True)
+            return Germ(sum(powers, Fraction(0)), prod(factors, start=arb(1)))
         if node.is_Pow and node.exp.is_Rational:
             return self._power(self.of(node.base), node.exp)
         if node.is_Pow:
@@ -68,22 +66,17 @@ class _GermVisitor:
 
     def _sum(self, terms: list[Germ]) -> Germ:
         least = min(each.power for each in terms)
-        total = arb(0)
-        for each in terms:
-            total += each.factor * self._until(each.power - least)
-        return Germ(least, total)
+        return Germ(least, sum((each.factor * self._until(each.power - least) for each in terms), arb(0)))
 
     def _until(self, power: Fraction) -> arb:
         """Return the range of t^power, power ≥ 0."""
         if power == 0:
             return arb(1)
-        return arb(0).union((self.width.log() * arb(fmpq(power.numerator, power.denominator))).exp().upper())
+        return arb(0).union((self.width.log() * arb(rational(power))).exp().upper())
 
     def _power(self, base: Germ, exponent: sp.Rational) -> Germ:
-        power = Fraction(int(exponent.p), int(exponent.q))
-        x = sp.Symbol("x", positive=True)
-        factor = _first(Enclosed(x**exponent, x), base.factor)
-        return Germ(base.power * power, factor)
+        x, power = sp.Symbol("x", positive=True), Fraction(int(exponent.p), int(exponent.q))
+        return Germ(base.power * power, _first(Enclosed(x**exponent, x), base.factor))
 
     def _function(self, of: Any, argument: Germ) -> Germ:
         none = Fraction(0)
@@ -113,10 +106,10 @@ class _GermVisitor:
         """Return the germ of log(t^k N) = k log t + log N, with a bound of t^(1/64) |log t|."""
         if not argument.factor > 0 or not self.width < 1:
             raise _UnknownError
-        slow = arb(fmpq(_SLOW.numerator, _SLOW.denominator))
+        slow = arb(rational(_SLOW))
         turn = (-1 / slow).exp()  # where t^slow |log t| is largest, 1/(slow e)
         most = 1 / (slow * arb(1).exp()) if self.width >= turn else -self.width.log() * (self.width.log() * slow).exp()
-        power = arb(fmpq(argument.power.numerator, argument.power.denominator))
+        power = arb(rational(argument.power))
         return Germ(-_SLOW, -power * arb(0).union(most.upper()) + argument.factor.log() * self._until(_SLOW))
 
 

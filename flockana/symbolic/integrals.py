@@ -1,5 +1,6 @@
 """Bounds of a potential given by its slope: sums of Taylor integrals with enclosed remainders."""
 
+from functools import reduce
 from math import inf
 
 from flint import arb, fmpq
@@ -34,12 +35,7 @@ def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tupl
                 highs.append(total.upper())
         if at_anchor is None:
             at_anchor = total
-        least = arb.pos_inf()
-        for low in lows:
-            least = least.min(low)
-        most = arb.pos_inf()
-        for high in highs:
-            most = most.min(high)
+        least, most = reduce(arb.min, lows), reduce(arb.min, highs)
         return (down(least - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
 
 
@@ -51,17 +47,13 @@ def _parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
         left, right, depth = stack.pop()
         middle, half = (left + right) / 2, (right - left) / 2
         found, at = of.series(interval(left, right)), of.series(arb(middle))
-        done = found is not None and at is not None
         if found is not None and at is not None:
             whole = sum((2 * at[k] * arb(half) ** (k + 1) / (k + 1) for k in range(0, _TERMS - 1, 2)), arb(0))
-            last = _TERMS - 1
-            rest = 2 * arb(half) ** _TERMS / _TERMS * found[last].abs_upper()
+            rest = 2 * arb(half) ** _TERMS / _TERMS * found[_TERMS - 1].abs_upper()
             crosses = found[0].contains(0) and float((found[0].abs_upper() * arb(2 * half)).upper()) > _EXACT * scale
-            done = float(rest) <= _EXACT * scale and not (crosses and depth < _HALVINGS)
-            if done:
+            if float(rest) <= _EXACT * scale and not (crosses and depth < _HALVINGS):
                 parts.append((whole + arb(0, rest), found[0], arb(2 * half)))
-        if done:
-            continue
+                continue
         if depth >= _HALVINGS or len(parts) + len(stack) > _MOST:
             return None
         stack += [(middle, right, depth + 1), (left, middle, depth + 1)]

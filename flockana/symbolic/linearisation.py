@@ -7,14 +7,13 @@ blocks for every n. The action functions and weights stay generic: φ' and a' ar
 from typing import Any
 
 import sympy as sp
-from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import GenericPair
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.obstacles import PHI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector
+from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector, with_derivative
 from flockana.symbolic.parameters import GAINS, GainSymbols
 from flockana.symbolic.theorem6 import gamma_force
 
@@ -26,11 +25,9 @@ PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
 
 def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
     """Return the derivative of a force, one column per variable, in terms of named functions of σ."""
-    aware = {}
-    for function, slope in table.items():  # the same function, with its derivative
-        derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
-        aware[function] = UndefinedFunction(f"{function.__name__}*", real=True, __dict__=derivative)
-        force = force.replace(function, aware[function])
+    aware = {function: with_derivative(f"{function.__name__}*", slope) for function, slope in table.items()}
+    for function, differentiable in aware.items():
+        force = force.replace(function, differentiable)
     slopes = sp.Matrix(force).jacobian(sp.Matrix(list(variables))).xreplace({sigma: z}).subs(1 + EPS * sigma, ROOT)
     return sp.ImmutableMatrix(slopes.xreplace({aware[function](z): function(z) for function in table}))
 

@@ -8,13 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import sympy as sp
-from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.pair import along_flow, vector, with_derivative
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 KINDS = ("wall", "sphere")
@@ -25,7 +24,7 @@ TANGENT_SQUARE = sp.Symbol("T", nonnegative=True)  # |P p|^2
 DEPTH = sp.Symbol("tau", positive=True)
 PHI_BETA = sp.Function("phi_beta", real=True)
 WEIGHT = sp.Function("b", real=True)
-PSI_BETA = UndefinedFunction("psi_beta", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI_BETA(self.args[0])})
+PSI_BETA = with_derivative("psi_beta", PHI_BETA)
 
 
 def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:

@@ -84,8 +84,9 @@ class _NumericFormula:
     def _weights(self) -> list[sp.Expr]:
         return self._chosen(self.cut.formula.adjacency)
 
-    def place(self, y: float) -> float:
+    def place(self, at: fmpq | float) -> float:
         """Return the Euclidean distance of y."""
+        y = float(arb(at))
         return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
 
     def _point(self, mark: sp.Expr, side: int) -> fmpq:
@@ -121,7 +122,7 @@ class _NumericFormula:
                     region = region._replace(left=width)
                     if not known:
                         text = f"whether {what} is smooth near contact is open"
-                        yield Fact("assumed", text, (0.0, self.place(float(arb(width)))), float(arb(width)))
+                        yield Fact("assumed", text, (0.0, self.place(width)), float(arb(width)))
                 for fact in smooth_on(region, what, scale, slope, kinks=kinks):
                     last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
                     at_end = fact.status == "unmet" and last and "no limit" in fact.detail
@@ -144,8 +145,7 @@ class _NumericFormula:
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
         slopes = self._main_pieces if forces else [sp.diff(each, self._y) for each in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
-        if not forces:
-            rows.append((self._main_pieces, "the potential", energy))
+        rows += [] if forces else [(self._main_pieces, "the potential", energy)]
         for k, mark in enumerate(self._marks[1:-1]):
             place = self.place(self.cut.marks[k + 1])
             for row, name, scale in rows:
@@ -165,67 +165,64 @@ class _NumericFormula:
         zero = is_zero(number, self._numbers)
         if zero:
             return
+        status: FactStatus = "assumed"
+        text = f"open is whether {fault}"
         if zero is False:
             with precision(_BITS):
                 size = abs(_value(number.xreplace(self._numbers)))
+            text = f"{fault} by {float(size):.2g}, as by rounding of a parameter"
             if size > _SMALL * scale:
-                yield Fact("unmet", fault, (place, place))
-                return
-            yield Fact("assumed", f"{fault} by {float(size):.2g}, as by rounding of a parameter", (place, place))
-            return
-        yield Fact("assumed", f"open is whether {fault}", (place, place))
+                status, text = "unmet", fault
+        yield Fact(status, text, (place, place))
 
     def _signs(self) -> tuple[Fact, Fact]:
         """Return facts whether the adjacency is nonnegative, and positive below the range."""
         found = []
         for region in self._regions([_factored(each, self._y) for each in self._weights]):
             if region.left == 0 and self._limit(region.exact) is None:
-                near = self._sign_near(region)
-                if near is None:
-                    fact = Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0))
-                    found.append((fact, fact))
-                    continue
-                fact, width = near
+                fact, width = self._sign_near(region)
                 found.append((fact, fact))
+                if fact.status == "assumed":
+                    continue
                 region = region._replace(left=width)
             found.append(sign_on(region, "the adjacency"))
             found += [(Fact("met"), fact) for fact in self._zeros(region)]
-        return conjunction([one for one, _ in found], "its sign is enclosed at every distance"), conjunction(
-            [two for _, two in found], "its sign is enclosed at every distance below the range"
-        )
+        weights, insides = zip(*found, strict=True)
+        text = "its sign is enclosed at every distance"
+        return conjunction(weights, text), conjunction(insides, f"{text} below the range")
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
         """Yield ends of a region, except contact and range, at which the adjacency vanishes or may."""
         for end, at in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
-                place = self.place(float(arb(at)))
+                place = self.place(at)
                 status: FactStatus = "unmet" if zero else "assumed"
                 yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
 
-    def _sign_near(self, region: Region) -> tuple[Fact, fmpq] | None:
-        """Return the sign near contact of a formula that has no value there."""
+    def _sign_near(self, region: Region) -> tuple[Fact, fmpq]:
+        """Return the sign near contact of a formula that has no value there, and how far it is known."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
                 found, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
                 end = region.enclosed.series(arb(width))
-            far = self.place(float(arb(width)))
-            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, far))
+            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, self.place(width)))
             if found is not None and not found.factor.contains(0):
                 return Fact("met") if found.factor > 0 else fault, width
             if falls is None or end is None or falls.factor.contains(0) or end[0].contains(0):
                 continue
             if (falls.factor < 0) == (end[0] > 0):  # it rises to contact from above 0, or falls to it from below
                 return Fact("met") if end[0] > 0 else fault, width
-        return None
+        return Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0)), region.left
 
     def _limit(self, formula: sp.Expr) -> arb | None:
         """Return the value at contact of a formula that is analytic there."""
+        found = Enclosed(formula, self._y)
         with precision(_BITS, 2):
-            width = fmpq(1) / 2**_CLOSE
-            found = Enclosed(formula, self._y)
-            values = None if found.series(interval(fmpq(0), width)) is None else found.series(arb(0))
+            if found.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
+                return None
+            values = found.series(arb(0))
         return None if values is None else values[0]
 
     def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -273,7 +270,7 @@ class _NumericFormula:
                 end = Enclosed(formula, y).series(arb(width))
             if falls is None or end is None or falls.factor.contains(0):
                 continue
-            at_width = Least(down(end[0]), up(end[0]), self.place(float(arb(width))))
+            at_width = Least(down(end[0]), up(end[0]), self.place(width))
             if falls.power <= -1:
                 level = inf if falls.factor < 0 else -inf
                 return (level, level), at_width if level > 0 else Least(-inf, -inf, 0.0), width
@@ -283,7 +280,7 @@ class _NumericFormula:
             return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
         if own is not None and (limit := _bounds(own)) is not None:  # of the narrowest, whose slope has no sign known
             with precision(_BITS):
-                power = (arb(width).log() * arb(fmpq(own.power.numerator, own.power.denominator))).exp()
+                power = (arb(width).log() * arb(rational(own.power))).exp()
                 low = down(own.factor * arb(0).union(power) if own.power > 0 else own.factor)
             return limit, Least(min(low, limit[0]), limit[1], 0.0), width
         return (-inf, inf), Least(-inf, inf, 0.0), width
@@ -293,7 +290,7 @@ class _NumericFormula:
         width = fmpq(1) / 2**_CLOSE
         with precision(4 * _CLOSE):
             end = Enclosed(formula, self._y).series(arb(width))
-            power = arb(fmpq(slope.power.numerator, slope.power.denominator)) + 1
+            power = arb(rational(slope.power)) + 1
             if end is None or not power > 0:
                 return None
             way = slope.factor * (arb(width).log() * power).exp() / power

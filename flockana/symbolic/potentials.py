@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import sympy as sp
 
@@ -64,10 +65,6 @@ class _Potential:
             lambda z: level + self.integral(start, self.cutoff),
         )
 
-    def conditions(self, z: sp.Expr) -> tuple[sp.Basic, sp.Basic, sp.Basic]:
-        """Return the condition of each piece."""
-        return sp.Le(z, self.edge), sp.And(sp.Ge(z, self.edge), sp.Le(z, self.cutoff)), sp.Ge(z, self.cutoff)
-
     def expression(self, z: sp.Expr) -> sp.Expr:
         """Return all pieces in one Piecewise; numeric parameters leave only the case that holds."""
         on_plateau = sp.Ge(self.edge, self.zero)
@@ -109,14 +106,8 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
 def alpha_potential(alpha: AlphaSymbols) -> _Potential:
     """Return the pieces of psi_alpha."""
-
-    def smooth(z: sp.Expr) -> sp.Expr:
-        return phi(z - alpha.d_alpha, alpha=alpha)
-
-    def closed(z: sp.Expr) -> sp.Expr:
-        return alpha_antiderivative(z, alpha=alpha)
-
-    return _Potential(smooth, closed, alpha.d_alpha, alpha.r_alpha, alpha.h)
+    closed = partial(alpha_antiderivative, alpha=alpha)
+    return _Potential(lambda z: phi(z - alpha.d_alpha, alpha=alpha), closed, alpha.d_alpha, alpha.r_alpha, alpha.h)
 
 
 def _beta(beta: BetaSymbols) -> _Potential:
@@ -184,15 +175,15 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
     """Return one step per piece, with the condition under which it holds."""
     psi = sp.Function(name)(Z)
-    texts = (
-        "Plateau, where the bump is 1: closed form.",
-        "Taper: a smooth one-dimensional integral.",
-        "Beyond the cut-off: constant.",
+    edge, cutoff, pieces = potential.edge, potential.cutoff, potential.pieces(zero_on_plateau)
+    rows = (
+        ("Plateau, where the bump is 1: closed form.", sp.Le(Z, edge)),
+        ("Taper: a smooth one-dimensional integral.", sp.And(sp.Ge(Z, edge), sp.Le(Z, cutoff))),
+        ("Beyond the cut-off: constant.", sp.Ge(Z, cutoff)),
     )
-    pieces = potential.pieces(zero_on_plateau)
     return tuple(
         Step(text, sp.Eq(psi, piece(Z), evaluate=False), sp.And(case, where))
-        for text, piece, where in zip(texts, pieces, potential.conditions(Z), strict=True)
+        for (text, where), piece in zip(rows, pieces, strict=True)
     )
 
 
@@ -211,8 +202,7 @@ def derive_psi_alpha() -> Derivation:
     >>> derive_psi_alpha().holds
     True
     """
-    alpha = ALPHA_NAMED
-    potential = alpha_potential(alpha)
+    alpha, potential = ALPHA_NAMED, alpha_potential(ALPHA_NAMED)
     zero, phi_at_zero = _phi_at_zero()
     plateau = sp.Ge(potential.edge, potential.zero)
     antiderivative = sp.Derivative(potential.closed(Z), Z)

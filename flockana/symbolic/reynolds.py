@@ -3,6 +3,7 @@
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.sums import sum_over
 
 FRIENDS, NEGATIVE = sp.symbols("k l", integer=True, positive=True)  # |F+| and |F-|
 _J = sp.Symbol("j", integer=True, positive=True)
@@ -11,15 +12,10 @@ OWN = sp.Symbol("q_i", real=True)
 _PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F-; what has no stress adds nothing
 
 
-def _sum_over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
-    """Return a sum over friends term by term, factors that do not depend on the friend in front."""
-    terms = (term.as_independent(_J) for term in sp.Add.make_args(sp.expand(summand)))
-    return sp.Add(*(front * sp.Sum(rest, limits) for front, rest in terms if front != 0))
-
-
 def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i."""
-    return sp.expand(sp.Add(*(_sum_over(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)), part) for part in _PARTS)))
+    pull = sp.expand(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)))
+    return sp.expand(sp.Add(*(sum_over(pull, part) for part in _PARTS)))
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
@@ -28,8 +24,8 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     # means.
     total = sp.S.Zero
     for part in _PARTS:
-        stress = _sum_over(STRESS[_J], part)
-        mean = _sum_over(STRESS[_J] * (PLACE[_J] + shift), part) / stress
+        stress = sum_over(STRESS[_J], part)
+        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), part) / stress
         total += stress * (mean if printed else mean - (OWN + shift))
     return sp.expand(total)
 

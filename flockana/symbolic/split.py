@@ -5,9 +5,9 @@ from itertools import chain
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.energy import GenericPair
+from flockana.symbolic.energy import GenericPair, relative_feedback
 from flockana.symbolic.norms import sigma_norm
-from flockana.symbolic.pair import ADJACENCY, own_force, pair_potential, vector
+from flockana.symbolic.pair import ADJACENCY, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 from flockana.symbolic.sums import V, X
 
@@ -37,12 +37,11 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     """
     pair = GenericPair(m, (X, V))
     (x_i, x_j), (v_i, v_j) = pair.q, pair.p
-    q_c, p_c, q_r, p_r = (vector(name, m) for name in ("q_c", "p_c", "q_r", "p_r"))
+    q_c, p_c = vector("q_c", m), vector("p_c", m)
     on_i, on_j = pair.forces(gains)
-    shift = dict(zip([*x_i, *x_j], [*(q_c + x_i), *(q_c + x_j)], strict=True))
-    shift |= dict(zip([*v_i, *v_j], [*(p_c + v_i), *(p_c + v_j)], strict=True))
-    translational = own_force(q_c, p_c, q_r, p_r, gains=gains)
-    own = (own_force(q_c + x_i, p_c + v_i, q_r, p_r, gains=gains) - translational).expand()
+    ends, centres = sp.Matrix.vstack(x_i, x_j, v_i, v_j), sp.Matrix.vstack(q_c, q_c, p_c, p_c)
+    shift = {s: s + c for s, c in zip(ends, centres, strict=True)}
+    own, translational = relative_feedback(x_i, v_i, gains)
     stated = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
     residuals = chain(
         (pair.tidy(term) for term in on_i + on_j),

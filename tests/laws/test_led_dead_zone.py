@@ -14,7 +14,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.terms.leaders import known_path
-from flockana.symbolic.led_dead_zone import led_energy_identity
+from flockana.symbolic.composition import led_energy_identity
 
 LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))
 GROUP, PINNED = (0, 1, 0, 1, 0, 1), (0, 1, 4)
