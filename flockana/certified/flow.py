@@ -1,4 +1,4 @@
-"""Right-hand side of Algorithms 1 to 3 on balls and on power series in time (Arb).
+"""Right-hand side of Algorithms 1 to 3, the laws that `enclose` supports, on balls and on power series in time (Arb).
 
 A state is a list of 2 n m numbers, all coordinates of q and then all of p, agent by agent. What is written here for one
 number holds for a ball (`arb`: an enclosure over all states in a box, also across the distances where the pair law is
@@ -8,15 +8,23 @@ only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from math import sqrt
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
-from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.balls import norm2, series_length
+from flockana.base.errors import ArgumentError
+from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
+from flockana.certified.balls import exact, norm2, series_length
 from flockana.certified.krawczyk import column, identity
 from flockana.certified.series import PairNumbers, Piece
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
+_LED = (Algorithm2, Algorithm3)
 Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
 
 
@@ -164,3 +172,47 @@ def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, valu
 def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
     """Return the k-th coefficients of a table of series."""
     return arb_mat([[x[k] if isinstance(x, arb_series) else (x if k == 0 else 0) for x in row] for row in table])
+
+
+def ensure_enclosable(law: Any) -> None:
+    """Raise unless `enclose` supports a law."""
+    if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
+    if isinstance(law, _LED):
+        ensure_one_gain(law.gains)
+        if type(law.target) not in (StaticTarget, LinearTarget):
+            raise ArgumentError(
+                f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under "
+                "Algorithm 2 the shape moves alike with every target"
+            )
+    if isinstance(law, Algorithm3):
+        for k, obstacle in enumerate(law.obstacles):
+            if type(obstacle) is not Sphere:
+                raise ArgumentError(f"obstacles[{k}] = {obstacle!r}: expected a Sphere, the one kind known in balls")
+
+
+def flow_of(law: Any, n: int, m: int) -> Flow:
+    """Return a law for n agents in m dimensions in balls, each number as its exact decimal."""
+    gains = law.gains
+    terms: tuple[AgentTerm, ...] = ()
+    rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
+    if isinstance(law, _LED):
+        path = law.target.harmonic.terms
+        unit = arb(exact(law.alpha.unit)) if isinstance(law, Algorithm3) else None
+        start, velocity, offset = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
+        declared = tuple(a + b for a, b in zip(velocity, offset, strict=True))  # p_r = dq_r/dt + offset
+        terms = (Pull(start, velocity, declared, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
+        rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
+    if isinstance(law, Algorithm3) and law.obstacles:
+        terms = (*terms, *sphere_terms(law))
+        rates += [gains.c2_beta, sqrt(gains.c1_beta)]
+    stiffness, damping = arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha))
+    return Flow(n, m, PairNumbers.of_alpha(law.alpha), stiffness, damping, max(rates) or 1.0, terms)
+
+
+def sphere_terms(law: Any) -> tuple[SphereTerm, ...]:
+    """Return the terms of a law's obstacles at the present precision."""
+    gains: Any = law.gains
+    beta, pull, drag = PairNumbers.of_beta(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
+    places = [(tuple(arb(exact(y)) for y in one.centre), arb(exact(one.radius))) for one in law.obstacles]
+    return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)

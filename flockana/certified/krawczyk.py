@@ -54,4 +54,4 @@ def least_eigenvalue(matrix: arb_mat) -> arb | None:
 
 def _others(row: Sequence[arb], i: int) -> arb:
     """Return the radius of a Gershgorin disc."""
-    return sum((abs(x) for j, x in enumerate(row) if j != i), arb(0))
+    return sum(map(abs, [*row[:i], *row[i + 1 :]]), arb(0))

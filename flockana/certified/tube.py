@@ -16,7 +16,8 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import ensure_sealed
 from flockana.certified.balls import norm
-from flockana.certified.structural_energy import BITS, structural_energy
+from flockana.certified.energies import BITS, structural_energy
+from flockana.certified.flow import sphere_terms
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:
@@ -189,8 +190,6 @@ class Tube:
 
     def _clearances(self, box: Sequence[arb]) -> list[list[arb]]:
         """Return the clearances of each agent from each obstacle, anywhere in a box."""
-        from flockana.certified.laws import sphere_terms
-
         agents = [box[i : i + self.m] for i in range(0, self.n * self.m, self.m)]
         terms = sphere_terms(self.law) if self.law.obstacles else ()
         return [[term.clearance(x) for x in agents] for term in terms]
@@ -221,11 +220,9 @@ class Tube:
         k : int
             Step; negative from the end.
         """
-        if type(self.law) not in (Algorithm1, Algorithm2):
-            raise ArgumentError(
-                f"law = {self.law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is"
-            )
-        return structural_energy(self.law, *self.state(k))
+        if type(law := self.law) not in (Algorithm1, Algorithm2):
+            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
+        return structural_energy(law, *self.state(k))
 
     def ends_in(self, basin: Basin) -> bool:
         """Return whether every state at the end lies in a certified basin of the same law.

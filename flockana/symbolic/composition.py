@@ -1,4 +1,4 @@
-"""Energy balances of laws written out for three agents: composed laws, velocity consensus, dead zone with leaders.
+"""Energy balances of laws written out for three agents: composed laws, velocity consensus, leaders, copies.
 
 Three agents show every kind of pair, and a pull on one, two or all of them, so the identities are those of every n.
 """
@@ -10,13 +10,15 @@ import sympy as sp
 
 from flockana.base.checks import ensure_dimension
 from flockana.symbolic.dead_zone import K_2
-from flockana.symbolic.derivation import Derivation
+from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.pair import energy_balance, vector, with_derivative
 
 THRUST, BRAKE, DAMPING = sp.symbols("alpha beta c", real=True)
 PULL, MATCH = sp.symbols("c_1 c_2", nonnegative=True)
 WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
 _N = 3
+T = sp.Symbol("t", real=True)
+K1, K2, STIFFNESS, DRAG = sp.symbols("k_1 k_2 k b", real=True)  # of copies of a γ-agent with dynamics
 _GROUP, _PINNED = (0, 0, 1), (0,)  # two agents of one leader, the first of them pinned, and one of another
 _HALF_PULL = sp.Function("W", real=True)  # F(rho)/2rho as a function of rho^2: no roots, so residuals are polynomials
 _OF_SQUARE = with_derivative("psi", _HALF_PULL)
@@ -114,3 +116,36 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
     flow = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
     title = "Energy of the dead-zone law with leaders"
     return energy_balance(title, energy, lost, *flow, of="The energy in the frames of the leaders,")
+
+
+def copies_balance() -> Derivation:
+    """Derive what the pull to a copy adds to dH/dt, a component of one agent: q'' = f - c1 (q - q_r) - c2 (q' - q_r').
+
+    f is all else; what it does, p f, is counted where its energy is.
+    """
+    q, place, other = (sp.Function(name)(T) for name in ("q", "q_r", "f"))
+    p, rate = q.diff(T), place.diff(T)
+    acceleration = other - PULL * (q - place) - MATCH * (p - rate)
+    energy = PULL * (q - place) ** 2 / 2 + p**2 / 2
+    along = energy.diff(T).subs(q.diff(T, 2), acceleration) - p * other
+    stated = -MATCH * p * (p - rate) - PULL * (q - place) * rate
+    steps = (
+        Step("Energy of one agent and its copy, a component of each:", energy),
+        Step("Its rate along the law, without the power of all else:", sp.expand(along)),
+    )
+    return Derivation("Balance of an agent and its copy", steps, stated, (sp.expand(along - stated),))
+
+
+def copies_part() -> Derivation:
+    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
+    copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
+    mean = sum(copies) / 3
+    pulls = (K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies)
+    pulled = {q.diff(T, 2): -STIFFNESS * q - DRAG * q.diff(T) + pull for q, pull in zip(copies, pulls, strict=True)}
+    away = copies[0] - mean
+    left = away.diff(T, 2).subs(pulled)
+    right = -(STIFFNESS + K1) * away - (DRAG + K2) * away.diff(T)
+    d = sp.Function("d")(T)
+    result = sp.Eq(d.diff(T, 2), (-DRAG - K2) * d.diff(T) + (-STIFFNESS - K1) * d)
+    steps = (Step("Of a copy less the mean:", result),)
+    return Derivation("How copies part", steps, result, (sp.expand((left - right).doit()),))

@@ -1,4 +1,4 @@
-"""Decisions about a formula over an interval by branch and bound: smoothness, sign and least value.
+"""Decisions about a formula over an interval by branch and bound: smoothness, sign, least value of it or its integral.
 
 Intervals are halved until an enclosure decides. What decides is the number of intervals, never the clock, so that the
 answer is the same on every machine.
@@ -6,6 +6,7 @@ answer is the same on every machine.
 
 import heapq
 from collections.abc import Callable
+from functools import reduce
 from itertools import count
 from math import inf, nextafter
 from typing import NamedTuple
@@ -25,6 +26,11 @@ _ORDERS = 8  # of the first derivative that is not 0
 _CLOSED, _CLOSED_OF_SCALE = 1e-13, 1e-15  # to which a least value is known, relative to it or to the scale
 _NARROWEST = 80  # halvings of an interval on which a least value is sought
 _BITS = 96
+_INTEGRAL_BITS, _TERMS = 128, 10  # of Taylor integrals with enclosed remainders
+_PARTS, _FINEST = 4000, 40  # intervals of a region, and halvings
+_EXACT = 1e-15  # of the scale: remainder of an interval
+_UNKNOWN = ((-inf, inf), (-inf, inf))
+Bounds = tuple[float, float]
 
 
 def down(x: arb) -> float:
@@ -40,18 +46,14 @@ def up(x: arb) -> float:
 
 def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | None:
     """Return whether a number is 0, by algebra or by its enclosure; None if undecided."""
-    if expression == 0:
-        return True
     exact = expression.xreplace(numbers)
-    if exact == 0:
+    if expression == 0 or exact == 0:
         return True
     with precision(600):
         value = Enclosed(exact, sp.Dummy()).series(arb(0))
-    if value is None:
-        return None
-    if not value[0].contains(0):
+    if value is not None and not value[0].contains(0):
         return False
-    return True if sp.expand(exact) == 0 or sp.expand(sp.together(exact)) == 0 else None
+    return True if value is not None and 0 in (sp.expand(exact), sp.expand(sp.together(exact))) else None
 
 
 class Region(NamedTuple):
@@ -128,7 +130,7 @@ def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: t
                 sides.append([of.series(arb(point)) for point in points])
     if any(all(values is None for values in side) for side in sides):
         return Fact("unmet", f"{name} has no finite real value at s = {place:.6g}", witness)
-    if any(values is None for side in sides for values in side):
+    if any(None in side for side in sides):
         return Fact("assumed", f"whether {name} is defined at s = {place:.6g} is open", witness)
     for order, (scale, word) in enumerate(zip(scales, (name, kinks), strict=True)):
         if not word:
@@ -161,14 +163,10 @@ def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
     """Return the sign of a formula beside an end where it vanishes, and how far it holds; else (0, 0)."""
     derivative, whole = region.expression, region.right - region.left
     end = region.ends[side]
-    for order in range(_ORDERS):
-        zero = is_zero(derivative.subs(region.variable, end), region.numbers)
-        if zero is None or (order == 0 and not zero):
-            return 0, fmpq(0)
-        if not zero:
-            break
-        derivative = sp.diff(derivative, region.variable)
-    else:
+    order = 0
+    while (zero := is_zero(derivative.subs(region.variable, end), region.numbers)) and order < _ORDERS - 1:
+        derivative, order = sp.diff(derivative, region.variable), order + 1
+    if zero is not False or order == 0:
         return 0, fmpq(0)
     of = region.enclosed
     for halving in range(2, 60):
@@ -279,3 +277,46 @@ def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
         square = (off * off).nonnegative_part()
         low = low.max((at[0] + at[1] * off + found[2] * square).lower())
     return low, seen, middle
+
+
+def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
+    """Return bounds of an integral's least value and of its value at the left end; it is 0 at the anchor."""
+    total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
+    with precision(_INTEGRAL_BITS, _TERMS):
+        for region in regions:
+            if abs(float(arb(region.left - anchor))) <= 1e-20 * float(arb(region.right)):
+                at_anchor = total
+            parts = _taylor_parts(region, scale)
+            if parts is None:
+                return _UNKNOWN
+            for whole, slope, width in parts:
+                if slope.contains(0):
+                    lows.append((total + arb(0).union(slope * width)).lower())
+                total += whole
+                lows.append(total.lower())
+                highs.append(total.upper())
+        if at_anchor is None:
+            at_anchor = total
+        least, most = reduce(arb.min, lows), reduce(arb.min, highs)
+        return (down(least - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
+
+
+def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
+    """Return integral, range and width of intervals on which Taylor's formula is exact to rounding."""
+    of, parts = region.enclosed, []
+    stack = [(region.left, region.right, 0)]
+    while stack:
+        left, right, depth = stack.pop()
+        middle, half = (left + right) / 2, (right - left) / 2
+        found, at = of.series(interval(left, right)), of.series(arb(middle))
+        if found is not None and at is not None:
+            whole = sum((2 * at[k] * arb(half) ** (k + 1) / (k + 1) for k in range(0, _TERMS - 1, 2)), arb(0))
+            rest = 2 * arb(half) ** _TERMS / _TERMS * found[_TERMS - 1].abs_upper()
+            crosses = found[0].contains(0) and float((found[0].abs_upper() * arb(2 * half)).upper()) > _EXACT * scale
+            if float(rest) <= _EXACT * scale and not (crosses and depth < _FINEST):
+                parts.append((whole + arb(0, rest), found[0], arb(2 * half)))
+                continue
+        if depth >= _FINEST or len(parts) + len(stack) > _PARTS:
+            return None
+        stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+    return parts

@@ -1,25 +1,25 @@
-"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential."""
+"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential, slopes."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite, sqrt
+from typing import NamedTuple
 
 import sympy as sp
 from flint import arb, fmpq
 
 from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
-from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
-from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
-from flockana.symbolic.germs import Germ, germ
-from flockana.symbolic.integrals import least_of_integral
-from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, Z
+from flockana.symbolic.decide import Least, Region, down, is_zero, least_of_integral, least_on, sign_on, smooth_on, up
+from flockana.symbolic.enclosed import Enclosed, Germ, germ, interval, precision, rational
+from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, S, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
 _NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach
 _CLOSE = 400  # the same, where the limit at contact is read
 _BITS = 200
+_SLOPE_BITS, _SLOPE_HALVINGS = 96, 6  # halvings of a part, for a bound within twice the slope at its middle
 _PROOF = "every operation of the formula is analytic between the cuts, and both sides agree at them"
 
 
@@ -70,8 +70,11 @@ class _NumericFormula:
     @cached_property
     def _marks(self) -> list[sp.Expr]:
         """Symbols of 0, the cuts and the range."""
-        in_norm = self._y == Z
-        return [sp.Integer(0), *self.cut.exact_marks[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
+        return [sp.Integer(0), *self.cut.exact_marks[1:-1], self._declared("r")]
+
+    def _declared(self, name: str) -> sp.Symbol:
+        """Return the symbol of the range or the length in the formula's distance."""
+        return sp.Symbol(f"{name}_z" if self._y == Z else name, positive=True)
 
     def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
         return [self.cut.chosen(formula, 0.5 * (a + b)) for a, b in pairwise(self.cut.marks)]
@@ -101,7 +104,7 @@ class _NumericFormula:
 
     def _regions(self, formulas: list[sp.Expr], *, split: bool = True) -> Iterator[Region]:
         """Yield regions of each formula between marks, also split at the desired distance."""
-        length = sp.Symbol("d_z" if self._y == Z else "d", positive=True)
+        length = self._declared("d")
         for formula, (left, right) in zip(formulas, pairwise(self._marks), strict=True):
             inside = self._point(left, 1) < self._point(length, 0) and self._point(length, 1) < self._point(right, 0)
             for a, b in pairwise([left, length, right] if split and inside else [left, right]):
@@ -230,15 +233,10 @@ class _NumericFormula:
         scale = self.strength * self.cut.end
         if self.cut.formula.forces:
             regions = list(self._regions(self._main_pieces))
-            length = self._point(sp.Symbol("d_z" if self._y == Z else "d", positive=True), 0)
-            return least_of_integral(regions, length, scale)
-        found, contact, regions = [], (-inf, inf), list(self._regions(self._main_pieces))
-        for region in regions:
-            left = region.left
-            if left == 0:
-                contact, least, left = self._contact(region)
-                found.append(least)
-            found.append(least_on(region._replace(left=left), scale))
+            return least_of_integral(regions, self._point(self._declared("d"), 0), scale)
+        first, *rest = regions = list(self._regions(self._main_pieces))
+        contact, least, left = self._contact(first)
+        found = [least, *(least_on(region, scale) for region in (first._replace(left=left), *rest))]
         low, high = min(each.low for each in found), min(each.high for each in found)
         return self._sharpened(regions, low, high), contact
 
@@ -314,3 +312,43 @@ def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
     """Return a polynomial as a product, in which double zeros are visible."""
     small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
     return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
+
+
+class SlopeBound(NamedTuple):
+    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where unknown."""
+
+    left: float
+    right: float
+    force: float
+    adjacency: float
+
+
+def slope_bounds(
+    cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
+) -> tuple[SlopeBound, ...]:
+    """Return bounds of the slopes on equal parts of the range, also split at the cuts."""
+    numbers, found = exact_numbers(cut.numbers, eps), []
+    root = sp.sqrt(1 + EPS * S**2)
+    norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
+    edges = sorted({r * k / parts for k in range(parts)} | {*places, r})
+    for left, right in pairwise(edges):
+        middle = 0.5 * (left + right)
+        at = middle * middle / ((1.0 + eps * middle * middle) ** 0.5 + 1.0) if eps else middle
+        main, weight = (cut.chosen(each, at).subs(Z, norm) for each in (cut.formula.main, cut.formula.adjacency))
+        force, order = (main * along, 1) if cut.formula.forces else (main, 2)
+        rows = (Enclosed(force.xreplace(numbers), S), order), (Enclosed(weight.xreplace(numbers), S), 1)
+        ends = fmpq(*left.as_integer_ratio()), fmpq(*right.as_integer_ratio())
+        found.append(SlopeBound(left, right, *(order * _most(of, order, *ends, 0) for of, order in rows)))
+    return tuple(found)
+
+
+def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:
+    """Return a bound of a Taylor coefficient on an interval."""
+    middle = (left + right) / 2
+    with precision(_SLOPE_BITS, order + 1):
+        found, at = of.series(interval(left, right)), of.series(arb(middle))
+        if found is not None and at is not None and found[order].abs_upper() <= 2 * at[order].abs_upper():
+            return up(found[order].abs_upper())
+    if depth >= _SLOPE_HALVINGS:
+        return inf if found is None else up(found[order].abs_upper())
+    return max(_most(of, order, *ends, depth + 1) for ends in ((left, middle), (middle, right)))

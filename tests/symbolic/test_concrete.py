@@ -25,11 +25,6 @@ def test_the_chain_rule_gives_the_closed_form(law: str, n: int, m: int) -> None:
     assert ConcreteFlock(law, n, m).residual == 0
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_a_wrong_kinetic_factor_leaves_a_residual(law: str) -> None:
-    assert ConcreteFlock(law, 2, 1, kinetic_factor=sp.S.One).residual != 0
-
-
 def test_laplacian_has_zero_rows_and_the_quadratic_form_of_its_edges() -> None:
     flock = ConcreteFlock("algorithm1", 3, 1)
     laplacian = flock.laplacian

@@ -11,11 +11,10 @@ from flockana import symbolic
 from flockana.symbolic import bearing_distance as zone
 from flockana.symbolic import (
     composition,
-    copies,
     dead_zone,
+    errata,
     linearisation,
     obstacles,
-    reynolds,
     spanning_trees,
     theorem6,
     translational,
@@ -148,7 +147,7 @@ DERIVATIONS: dict[str, tuple[tuple[str, Made], ...]] = {
         ("derive_psi_alpha", symbolic.derive_psi_alpha),
         ("derive_psi_beta", symbolic.derive_psi_beta),
         ("derive_split", symbolic.derive_split),
-        ("reynolds.reynolds_form", reynolds.reynolds_form),
+        ("errata.reynolds_form", errata.reynolds_form),
     ),
     "Energy along the flow": (
         ("algorithm1_identity", symbolic.algorithm1_identity),
@@ -157,8 +156,8 @@ DERIVATIONS: dict[str, tuple[tuple[str, Made], ...]] = {
         ("composition.matching_identity", composition.matching_identity),
         ("composition.given_frame_identity", composition.given_frame_identity),
         ("composition.moving_frame_identity", composition.moving_frame_identity),
-        ("copies.copies_balance", copies.copies_balance),
-        ("copies.copies_part", copies.copies_part),
+        ("composition.copies_balance", composition.copies_balance),
+        ("composition.copies_part", composition.copies_part),
     ),
     "Obstacles and Theorem 6": (
         ('obstacles.derive_envelope("wall")', lambda: obstacles.derive_envelope("wall")),

@@ -11,7 +11,7 @@ _SHIFT = 10.0  # of d
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    from flockana.symbolic.reynolds import reynolds_form
+    from flockana.symbolic.errata import reynolds_form
 
     printed, true = reynolds_form(printed=True), reynolds_form()
     return [

@@ -18,9 +18,8 @@ from flockana import (
     simulate,
     verify,
 )
-from flockana.certified.flow import Flow
-from flockana.certified.laws import flow_of
-from flockana.certified.total_energy import powers_during, total_energy, work
+from flockana.certified.energies import powers_during, total_energy, work
+from flockana.certified.flow import Flow, flow_of
 from tests.theorems.made_up import statuses
 
 LAW = Algorithm3(
