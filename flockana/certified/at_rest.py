@@ -30,7 +30,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     if u.m == 3 and sizes[1] <= _COLLINEAR * sizes[0]:  # its orbit is a sphere
         raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
     x = _refined(u, q)
-    radius = ball(half_width(u))
+    radius = ball(BOX * u.par.d)
     centre = [arb(y) for y in x]
     if not regular(u, x, radius):
         raise SolverError("the equilibrium's rotations may be dependent: its agents are nearly on one line")
@@ -71,11 +71,6 @@ def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
     """Return whether no configuration in the box has a rotation orthogonal to all those of the computed one."""
     fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
-
-
-def half_width(u: Structure) -> fmpq:
-    """Return the half-width of the box in which the equilibrium is unique."""
-    return BOX * u.par.d
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:

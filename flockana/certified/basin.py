@@ -33,7 +33,7 @@ from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_text
-from flockana.certified.at_rest import centred, enclose_rest, half_width, rotated_to, unique_projection
+from flockana.certified.at_rest import BOX, centred, enclose_rest, rotated_to, unique_projection
 from flockana.certified.balls import ball, norm, norm2
 from flockana.certified.decimals import fraction, round_down
 from flockana.certified.lyapunov import Bounds, Decay, damping, decay
@@ -267,6 +267,6 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
         overshoot=fraction(found.overshoot),
         distance=fraction(round_down(apart, _STATED)),
         connected=second > 0,
-        proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
+        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second, degree, bounds, found),
     )
     return sealed(basin)

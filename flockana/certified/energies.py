@@ -51,7 +51,7 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
 def _pair_energy(law: Any, q: Vectors) -> arb:
     """Return c1α V."""
     squares = (norm2(_minus(y, x)) for x, y in combinations(q, 2))
-    return arb(exact(law.gains.c1_alpha)) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
+    return gain(law) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
 
 
 def _inertia(x: Vectors) -> arb:
@@ -117,7 +117,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
     q = coincident_lattice(alpha, n, m)
     with ctx.workprec(BITS):
         rows = [[arb(float(a)) for a in x] for x in q]
-        s2 = (norm2([a - b for a, b in zip(x, y, strict=True)]) for x, y in combinations(rows, 2))
+        s2 = (norm2(_minus(x, y)) for x, y in combinations(rows, 2))
         return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
 

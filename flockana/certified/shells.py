@@ -203,7 +203,8 @@ class BondTable:
             for slack in _SLACKS:
                 a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
                 b = [proposed_across(y, own[0], x[inside], *own[1:], eta) for y, own in zip(a, near, strict=True)]
-                least = _least(fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1))
+                matrix = fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1)
+                least = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
                 if least > curvatures[i]:
                     curvatures[i], along[i], across[i] = least, a, b
         return ProposedBounds(radius, along, across, curvatures)
@@ -230,10 +231,6 @@ class BondTable:
                 parts[1, k] += moved @ moved.T - np.outer(along, along)
         own = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
         return parts[0], parts[1], own * np.eye(len(basis))
-
-
-def _least(matrix: FloatArray) -> float:
-    return float(np.linalg.eigvalsh(matrix)[0]) if len(matrix) else np.inf
 
 
 @dataclass(frozen=True)

@@ -131,10 +131,9 @@ class _Reader:
             return self._number(node.value)
         if isinstance(node, ast.Name):
             if node.id not in self.names:
-                raise ArgumentError(
-                    f"{self.where} has the unknown name {node.id!r}: expected one of "
-                    f"{', '.join(sorted(self.names))}; give a parameter its value, parameters={{{node.id!r}: ...}}"
-                )
+                known, remedy = ", ".join(sorted(self.names)), f"parameters={{{node.id!r}: ...}}"
+                fault = f"{self.where} has the unknown name {node.id!r}: expected one of {known}"
+                raise ArgumentError(f"{fault}; give a parameter its value, {remedy}")
             return self.names[node.id]
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
             value = self._value(node.operand, depth)

@@ -24,11 +24,8 @@ Z = sp.Symbol("z", nonnegative=True)
 _S = sp.Symbol("s", nonnegative=True)
 Scalar = Callable[[sp.Expr], sp.Expr]
 
-ALPHA_NAMED = AlphaSymbols(
-    c=sp.Symbol("c", nonnegative=True),
-    d_alpha=sp.Symbol("d_alpha", positive=True),
-    r_alpha=sp.Symbol("r_alpha", positive=True),
-)
+_D, _R = sp.symbols("d_alpha r_alpha", positive=True)
+ALPHA_NAMED = AlphaSymbols(c=sp.Symbol("c", nonnegative=True), d_alpha=_D, r_alpha=_R)
 BETA_NAMED = BetaSymbols(d_beta=sp.Symbol("d_beta", positive=True))
 
 
@@ -41,6 +38,10 @@ class _Potential:
     zero: sp.Expr
     cutoff: sp.Expr
     h: sp.Expr
+
+    def __post_init__(self) -> None:
+        if self.h == 1:
+            raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
 
     @property
     def edge(self) -> sp.Expr:
@@ -116,12 +117,6 @@ def _beta(beta: BetaSymbols) -> _Potential:
     return _Potential(smooth, closed, beta.d_beta, beta.d_beta, beta.h)
 
 
-def _refuse_indicator(h: sp.Expr) -> None:
-    """Raise for h = 1, at which there is no taper to integrate over."""
-    if h == 1:
-        raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
-
-
 @check_kinds
 def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the potential psi_alpha(z), integral of phi_alpha from d_alpha (Olfati-Saber 2006).
@@ -142,7 +137,6 @@ def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     >>> psi_alpha(sp.Integer(0), alpha=paper).evalf(17)
     52.383811786644864
     """
-    _refuse_indicator(alpha.h)
     return alpha_potential(alpha).expression(sp.sympify(z))
 
 
@@ -165,7 +159,6 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     >>> psi_beta(sp.Integer(2), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
     0
     """
-    _refuse_indicator(beta.h)
     potential = _beta(beta)
     near, middle, _ = potential.pieces(zero_on_plateau=False)
     z = sp.sympify(z)
@@ -205,21 +198,14 @@ def derive_psi_alpha() -> Derivation:
     alpha, potential = ALPHA_NAMED, alpha_potential(ALPHA_NAMED)
     zero, phi_at_zero = _phi_at_zero()
     plateau = sp.Ge(potential.edge, potential.zero)
-    antiderivative = sp.Derivative(potential.closed(Z), Z)
+    named = sp.Function("phi")
+    force = sp.Eq(named(Z - alpha.d_alpha), potential.smooth(Z), evaluate=False)
+    vanishing = sp.Eq(named(0), zero, evaluate=False)
+    closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
     steps = (
-        Step(
-            r"The force integrated: $\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha)$ with",
-            sp.Eq(sp.Function("phi")(Z - alpha.d_alpha), potential.smooth(Z), evaluate=False),
-        ),
-        Step(
-            r"It vanishes at $d_\alpha$, since $\sqrt{1 + c^2} = (a + b)/\sqrt{4ab}$:",
-            sp.Eq(sp.Function("phi")(0), zero, evaluate=False),
-            sp.Le(alpha.a, alpha.b),
-        ),
-        Step(
-            "A closed antiderivative, checked by differentiating:",
-            sp.Eq(antiderivative, sp.diff(potential.closed(Z), Z), evaluate=False),
-        ),
+        Step(r"The force integrated: $\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha)$ with", force),
+        Step(r"It vanishes at $d_\alpha$, since $\sqrt{1 + c^2} = (a + b)/\sqrt{4ab}$:", vanishing, alpha.a <= alpha.b),
+        Step("A closed antiderivative, checked by differentiating:", closed),
         *_piece_steps("psi_alpha", potential, True, plateau),
         *_piece_steps("psi_alpha", potential, False, sp.Not(plateau)),
     )
@@ -236,12 +222,10 @@ def derive_psi_beta() -> Derivation:
     True
     """
     potential = _beta(BETA_NAMED)
+    closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
+    first = r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:"
     steps = (
-        Step(
-            r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:",
-            sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False),
-            sp.Lt(Z, potential.edge),
-        ),
+        Step(first, closed, sp.Lt(Z, potential.edge)),
         *_piece_steps("psi_beta", potential, False, sp.true),
     )
     return Derivation(r"The potential $\psi_\beta$", steps, psi_beta(Z, beta=BETA_NAMED), potential.residuals(False))

@@ -1,7 +1,5 @@
 """Algorithm 2 split into structural and linear translational dynamics, and the latter's transfer functions."""
 
-from itertools import chain
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
@@ -105,14 +103,6 @@ def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) 
     return gains.c2_gamma**2 * (1 - exact("scale", scale) ** 2) - 2 * gains.c1_gamma
 
 
-def _gradient_residual(pair: GenericPair, gains: GainSymbols) -> list[sp.Expr]:
-    """Return the pair's force on i less -grad_i of its potential less its share -c2 (L v)_i."""
-    (x_i, x_j), (v_i, v_j) = pair.q, pair.p
-    gradient = pair_potential(x_i, x_j, gains=gains).diff(x_i)
-    consensus = gains.c2_alpha * ADJACENCY(sigma_norm(x_j - x_i)) * (v_j - v_i)
-    return [pair.tidy(term) for term in pair.forces(gains)[0] + gradient - consensus]
-
-
 def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     """Derive the split of Algorithm 2 into structural and translational dynamics, exact for generic n.
 
@@ -136,12 +126,10 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     shift = {s: s + c for s, c in zip(ends, centres, strict=True)}
     own, translational = relative_feedback(x_i, v_i, gains)
     stated = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
-    residuals = chain(
-        (pair.tidy(term) for term in on_i + on_j),
-        (pair.tidy(term) for term in on_i.xreplace(shift) - on_i),
-        (own - stated).expand(),
-        _gradient_residual(pair, gains),
-    )
+    gradient = pair_potential(x_i, x_j, gains=gains).diff(x_i)
+    consensus = gains.c2_alpha * ADJACENCY(sigma_norm(x_j - x_i)) * (v_j - v_i)
+    between = (*(on_i + on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
+    residuals = (*map(pair.tidy, between), *(own - stated).expand())
     f_ij, f_ji = sp.symbols("f_ij f_ji")
     relative = sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i)))
     steps = (
@@ -160,4 +148,4 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
         ),
     )
     name = "Algorithm 2: structural and translational dynamics"
-    return Derivation(name, steps, sp.Tuple(own, translational), tuple(residuals))
+    return Derivation(name, steps, sp.Tuple(own, translational), residuals)

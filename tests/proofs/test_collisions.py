@@ -22,7 +22,6 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import contacts
 from proofs import barrier, collisions, distinct_pairs, n_max, point_ratios
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
@@ -58,13 +57,6 @@ def test_without_the_sign_of_the_other_pairs_nothing_follows(monkeypatch):
     monkeypatch.setattr(collisions, "STATE", unsigned)
     k = z3.Real("k")
     assert collisions.at_most(k, "x", budget=(k + 1) * collisions.C1 * collisions.C_STAR).holds is False
-
-
-def test_a_coincident_state_costs_what_the_proof_says():
-    alpha = AlphaInteraction()
-    q = np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [7.0, 0.0]])  # three agents in one place, linked to the fourth
-    assert coincident_pairs(q, 1e-9) == 3
-    assert alpha.potential_energy(q) == pytest.approx(3 * alpha.c_star, rel=1e-12)
 
 
 # one pair after the other

@@ -101,19 +101,6 @@ def test_a_wrong_bump_breaks_both_proofs_about_it(monkeypatch):
     assert "ρ_h at z = 1: value and slope agree from both sides" in failing(smoothness.PROOF.steps())
 
 
-def test_a_wrong_sign_in_phi_breaks_its_signs(monkeypatch):
-    def wrong(f, s, w):
-        return *signs_of_phi.root(w, 1 + (s + signs_of_phi.C) ** 2), (
-            2 * f * w
-            == (signs_of_phi.A + signs_of_phi.B) * (s + signs_of_phi.C) - (signs_of_phi.A - signs_of_phi.B) * w
-        )
-
-    monkeypatch.setattr(signs_of_phi, "sigmoid", wrong)
-    broken = failing(signs_of_phi.PROOF.steps())
-    assert broken[:3] == ["φ(0) = 0 with the given c", "φ(s) < 0 for s < 0", "-b < φ < a"]
-    assert "φ_α < 0 below d_α" in broken  # which rests on these
-
-
 def test_a_linear_gamma_force_would_split(monkeypatch):
     monkeypatch.setattr(structural_split, "gamma_force", lambda q, *rest: -structural_split.GAINS.c1_gamma * q)
     assert len(failing(structural_split.PROOF.steps())) == 2
