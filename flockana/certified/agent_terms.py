@@ -14,7 +14,7 @@ import numpy as np
 from flint import arb
 
 from flockana.base.checks import FloatArray
-from flockana.certified.balls import dot, norm, norm2, square
+from flockana.certified.balls import dot, minus, norm, norm2, square
 from flockana.certified.series import PairNumbers, Piece
 
 Block = list[list[Any]]
@@ -88,13 +88,13 @@ class SphereTerm:
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
         """Return ((x − y)/‖x − y‖, ‖x − y‖)."""
-        away = [a - b for a, b in zip(x, self.centre, strict=True)]
+        away = minus(x, self.centre)
         distance = norm2(away).sqrt()
         return [a / distance for a in away], distance
 
     def clearance(self, x: Sequence[arb]) -> arb:
         """Return ‖x − y‖ − R, negative inside."""
-        return norm([a - b for a, b in zip(x, self.centre, strict=True)]) - self.radius
+        return norm(minus(x, self.centre)) - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
         """Return the piece of ρ_h that holds the clearance, anywhere in a box."""

@@ -34,7 +34,7 @@ from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_text
 from flockana.certified.at_rest import BOX, centred, enclose_rest, rotated_to, unique_projection
-from flockana.certified.balls import ball, norm, norm2
+from flockana.certified.balls import ball, minus, norm, norm2
 from flockana.certified.decimals import fraction, round_down
 from flockana.certified.lyapunov import Bounds, Decay, damping, decay
 from flockana.certified.shells import ROOT_TWO, BondTable, Shells, prove
@@ -124,7 +124,7 @@ class Basin:
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
             turned = rotated_to(self.proof.rest, x, shape)
-            distance = norm([a - b for a, b in zip(x, turned, strict=True)])
+            distance = norm(minus(x, turned))
             excess = u.energy(x) - u.energy(self.proof.rest) + norm2(v) / 2
             return distance.upper(), excess.upper()
 

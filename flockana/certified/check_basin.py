@@ -175,7 +175,6 @@ class Net:
     def equilibrium(self) -> list[list[arb]]:
         """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0."""
         # The turns are those of the positions, to which they are orthogonal.
-        n, m = self.n, self.m
         turns = self.rotation_tangents(self.centre)
         held = turns + self.translations()
         start = [y for row in self.centre for y in row]
@@ -188,8 +187,7 @@ class Net:
         near = [y + change for y, change in zip(start, shift, strict=False)]
         middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(held)
         shift = self.krawczyk(middles, radii, held)  # once more, about what was found: the zero stays inside
-        found = [y + change for y, change in zip(middles, shift, strict=False)]
-        return [found[m * i : m * i + m] for i in range(n)]
+        return self.rows([y + change for y, change in zip(middles, shift, strict=False)])
 
     def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
         """Return Krawczyk's image (1 − Y F'(B)) (B − c) − Y F(c) of the box B about c."""

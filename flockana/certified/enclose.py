@@ -12,14 +12,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_count,
-    ensure_nonnegative,
-    ensure_positive,
-    ensure_state,
-    ensure_time_span,
-)
+from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
@@ -224,7 +217,7 @@ def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, boo
     return float(min(max(1.5 * crossing, _SHORTEST / flow.pace), _LONGEST / flow.pace, longest)), True
 
 
-def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
+def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
     """Yield how far each pair and agent is beyond a switch, and how fast it moves away."""
     switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_series, ctx, fmpq
 
-from flockana.certified.balls import ball, exact, hull, norm2, series_length, square
+from flockana.certified.balls import ball, exact, hull, minus, norm2, series_length, square
 from flockana.certified.flow import Flow, Pieces, flow_of, sphere_terms
 from flockana.certified.series import PairNumbers, Piece
 from flockana.equilibria.barrier import coincident_lattice, turan_pairs
@@ -41,7 +41,7 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
     with ctx.workprec(BITS):
         area = arb(exact(law.alpha.unit)) ** 2
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
-        far = sum(((1 + norm2(_minus(x, start)) / area).sqrt() - 1 for x in q), arb(0))
+        far = sum(((1 + norm2(minus(x, start)) / area).sqrt() - 1 for x in q), arb(0))
         total = _pair_energy(law, q) + arb(exact(law.gains.c1_gamma)) * area * far
         for term in sphere_terms(law):
             total += term.stiffness * sum((term.beta.potential(square(term.clearance(x))) for x in q), arb(0))
@@ -50,7 +50,7 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
 
 def _pair_energy(law: Any, q: Vectors) -> arb:
     """Return c1α V."""
-    squares = (norm2(_minus(y, x)) for x, y in combinations(q, 2))
+    squares = (norm2(minus(y, x)) for x, y in combinations(q, 2))
     return gain(law) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
 
 
@@ -59,10 +59,6 @@ def _inertia(x: Vectors) -> arb:
     columns = list(zip(*x, strict=True))
     means = [sum(column, arb(0)) / len(x) for column in columns]
     return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2
-
-
-def _minus(a: Sequence[arb], b: Sequence[arb]) -> list[arb]:
-    return [x - y for x, y in zip(a, b, strict=True)]
 
 
 def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
@@ -117,7 +113,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
     q = coincident_lattice(alpha, n, m)
     with ctx.workprec(BITS):
         rows = [[arb(float(a)) for a in x] for x in q]
-        s2 = (norm2(_minus(x, y)) for x, y in combinations(rows, 2))
+        s2 = (norm2(minus(x, y)) for x, y in combinations(rows, 2))
         return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
 

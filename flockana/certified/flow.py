@@ -15,7 +15,7 @@ from flint import arb, arb_mat, arb_series
 
 from flockana.base.errors import ArgumentError
 from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
-from flockana.certified.balls import exact, norm2, series_length
+from flockana.certified.balls import exact, minus, norm2, series_length
 from flockana.certified.krawczyk import column, identity
 from flockana.certified.series import PairNumbers, Piece
 from flockana.environment.obstacles import Sphere
@@ -43,7 +43,7 @@ class Flow:
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
         q = self.split(state)[0]
-        pairs = [self.pair.piece(norm2(_minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
+        pairs = [self.pair.piece(norm2(minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
@@ -103,7 +103,7 @@ class Flow:
         """Return the pairs in range with their pieces, relative positions and velocities."""
         pairs = zip(combinations(range(self.n), 2), pieces, strict=False)
         near = ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
-        return ((i, j, piece, _minus(q[j], q[i]), _minus(p[j], p[i])) for i, j, piece in near)
+        return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near)
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
         """Return the number of a term, an agent and its piece, for all agents on which terms act."""
@@ -157,10 +157,6 @@ class Flow:
             drift = [a for x in self.split(state)[0] for a in term.drift(t, x)]
             along[self.n * self.m :] = [a + b for a, b in zip(along[self.n * self.m :], drift, strict=True)]
         return along
-
-
-def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [x - y for x, y in zip(a, b, strict=True)]
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:

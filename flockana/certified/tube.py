@@ -15,7 +15,7 @@ from flint import arb, ctx
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import ensure_sealed
-from flockana.certified.balls import norm
+from flockana.certified.balls import minus, norm
 from flockana.certified.energies import BITS, structural_energy
 from flockana.certified.flow import sphere_terms
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -168,7 +168,7 @@ class Tube:
     def min_distance(self) -> Approach:
         """Return a proved lower bound of the distance of any two agents over the whole tube."""
         with ctx.workprec(BITS):  # the start by itself: a tube may break before its first step
-            start = [[b - a for a, b in zip(x, y, strict=True)] for x, y in combinations(self.state(0)[0], 2)]
+            start = [minus(y, x) for x, y in combinations(self.state(0)[0], 2)]
             rows = [[norm(gap) for gap in gaps] for gaps in (start, *(step.relative for step in self.taken))]
         each = [
             Approach(down(distance.lower()), pair, t)
@@ -197,8 +197,7 @@ class Tube:
     def min_clearance(self) -> ObstacleApproach:
         """Return a proved lower bound of any agent's clearance from any obstacle over the whole tube."""
         with ctx.workprec(BITS):
-            boxes = [self.boxes[0], *(step.during for step in self.taken)]
-            rows = [self._clearances(box) for box in boxes]
+            rows = [self._clearances(box) for box in (self.boxes[0], *(step.during for step in self.taken))]
         each = [
             ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)

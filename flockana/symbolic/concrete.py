@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 import sympy as sp
 
-from flockana.base.checks import FloatArray, ensure_dimension, ensure_known, ensure_state, ensure_vector
+from flockana.base.checks import FloatArray, ensure_count, ensure_dimension, ensure_known, ensure_state, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Printed, Step, latex_steps
@@ -56,8 +56,7 @@ class ConcreteFlock(Printed):
 
     def __post_init__(self) -> None:
         ensure_known("law", self.law, LAWS)
-        if not isinstance(self.n, int) or self.n < 1:
-            raise ArgumentError(f"n = {self.n!r}: expected a number of agents >= 1")
+        ensure_count("n", self.n)
         ensure_dimension(self.m)
 
     @cached_property

@@ -10,26 +10,13 @@ from dataclasses import dataclass
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
+from flockana.symbolic import sums
 from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
-from flockana.symbolic.sums import (
-    I_,
-    J_,
-    P,
-    Q,
-    V,
-    X,
-    Z,
-    hamiltonian,
-    indexed,
-    over_agents,
-    over_pairs,
-    sigma_distance,
-    structural_hamiltonian,
-)
+from flockana.symbolic.sums import I_, J_, P, Q, V, X, Z, indexed, over_agents, over_pairs
 
 
 @dataclass(frozen=True)
@@ -156,12 +143,12 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     """
     pair = GenericPair(m)
     total, claimed, steps = _pair_steps(pair, kinetic_factor, gains)
-    energy = hamiltonian(m, gains=gains, factor=kinetic_factor)
+    energy = sums.hamiltonian(m, gains=gains, factor=kinetic_factor)
     rate = pair.lift(total)
     stated = pair.lift(claimed)
     lifting = (
         Step("The energy, every pair once, with", energy),
-        Step("the sigma-distance of a pair:", sigma_distance(Q, m)),
+        Step("the sigma-distance of a pair:", sums.sigma_distance(Q, m)),
         *steps,
         Step(
             r"Lifting: $\dot H = \sum_{i<j} \dot\psi_{ij} + \sum_i p_i \cdot u_i$ and "
@@ -207,12 +194,12 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own)))
     agent_claimed = -gains.c2_gamma * v_i.dot(v_i)
     names = indexed((X, x_i), (V, v_i))
-    energy = structural_hamiltonian(m, gains=gains, lambda_=lambda_)
+    energy = sums.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
     rate = pair.lift(total) + over_agents(agent.xreplace(names))
     stated = pair.lift(claimed) + over_agents(agent_claimed.xreplace(names))
     lifting = (
         Step("The energy in the moving frame, with", energy),
-        Step("the sigma-distance of a pair:", sigma_distance(X, m)),
+        Step("the sigma-distance of a pair:", sums.sigma_distance(X, m)),
         *steps,
         Step(
             r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; the feedback on it minus that on the centre is",

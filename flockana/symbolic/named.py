@@ -97,7 +97,9 @@ class Phi(Named):
     Rearranged it is (a + b)(sigma_1(s + c) - sigma_1(c))/2, a quotient.
     """
 
-    stable = property(lambda self: PhiAbove(*self.args).stable / PhiBelow(*self.args).stable)
+    @property
+    def stable(self) -> sp.Expr:  # noqa: D102
+        return PhiAbove(*self.args).stable / PhiBelow(*self.args).stable
 
     @property
     def composed(self) -> sp.Expr:  # noqa: D102

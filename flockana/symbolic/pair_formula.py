@@ -251,7 +251,5 @@ def pair_derivation(formula: PairFormula) -> Derivation:
 
 def alpha_steps() -> tuple[Step, ...]:
     """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
-    return (
-        Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z)),
-        Step("and its adjacency", adjacency(Z)),
-    )
+    first = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
+    return first, Step("and its adjacency", adjacency(Z))

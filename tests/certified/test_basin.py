@@ -4,16 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from flint import arb, fmpq
+from flint import arb
 
 from flockana import DeadZoneFlocking, Gains, StaticTarget, certify, find_equilibrium, simulate
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.certified.at_rest import unique_projection
 from flockana.certified.shells import SHELLS
-from flockana.certified.structure import Structure
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
+from tests.certified.conftest import ALL, STARTS, basin_of, displaced
 
 
 def energy(basin, x):
@@ -156,18 +154,6 @@ def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
         states = [[arb(float(x)) + arb(0, width) for x in row] for row in basin.rest]
         assert basin.holds(states, still) is inside
     assert not basin.holds(basin.rest, [[arb(0, 3)] * 2] * 3)
-
-
-def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
-    square = [arb(x) for x in (1, 1, 1, -1, -1, 1, -1, -1)]  # its size is √8
-    u = Structure.of(Algorithm1(), 4, 2)
-    assert unique_projection(u, square, fmpq(282, 100))
-    assert not unique_projection(u, square, fmpq(283, 100))
-    four = [arb(x) for row in TETRAHEDRON * np.sqrt(8.0) / 7.0 for x in map(round, row)]  # Σ x xᵀ = 4: tr 12, norm √48
-    space = Structure.of(Algorithm1(), 4, 3)
-    most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
-    assert unique_projection(space, four, fmpq(int(most * 1e6), 10**6))
-    assert not unique_projection(space, four, fmpq(int(most * 1e6) + 1, 10**6))
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])

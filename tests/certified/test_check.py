@@ -221,25 +221,6 @@ def pair_data():
     return json.loads(json.dumps(basin_certificate(basin_of("pair", 1))))
 
 
-@pytest.mark.parametrize(("radius", "unique"), [("2.82842", True), ("2.82843", False)])
-def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_net(monkeypatch, radius, unique):
-    """Of a square whose corners are (±1, ±1) the size is √8, and a basin with another one has no such point."""
-    net = check_basin.Net({**pair_data(), "positions": [["0x1p0", "0x1p0"]] * 4})
-    square = [[arb(x), arb(y)] for x in (1, -1) for y in (1, -1)]
-    assert net.unique_projection(square, arb(radius)) is unique
-    monkeypatch.setattr(check_basin.Net, "unique_projection", lambda self, x, radius: unique)
-    assert rejected(pair_data()) is not unique
-
-
-@pytest.mark.parametrize(("radius", "unique"), [(0.999, True), (1.001, False)])
-def test_in_space_it_is_so_below_the_bound_of_the_two_sizes(radius, unique):
-    """Σ x xᵀ = 4·1 of a tetrahedron: (1 + √3) r √|4·1| < tr − |4·1|, in the norm √48 of 4·1."""
-    net = check_basin.Net({**pair_data(), "positions": [["0x1p0"] * 3] * 4})
-    tetrahedron = [[arb(x) for x in row] for row in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
-    most = (12 - arb(48).sqrt()) / (1 + arb(3).sqrt()) / arb(48).sqrt().sqrt()
-    assert net.unique_projection(tetrahedron, most * radius) is unique
-
-
 def test_a_law_that_damps_nothing_proves_no_rate():
     with pytest.raises(RejectedError, match="nothing damps"):
         check_data(resealed(with_value(pair_data(), ("law", "c2_alpha"), Fraction(0))))

@@ -10,11 +10,13 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.certified import check_basin
+from flockana.certified.at_rest import unique_projection
 from flockana.certified.balls import dot
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS, ROOT_TWO, Net
 from flockana.certified.decimals import decimal, round_down
+from flockana.certified.structure import Structure
 from tests.certified.conftest import basin_of, resealed, text_of
 
 
@@ -96,10 +98,11 @@ def test_a_pair_out_of_range_that_may_come_into_it_is_missed(data, monkeypatch, 
 
 def test_the_nearest_point_is_asked_to_be_unique_in_all_of_the_radius(data, monkeypatch):
     asked = []
-    monkeypatch.setattr(Net, "unique_projection", lambda self, x, radius: asked.append(radius) or True)
+    monkeypatch.setattr(Net, "unique_projection", lambda self, x, radius: asked.append(radius) or len(asked) == 1)
     checked(data)
-    (radius,) = asked
-    assert radius.overlaps(arb(data["radius"]))
+    assert asked[0].overlaps(arb(data["radius"]))
+    with pytest.raises(RejectedError, match="nearest point"):
+        checked(data)
 
 
 @pytest.mark.parametrize("share", [Fraction(1, 2), Fraction(-1, 2)])
@@ -282,3 +285,17 @@ def test_what_is_no_such_law_is_refused(change, message):
 def test_what_is_no_flock_is_refused(positions):
     with pytest.raises(RejectedError, match="no flock"):
         Net(text_of(LAW, positions))
+
+
+SQUARE = ([(x, y) for x in (1, -1) for y in (1, -1)], 8.0**0.5)
+TETRAHEDRON = ([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], (12 - 48**0.5) / (1 + 3**0.5) / 48**0.25)
+
+
+@pytest.mark.parametrize(("corners", "size"), [SQUARE, TETRAHEDRON], ids=["square", "tetrahedron"])
+@pytest.mark.parametrize(("share", "unique"), [(0.99999, True), (1.00001, False)])
+def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_net(corners, size, share, unique):
+    """√8 of the square; of the tetrahedron Σ x xᵀ = 4·1: (1 + √3) r √|4·1| < tr − |4·1|, in the norm √48 of 4·1."""
+    n, m, x = len(corners), len(corners[0]), [[arb(y) for y in row] for row in corners]
+    radius = fmpq(round(1e9 * share * size), 10**9)
+    assert Net(text_of(LAW, corners)).unique_projection(x, arb(radius)) is unique
+    assert unique_projection(Structure.of(LAW, n, m), [y for row in x for y in row], radius) is unique

@@ -76,18 +76,18 @@ RADIUS = arb(1) / 64
 CORNERS = [[x + sign * RADIUS for x, sign in zip(CENTRE, signs, strict=True)] for signs in product((-1, 1), repeat=4)]
 
 
-def stepped(kind, h, order, flow=FLOW):
+def stepped(kind, h, order):
     before = StateSet.box(CENTRE, [RADIUS] * 4)
-    return taylor_step(flow, arb(0), h, before, order) if kind == "taylor" else crossing_step(flow, arb(0), h, before)
+    return taylor_step(FLOW, arb(0), h, before, order) if kind == "taylor" else crossing_step(FLOW, arb(0), h, before)
 
 
-def ensure_holds(step, h, flow=FLOW):
+def ensure_holds(step, h):
     """All that a step says, of the solutions from the corners, at ten times: the exact ones are inside."""
     for start in [CENTRE, *CORNERS]:
-        end = flow.solution(h, start)
+        end = FLOW.solution(h, start)
         assert all(box.contains(x) for box, x in zip(step.after.hull, end, strict=True))
         for k in range(11):
-            x = flow.solution(h * k / 10, start)
+            x = FLOW.solution(h * k / 10, start)
             assert all(box.contains(value) for box, value in zip(step.during, x, strict=True))
             mean = (x[0] + x[1]) / 2
             assert step.relative[0][0].contains(x[1] - x[0])

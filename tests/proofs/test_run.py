@@ -4,7 +4,6 @@ import importlib
 import json
 import multiprocessing
 import signal
-import subprocess
 import sys
 from functools import partial
 from pathlib import Path
@@ -276,11 +275,3 @@ def test_ctrl_c_is_130_and_leaves_what_was_done(moment, toys, tmp_path):
         until(lambda: not group(process))
     assert json.loads((out / "holds.json").read_text())["status"] == "proved"
     assert {path.name for path in out.iterdir()} - {"hangs"} == {"holds.json", "holds.md"}
-
-
-def test_python_m_proofs_is_the_same_command(tmp_path):
-    root = Path(proof.__file__).parents[1]
-    command = [sys.executable, "-m", "proofs", "nope"]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stderr.startswith("flockana: unknown proof 'nope'; ")

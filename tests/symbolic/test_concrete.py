@@ -58,7 +58,7 @@ def test_the_rate_is_the_derivative_of_the_energy(law: str) -> None:
 def test_bad_input_is_named() -> None:
     with pytest.raises(UnknownNameError, match="unknown law 'algoritm1'; did you mean 'algorithm1'"):
         ConcreteFlock("algoritm1", 2, 1)
-    with pytest.raises(ArgumentError, match="n = 0: expected a number of agents >= 1"):
+    with pytest.raises(ArgumentError, match="n = 0: expected a whole number >= 1"):
         ConcreteFlock("algorithm1", 0, 1)
     with pytest.raises(ArgumentError, match="m = 4: expected a dimension"):
         ConcreteFlock("algorithm1", 2, 4)
