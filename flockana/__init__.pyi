@@ -10,6 +10,7 @@ from .base.units import rescale as rescale
 from .certified.basin import Basin as Basin
 from .certified.basin import certify as certify
 from .certified.certificate import write_certificate as write_certificate
+from .certified.certificate import write_tube_certificate as write_tube_certificate
 from .certified.check import check_certificate as check_certificate
 from .certified.disturbed import UltimateBound as UltimateBound
 from .certified.disturbed import ultimate_bound as ultimate_bound
@@ -18,7 +19,6 @@ from .certified.gain_box import GainBox as GainBox
 from .certified.gain_box import gain_box as gain_box
 from .certified.sampling import sample_basin as sample_basin
 from .certified.tube import Tube as Tube
-from .certified.tube_certificate import write_tube_certificate as write_tube_certificate
 from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory

@@ -1,49 +1,27 @@
-"""Forces on single agents in balls and series (Arb): the pull to a γ-agent on a straight path."""
+"""Forces on single agents in balls and series (Arb): the pull to a γ-agent on a straight path, and spheres at rest.
 
-from abc import ABC, abstractmethod
+With a = (x − y)/‖x − y‖ and the clearance c = ‖x − y‖ − R of a sphere, the β-agent is at x − c a and moves at
+μ (v − ⟨a, v⟩ a), μ = R/‖x − y‖. The force is analytic in x outside the centre while c stays on one piece of ρ_h: the
+surface is no switch (it depends on c² and on c a only), h d_β and d_β are.
+"""
+
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
+import numpy as np
 from flint import arb
 
 from flockana.base.checks import FloatArray
-from flockana.certified.balls import square
-from flockana.certified.series import Piece
+from flockana.certified.balls import dot, minus, norm, norm2, square
+from flockana.certified.series import PairNumbers, Piece
 
 Block = list[list[Any]]
 
 
-class AgentTerm(ABC):
-    """Force on each agent that depends on time and on its own state."""
-
-    @abstractmethod
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
-
-    @abstractmethod
-    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, as two tables."""
-
-    @abstractmethod
-    def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """Return the term's part of dH/dt that its own potential does not balance."""
-
-    def piece(self, x: Sequence[arb]) -> Piece:
-        """Return the piece of the law that holds a box: `Piece.OUT` for no force, `Piece.CORE` where analytic."""
-        return Piece.CORE
-
-    def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """Return how far the state is beyond each switch, and how fast it leaves; floating-point proposals."""
-        return []
-
-    def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Return the derivative of the force by time at a fixed state."""
-        return [arb(0)] * len(x)
-
-
 @dataclass(frozen=True)
-class Pull(AgentTerm):
+class Pull:
     """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²)."""
 
     start: tuple[arb, ...]  # start, velocity, declared: q_r = start + velocity t, and p_r
@@ -59,10 +37,18 @@ class Pull(AgentTerm):
 
     def _saturation(self, away: Sequence[Any], unit: arb) -> Any:
         """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
-        squares = list(map(square, away))
-        return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
+        return (1 + norm2(away) / (unit * unit)).rsqrt()
 
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
+    def piece(self, x: Sequence[arb]) -> Piece:
+        """Return the piece of the law that holds a box: `Piece.CORE`, as it is analytic everywhere."""
+        return Piece.CORE
+
+    def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
+        """Return no switch."""
+        return []
+
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
+        """Return the force at a position and a velocity."""
         away = self._away(t, x)
         if self.unit is not None:
             slant = self._saturation(away, self.unit)
@@ -70,26 +56,98 @@ class Pull(AgentTerm):
         rows = zip(away, v, self.declared, strict=True)
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
-    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:  # noqa: D102
-        m = len(x)
-        drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
-        if self.unit is None:
-            return [[-self.stiffness if k == h else 0 for h in range(m)] for k in range(m)], drag
-        away = self._away(t, x)
-        slant = self._saturation(away, self.unit)
-        cube = slant * slant * slant / (self.unit * self.unit)
-        pull = [
-            [-self.stiffness * ((slant if k == h else 0) - cube * away[k] * away[h]) for h in range(m)]
-            for k in range(m)
-        ]
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
+        """Return the derivatives of the force by position and velocity, as two tables."""
+        rows = list(enumerate(away := self._away(t, x)))
+        pull, drag = ([[-gain * (k == h) for h, _ in rows] for k, _ in rows] for gain in (self.stiffness, self.damping))
+        if self.unit is not None:
+            slant = self._saturation(away, self.unit)
+            cube = slant * slant * slant / (self.unit * self.unit)
+            pull = [[-self.stiffness * ((slant if k == h else 0) - cube * a * b) for h, b in rows] for k, a in rows]
         return pull, drag
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """Return −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
-        speed = sum(map(square, v), 0 * v[0])
-        return -self.damping * (speed - sum((w * p for w, p in zip(v, self.declared, strict=True)), 0 * v[0]))
+        """Return the part of dH/dt that its own potential does not balance: −c2γ ⟨v, v − p_r⟩, of a γ-agent at rest."""
+        return -self.damping * (norm2(v) - dot(v, self.declared))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Return the derivative of the force by time, from the motion of q_r."""
         pull = self.slopes(t, x, x, Piece.CORE)[0]
-        return [-sum((a * b for a, b in zip(row, self.velocity, strict=True)), arb(0)) for row in pull]
+        return [-dot(row, self.velocity) for row in pull]
+
+
+@dataclass(frozen=True)
+class SphereTerm:
+    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest."""
+
+    beta: PairNumbers  # The pair law of an agent and its β-agent
+    centre: tuple[arb, ...]  # centre, radius: y and R
+    radius: arb
+    stiffness: arb  # stiffness, damping: c1β and c2β
+    damping: arb
+
+    def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
+        """Return ((x − y)/‖x − y‖, ‖x − y‖)."""
+        away = minus(x, self.centre)
+        distance = norm2(away).sqrt()
+        return [a / distance for a in away], distance
+
+    def clearance(self, x: Sequence[arb]) -> arb:
+        """Return ‖x − y‖ − R, negative inside."""
+        return norm(minus(x, self.centre)) - self.radius
+
+    def piece(self, x: Sequence[arb]) -> Piece:
+        """Return the piece of ρ_h that holds the clearance, anywhere in a box."""
+        return self.beta.piece(square(self.clearance(x)))
+
+    def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
+        """Return how far the clearance is beyond h d_β and d_β, and how fast it moves away."""
+        away = x - np.array([float(y) for y in self.centre])
+        distance = float(np.linalg.norm(away))
+        speed = float(away @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
+        return [(distance - float(self.radius) - switch, speed) for switch in self.beta.switches]
+
+    def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
+        """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
+        a, distance = self._away(x)
+        clearance, radial = distance - self.radius, dot(a, v)
+        across = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
+        adjacency = self.beta.pair(square(clearance), piece)[1]
+        if isinstance(adjacency, arb):
+            adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
+        return -self.damping * adjacency * (clearance / distance * across + square(radial))
+
+    def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
+        """Return the derivative of the force by time, at rest."""
+        return [arb(0)] * len(x)
+
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
+        """Return the force at a position and a velocity."""
+        a, distance = self._away(x)
+        clearance, radial = distance - self.radius, dot(a, v)
+        weight, adjacency = self.beta.pair(square(clearance), piece)
+        push, drag, free = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
+        return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
+
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
+        """Return the derivatives of the force by position and velocity, two tables."""
+        # With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
+        a, distance = self._away(x)
+        clearance, radial = distance - self.radius, dot(a, v)
+        s2, mu, free = square(clearance), self.radius / distance, clearance / distance
+        (weight, adjacency), (bend, fade) = self.beta.pair(s2, piece), self.beta.slopes(s2, piece)
+        stiff, drag = self.stiffness * weight, self.damping * adjacency
+        steeper, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
+        across = [w - radial * k for k, w in zip(a, v, strict=True)]
+        slip = [-free * w - radial * k for k, w in zip(a, across, strict=True)]
+        size = range(len(x))
+        by_x, by_v = ([[0] * len(x) for _ in size] for _ in range(2))
+        for k, h in product(size, repeat=2):
+            along, aside = a[k] * a[h], (1 if k == h else 0) - a[k] * a[h]
+            turn = -mu / distance * (across[k] * a[h] + radial * aside + a[k] * across[h])
+            by_v[k][h] = -drag * (free * aside + along)
+            by_x[k][h] = -stiff * (free * aside + along) - steeper * along + fading * slip[k] * a[h] + drag * turn
+        return by_x, by_v
+
+
+AgentTerm = Pull | SphereTerm

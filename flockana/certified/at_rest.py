@@ -1,4 +1,4 @@
-"""Krawczyk's test for an equilibrium modulo rigid motions, in balls.
+"""An equilibrium modulo rigid motions in balls: Krawczyk's test, uniqueness of the nearest point, alignment.
 
 Equilibria of the structure come as orbits, one net rotated, so a zero is sought of
 (∇U(x) + Σ μ_k g_k + Σ ν_a e_a, Σ x_i, ⟨g_k, x − x̄⟩): the g_k are the turns of the computed x̄, the e_a the shifts.
@@ -7,13 +7,14 @@ are 0 there. What is left sums to n ν + c1γ Σ x_i = n ν over the agents, so 
 """
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.certified.balls import ball, dot
+from flockana.certified.balls import ball, dot, norm, norm2, square
 from flockana.certified.krawczyk import enclose_zero
 from flockana.certified.structure import Balls, Structure
 
@@ -25,19 +26,19 @@ _COLLINEAR = 1e-9
 
 def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     """Return the computed equilibrium next to q, and balls that hold the true one of the same orientation."""
-    _ensure_turnable(q)
+    sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
+    if u.m == 3 and sizes[1] <= _COLLINEAR * sizes[0]:  # its orbit is a sphere
+        raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
     x = _refined(u, q)
-    radius = ball(half_width(u))
+    radius = ball(BOX * u.par.d)
     centre = [arb(y) for y in x]
     if not regular(u, x, radius):
         raise SolverError("the equilibrium's rotations may be dependent: its agents are nearly on one line")
     equations, slope = system(u, x)
-    found = enclose_zero(equations, slope, [*centre, *[arb(0)] * (len(u.rotation_tangents(centre)) + u.m)], radius)
+    found = enclose_zero(equations, slope, [*centre, *_multipliers(u)], radius)
     if found is None:
-        raise SolverError(
-            "Krawczyk's test found no isolated equilibrium there: it is degenerate (a soft mode beyond the rigid "
-            "motions), or find_equilibrium ended too early"
-        )
+        fault = "it is degenerate (a soft mode beyond the rigid motions), or find_equilibrium ended too early"
+        raise SolverError(f"Krawczyk's test found no isolated equilibrium there: {fault}")
     return x, found[: u.n * u.m]
 
 
@@ -50,9 +51,8 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
 
     def equations(unknown: Balls) -> list[arb]:
         place, factors = unknown[:size], unknown[size:]
-        force = u.gradient(place)
-        for factor, motion in zip(factors, held, strict=True):
-            force = [f + factor * y for f, y in zip(force, motion, strict=True)]
+        columns = zip(u.gradient(place), *held, strict=True)
+        force = [f + dot(factors, motions) for f, *motions in columns]
         return force + [dot(motion, place) - offset for motion, offset in zip(held, offsets, strict=True)]
 
     def slope(unknown: Balls) -> arb_mat:
@@ -62,22 +62,15 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
     return equations, slope
 
 
+def _multipliers(u: Structure) -> list[arb]:
+    """Return zeros for μ and ν, one for each rotation and each translation."""
+    return [arb(0)] * (u.m * (u.m + 1) // 2)
+
+
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
     """Return whether no configuration in the box has a rotation orthogonal to all those of the computed one."""
     fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
-
-
-def half_width(u: Structure) -> fmpq:
-    """Return the half-width of the box in which the equilibrium is unique."""
-    return BOX * u.par.d
-
-
-def _ensure_turnable(q: FloatArray) -> None:
-    """Raise on a net in space that lies on one line, whose orbit is a sphere."""
-    sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
-    if q.shape[1] == 3 and sizes[1] <= _COLLINEAR * sizes[0]:
-        raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:
@@ -86,13 +79,64 @@ def _refined(u: Structure, q: FloatArray) -> list[float]:
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):
         equations, slope = system(u, x.tolist())
-        at = [arb(float(y)) for y in x] + [arb(0)] * (len(u.rotation_tangents([arb(0)] * len(x))) + u.m)
+        at = [arb(float(y)) for y in x] + _multipliers(u)
         matrix = np.array([[float(entry.mid()) for entry in row] for row in slope(at).tolist()])
         value = np.array([float(y.mid()) for y in equations(at)])
         x = x - np.linalg.lstsq(matrix, value, rcond=None)[0][: x.size]
         if not np.abs(x - start).max() <= _NEAR * d:
-            raise ArgumentError(
-                "there is no equilibrium beside these positions: expected what find_equilibrium returned, under the "
-                "same law"
-            )
+            expected = "expected what find_equilibrium returned, under the same law"
+            raise ArgumentError(f"there is no equilibrium beside these positions: {expected}")
     return [float(y) for y in x]
+
+
+def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
+    """Return whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
+    if u.m == 1:
+        return True
+    size = dot(rest, rest)
+    if u.m == 2:
+        return bool(square(ball(radius)) < size)
+    columns = [rest[a::3] for a in range(3)]
+    largest = norm([dot(a, b) for a in columns for b in columns])
+    return bool((1 + arb(3).sqrt()) * ball(radius) * largest.sqrt() < size - largest)
+
+
+def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
+    """Return a list of balls whose sum over the agents is 0."""
+    rows = [[arb(x) if isinstance(x, arb) else arb(float(x)) for x in row] for row in values]
+    if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
+        raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium has")
+    if not all(x.is_finite() for row in rows for x in row):
+        raise ArgumentError(f"{name} holds a number that is not finite: expected finite coordinates")
+    middle = [sum(column, arb(0)) / shape[0] for column in zip(*rows, strict=True)]
+    return [x - c for row in rows for x, c in zip(row, middle, strict=True)]
+
+
+def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
+    """Return the equilibrium rotated, exactly but for its enclosure, to nearly the best alignment."""
+    rotation = _rotation(*(np.array([float(y) for y in z]).reshape(shape) for z in (rest, x)))
+    m = shape[1]
+    return [dot(row, rest[i : i + m]) for i in range(0, len(rest), m) for row in rotation]
+
+
+def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
+    """Return balls around a rotation matrix, proposed by a singular value decomposition."""
+    m = rest.shape[1]
+    if m == 1:
+        return [[arb(1)]]
+    left, _, right = np.linalg.svd(x.T @ rest)
+    left[:, -1] *= np.linalg.det(left @ right)
+    found = left @ right
+    if m == 2:
+        c, s = arb(float(found[0, 0])), arb(float(found[1, 0]))
+        size = norm([c, s])
+        return [[c / size, -s / size], [s / size, c / size]]
+    from scipy.spatial.transform import Rotation
+
+    a, b, c, w = (arb(float(y)) for y in Rotation.from_matrix(found).as_quat())
+    rows = [
+        [w * w + a * a - b * b - c * c, 2 * (a * b - c * w), 2 * (a * c + b * w)],
+        [2 * (a * b + c * w), w * w - a * a + b * b - c * c, 2 * (b * c - a * w)],
+        [2 * (a * c - b * w), 2 * (b * c + a * w), w * w - a * a - b * b + c * c],
+    ]
+    return [[y / norm2([a, b, c, w]) for y in row] for row in rows]

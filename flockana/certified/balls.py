@@ -54,9 +54,19 @@ def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
     return sum(products[1:], products[0])
 
 
+def minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    """Return a − b of balls or of series."""
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
 def norm2(x: Sequence[Any]) -> Any:
     """Return ‖x‖² of balls, never below 0, or of series."""
     return sum(map(square, x[1:]), square(x[0]))
+
+
+def norm(x: Sequence[arb]) -> arb:
+    """Return ‖x‖ of balls, never below 0."""
+    return norm2(x).nonnegative_part().sqrt()
 
 
 def monotone(f: Callable[[Any], Any], x: Any) -> Any:

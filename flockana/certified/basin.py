@@ -6,10 +6,10 @@ converges to a point of O with matched velocities, at a guaranteed rate. The arg
 
 1. x* exists, one in a box modulo rigid motions (`at_rest`, Krawczyk).
 2. w = y − R x* for the nearest R x* is orthogonal to the orbit there; U and H do not change under rotations: prose.
-3. Along w the curvature of U is at least k_i in the i-th shell of the ball (`pair_floors`, `shells`), so that
+3. Along w the curvature of U is at least k_i in the i-th shell of the ball (`shells`), so that
    U − U* >= G(‖w‖) and ⟨∇U, w⟩ >= λ‖w‖²; on the way out U would have to reach U* + G(ρ), and H, which never rises, is
    less: the set is invariant. In it O holds all equilibria.
-4. ⟨v, D v⟩ >= μ‖v‖² throughout (`damping`), and a strict Lyapunov function falls exponentially (`lyapunov`); so the
+4. ⟨v, D v⟩ >= μ‖v‖² throughout and a strict Lyapunov function falls exponentially (both in `lyapunov`); so the
    speed is integrable in time, and x converges to one point. No limit set theorem is needed.
 5. dist² is smooth where the nearest point is unique and not degenerate: in the plane if ρ < ‖x*‖, in space if
    (1 + √3) ρ √g < tr − g with g the Frobenius norm, and tr the trace, of Σ x_i* x_i*ᵀ (checked; that this suffices is
@@ -33,12 +33,10 @@ from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_text
-from flockana.certified.alignment import centred, rotated_to, unique_projection
-from flockana.certified.at_rest import enclose_rest, half_width
-from flockana.certified.balls import ball, square
-from flockana.certified.damping import damping
+from flockana.certified.at_rest import BOX, centred, enclose_rest, rotated_to, unique_projection
+from flockana.certified.balls import ball, minus, norm, norm2
 from flockana.certified.decimals import fraction, round_down
-from flockana.certified.lyapunov import Bounds, Decay, decay
+from flockana.certified.lyapunov import Bounds, Decay, damping, decay
 from flockana.certified.shells import ROOT_TWO, BondTable, Shells, prove
 from flockana.certified.structure import Structure
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
@@ -126,8 +124,8 @@ class Basin:
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
             turned = rotated_to(self.proof.rest, x, shape)
-            distance = sum((square(a - b) for a, b in zip(x, turned, strict=True)), arb(0)).upper().sqrt()
-            excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
+            distance = norm(minus(x, turned))
+            excess = u.energy(x) - u.energy(self.proof.rest) + norm2(v) / 2
             return distance.upper(), excess.upper()
 
     def ensure_unedited(self) -> None:
@@ -220,9 +218,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
     if len(q) < 2:
         raise ArgumentError(f"equilibrium has {len(q)} agent: expected two or more, a shape")
     if len(links(q, _APART * law.alpha.d)):
-        raise ArgumentError(
-            "the equilibrium has coincident agents: expected distinct positions, or collisions cannot be excluded"
-        )
+        raise ArgumentError("the equilibrium has coincident agents: expected distinct positions, or they may collide")
     if law.gains.c2_alpha == 0.0 and (law.target is None or law.gains.c2_gamma == 0.0):
         raise ArgumentError("c2_alpha = 0 and no c2_gamma: expected a gain that damps, or no velocities match")
     free = law.target is None or law.gains.c1_gamma == 0.0
@@ -236,10 +232,10 @@ def _largest(around: BondTable) -> float:
     shortest = min(float(length) for _, length in around.gaps.values())
     at_rest = around.proposed(_SMALLEST * d).mean
     if not at_rest > 0.0:
-        raise ArgumentError(
-            f"the least curvature off the rigid motions is {at_rest:.3g}: expected a strict minimum of the potential; "
-            "a saddle or a soft net has no basin"
+        fault = (
+            f"the least curvature off the rigid motions is {at_rest:.3g}: expected a strict minimum of the potential"
         )
+        raise ArgumentError(f"{fault}: expected a strict minimum; a saddle or a soft net has no basin")
     low, high = _SMALLEST * d, min(_WIDEST * d, 0.99 * shortest * float(ROOT_TWO.q) / float(ROOT_TWO.p))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -253,14 +249,12 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
     lengths = {pair: length for pair, (_, length) in around.gaps.items()}
     second, degree = damping(u, lengths, reach)
     least, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
-    curvature = round_down(shells.curvature, _STATED)
-    surplus = round_down(shells.surplus, _STATED)
+    curvature, surplus = (round_down(value, _STATED) for value in (shells.curvature, shells.surplus))
     apart = min((length - ball(reach)).lower() for length in lengths.values())
     if not (least > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
         return None
     bounds = Bounds(curvature, surplus, least, most)
-    found = decay(bounds)
-    if not found.rate > 0:
+    if not (found := decay(bounds)).rate > 0:
         return None
     basin = Basin(
         law=law,
@@ -273,6 +267,6 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
         overshoot=fraction(found.overshoot),
         distance=fraction(round_down(apart, _STATED)),
         connected=second > 0,
-        proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
+        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second, degree, bounds, found),
     )
     return sealed(basin)

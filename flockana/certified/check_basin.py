@@ -1,27 +1,31 @@
 """Independent checker of basin certificates, with the argument of `basin`.
 
-It and `check_net` share with the prover the scalar functions of `intervals` and nothing else. Everything is in balls or
+It shares with the prover the scalar functions of `intervals` and nothing else. Everything is in balls or
 exact; "true" means certainly true.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations
+from itertools import accumulate, combinations, product
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
-from flockana.certified.balls import ball, hull, square
-from flockana.certified.check import ensure, positive, unit
-from flockana.certified.check_net import ROOT_TWO, Net, Pair
-from flockana.certified.forms import BINARY, NUMBER, PAIR_LAW, WHOLE
+from flockana.certified.balls import AlphaParameters, ball, dot, hull, norm, norm2, square
+from flockana.certified.check import BINARY, NUMBER, PAIR_LAW, WHOLE, ensure, positive, unit
+from flockana.certified.intervals import adjacency, phi_alpha, phi_alpha_slope, sigma_of_square
 
 DIGITS = 45
 STATED, OF_RATE = 4, 3  # significant digits
+ROOT_TWO = Fraction("1.4142136")  # its square is above 2: |w_j − w_i| <= √2 ‖w‖
+_DEEPEST = 24  # halvings of a cell of lengths
+Pair = tuple[int, int]
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the expected form of a certificate, by key (`forms`)."""
+    """Return the expected form of a certificate, by key (`check`)."""
     numbers = ("box", "second_eigenvalue", "degree", "radius", "level", "curvature", "surplus", "rate", "overshoot")
     return dict.fromkeys((*numbers, "distance"), NUMBER) | {
         "law": PAIR_LAW,
@@ -42,7 +46,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         reach = radius * ROOT_TWO
         ensure(radius > 0 and ROOT_TWO**2 > 2 and shells > 0, "no radius")
         gaps = {(i, j): [b - a for a, b in zip(x[i], x[j], strict=True)] for i, j in combinations(range(net.n), 2)}
-        lengths = {pair: sum(map(square, gap), arb(0)).sqrt() for pair, gap in gaps.items()}
+        lengths = {pair: norm(gap) for pair, gap in gaps.items()}
         bonds = [tuple((i, j) for i, j in bond["pairs"]) for bond in data["bonds"]]
         listed = [pair for bond in bonds for pair in bond]
         ensure(len(set(listed)) == len(listed) and set(listed) <= set(gaps), "a pair is listed twice, or is none")
@@ -55,9 +59,8 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         yield "no two agents come nearer than the distance stated"
         for bond, pairs in zip(data["bonds"], bonds, strict=True):
             rest = hull(*(lengths[pair] for pair in pairs))
-            ensure(
-                len(bond["along"]) == len(bond["across"]) == shells, "a bond has other than one bound for each shell"
-            )
+            fault = "a bond has other than one bound for each shell"
+            ensure(len(bond["along"]) == len(bond["across"]) == shells, fault)
             for k, floor in enumerate(zip(bond["along"], bond["across"], strict=True)):
                 holds = net.floor_holds(rest, reach * (k + 1) / shells, *map(Fraction, floor))
                 ensure(holds, f"pairs {pairs}, shell {k}: no bound")
@@ -72,10 +75,8 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
             matrix = net.radial(x, gaps, floors)
             ensure(positive(matrix.tolist(), ball(stated)), f"shell {k}: the curvature is not proved")
             ensure(stated % unit(stated, STATED) == 0, f"shell {k}: the curvature has too many digits")
-            ensure(
-                not positive(matrix.tolist(), ball(stated + unit(stated, STATED))),
-                f"shell {k}: more than the curvature stated is true",
-            )
+            more = positive(matrix.tolist(), ball(stated + unit(stated, STATED)))
+            ensure(not more, f"shell {k}: more than the curvature stated is true")
         yield "the curvature of U along displacements is at least what is stated, shell by shell"
         yield from _check_bounds(data, net, x, lengths, curvatures)
 
@@ -86,15 +87,13 @@ def _check_bounds(
     """Check level, curvature, surplus, damping and rate against the shells and the net."""
     radius = Fraction(data["radius"])
     step = radius / len(k)
-    slopes = [step * sum(k[: i + 1], Fraction(0)) for i in range(len(k))]  # G' at the shells' ends
+    slopes = [step * total for total in accumulate(k)]  # G' at the shells' ends
     level = step * (sum(slopes, Fraction(0)) - slopes[-1] / 2)
-    ends = [step * (i + 1) for i in range(len(k))]
-    moments = [sum((k[j] * (2 * j + 1) for j in range(i + 1)), Fraction(0)) / (2 * (i + 1) ** 2) for i in range(len(k))]
+    least = min(s / (step * i) for i, s in enumerate(slopes, start=1))
+    sums = accumulate(y * (2 * j + 1) for j, y in enumerate(k))
+    moments = [total / (2 * i**2) for i, total in enumerate(sums, start=1)]
     ensure(round_down_float(data["level"], level), "the level is not that of the shells")
-    ensure(
-        round_down_float(data["curvature"], min(s / t for s, t in zip(slopes, ends, strict=True))),
-        "the least curvature",
-    )
+    ensure(round_down_float(data["curvature"], least), "the least curvature")
     ensure(round_down_float(data["surplus"], min(moments)), "the surplus is not that of the shells")
     curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
     ensure(curvature > 0 and level > 0, "the potential does not rise")
@@ -138,3 +137,182 @@ def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
     if isinstance(value, Fraction):
         return number <= value < above
     return bool(ball(number) <= value) and bool(value < ball(above))
+
+
+class Net:
+    """Law and positions of a certificate."""
+
+    def __init__(self, data: Mapping[str, Any]) -> None:
+        self.text = data["law"]
+        self.par = AlphaParameters(**{name: self.text[name] for name in ("d", "r", "eps", "h", "a", "b")})
+        gains = (Fraction(self.text[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"))
+        self.c1_alpha, self.c2_alpha, self.c1_gamma, self.c2_gamma = gains
+        self.centre = [[arb(float.fromhex(y)) for y in row] for row in data["positions"]]
+        self.n, self.m = len(self.centre), len(self.centre[0])
+        self.box = ball(Fraction(data["box"]))
+        ensure(self.text["algorithm"] in ("Algorithm1", "Algorithm2"), "its law is neither Algorithm 1 nor 2")
+        led = self.text["algorithm"] == "Algorithm2"
+        ensure(led or self.c1_gamma == self.c2_gamma == 0, "Algorithm 1 has no gains of a γ-agent")
+        ensure(self.n > 1 and self.m in (1, 2, 3) and all(len(row) == self.m for row in self.centre), "no flock")
+        ensure(min(self.c1_alpha, self.c2_alpha, self.c1_gamma, self.c2_gamma) >= 0, "a gain is negative")
+
+    def tension(self, length: arb) -> arb:
+        """Return F'(ℓ)/ℓ of the pair potential F."""
+        s, eps = square(length), ball(self.par.eps)
+        return ball(self.c1_alpha) * phi_alpha(sigma_of_square(s, eps), self.par) / (1 + eps * s).sqrt()
+
+    def stiffness(self, length: arb) -> arb:
+        """Return F''(ℓ) of the pair potential F."""
+        s = square(length)
+        root, z = (1 + ball(self.par.eps) * s).sqrt(), sigma_of_square(s, self.par.eps)
+        slope, action = phi_alpha_slope(z, self.par), phi_alpha(z, self.par)
+        return ball(self.c1_alpha) * (slope * s / root**2 + action / root**3)
+
+    def weight(self, length: arb) -> arb:
+        """Return the weight a_ij at a length."""
+        return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
+
+    def equilibrium(self) -> list[list[arb]]:
+        """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0."""
+        # The turns are those of the positions, to which they are orthogonal.
+        turns = self.rotation_tangents(self.centre)
+        held = turns + self.translations()
+        start = [y for row in self.centre for y in row]
+        moving = self.rotation_tangents([[y + arb(0, self.box) for y in row] for row in self.centre])
+        products = [[dot(a, b) for b in turns] for a in moving]
+        ensure(not turns or bool(arb_mat(products).det() != 0), "the rotations are not independent")
+        size = len(start) + len(held)
+        shift = self.krawczyk(start, [self.box] * size, held)
+        ensure(all(abs(y) < self.box for y in shift), "Krawczyk's test fails: no isolated equilibrium in the box")
+        near = [y + change for y, change in zip(start, shift, strict=False)]
+        middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(held)
+        shift = self.krawczyk(middles, radii, held)  # once more, about what was found: the zero stays inside
+        return self.rows([y + change for y, change in zip(middles, shift, strict=False)])
+
+    def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
+        """Return Krawczyk's image (1 − Y F'(B)) (B − c) − Y F(c) of the box B about c."""
+        size = len(centre)
+        wide = self.slope(self.rows([y + arb(0, r) for y, r in zip(centre, radii, strict=False)]), held)
+        factor = proposed_inverse(wide)
+        value = self.force(self.rows(centre)) + [dot(motion, centre) for motion in held]
+        one = arb_mat([[int(i == j) for j in range(size + len(held))] for i in range(size + len(held))])
+        moved = (one - factor * wide) * arb_mat([[arb(0, r)] for r in radii]) - factor * arb_mat([[y] for y in value])
+        return moved.entries()
+
+    def rows(self, flat: Sequence[arb]) -> list[list[arb]]:
+        """Return coordinates grouped by agent."""
+        return [list(flat[self.m * i : self.m * (i + 1)]) for i in range(self.n)]
+
+    def translations(self) -> list[list[arb]]:
+        """Return the translations along the axes."""
+        return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
+
+    def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
+        """Return ∇²U, bordered by the motions that are held."""
+        blocks = {}
+        for (i, j), gap, length in self.pairs(x):
+            pull = self.tension(length)
+            blocks[i, j] = block(gap, pull, (self.stiffness(length) - pull) / square(length))
+        rows = [[*row, *(motion[k] for motion in held)] for k, row in enumerate(self.assembled(blocks))]
+        return arb_mat(rows + [[*motion, *[arb(0)] * len(held)] for motion in held])
+
+    def force(self, x: Sequence[Sequence[arb]]) -> list[arb]:
+        """Return ∇U."""
+        total = [[ball(self.c1_gamma) * y for y in row] for row in x]
+        for (i, j), gap, length in self.pairs(x):
+            for a, y in enumerate(gap):
+                total[i][a] -= self.tension(length) * y
+                total[j][a] += self.tension(length) * y
+        return [y for row in total for y in row]
+
+    def pairs(self, x: Sequence[Sequence[arb]]) -> Iterator[tuple[Pair, list[arb], arb]]:
+        """Return pairs that are not certainly out of range: indices, relative position, length."""
+        for i, j in combinations(range(self.n), 2):
+            gap = [b - a for a, b in zip(x[i], x[j], strict=True)]
+            length = norm(gap)
+            if not length >= ball(self.par.r):
+                yield (i, j), gap, length
+
+    def assembled(self, blocks: Mapping[Pair, list[list[arb]]]) -> list[list[arb]]:
+        """Return the matrix of c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩."""
+        m, size = self.m, self.n * self.m
+        total = [[ball(self.c1_gamma) * int(i == j) for j in range(size)] for i in range(size)]
+        for (i, j), own in blocks.items():
+            for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+                for a, b in product(range(m), repeat=2):
+                    total[m * p + a][m * q + b] += sign * own[a][b]
+        return total
+
+    def radial(
+        self, x: list[list[arb]], gaps: Mapping[Pair, list[arb]], floors: Mapping[Pair, tuple[Fraction, Fraction]]
+    ) -> arb_mat:
+        """Return a lower bound of the Hessian from bounds of its pairs, with large eigenvalues for rigid motions."""
+        blocks = {}
+        for pair, (along, across) in floors.items():
+            gap = gaps[pair]
+            blocks[pair] = block(gap, ball(across), ball(along - across) / norm2(gap))
+        total = arb_mat(self.assembled(blocks))
+        for motion in self.rotation_tangents(x) + self.translations():
+            column = arb_mat([[y] for y in motion])
+            total += column * column.transpose() * (10**9 * ball(self.c1_alpha) / norm2(motion))
+        return total
+
+    def rotation_tangents(self, x: Sequence[Sequence[arb]]) -> list[list[arb]]:
+        """Return the tangents of the orbit under rotations: (−y, x) of each agent in each coordinate plane."""
+        return [
+            [-row[b] if k == a else row[a] if k == b else arb(0) for row in x for k in range(self.m)]
+            for a, b in combinations(range(self.m), 2)
+        ]
+
+    def laplacian(self, weights: Mapping[Pair, arb]) -> arb_mat:
+        """Return the Laplacian of the weighted net, with the translation's eigenvalue 0 shifted to n."""
+        rows = [[arb(1)] * self.n for _ in range(self.n)]
+        for (i, j), weight in weights.items():
+            for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+                rows[p][q] += sign * weight
+        return arb_mat(rows)
+
+    def floor_holds(self, rest: arb, eta: Fraction, along: Fraction, across: Fraction) -> bool:
+        """Return whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every displacement |e| <= eta."""
+        # With x the change of length and b = 1 − cos of the turn, left − right is a square in b, of which a bound below
+        # is linear on [0, most]: see `shells`. Intervals of x are halved until the bound is certain.
+        cells = [(-eta, eta, 0)]
+        while cells:
+            low, high, depth = cells.pop()
+            x = ball(low).union(ball(high))
+            length = rest + x
+            stiff, pull, alpha, beta = self.stiffness(length), self.tension(length), ball(along), ball(across)
+            nearest = Fraction(0) if low <= 0 <= high else min(abs(low), abs(high))
+            farthest, spare = max(abs(low), abs(high)), (stiff - alpha).lower()
+            zeroth = spare * ball(nearest if spare >= 0 else farthest) ** 2
+            first = 2 * x * (stiff * rest + alpha * length) + 2 * (pull * square(rest) - beta * square(length))
+            twice = (stiff - pull) * square(rest) - (alpha - beta) * square(length)
+            most = (ball(eta**2 - nearest**2) / (2 * length * rest)).upper()
+            worst = first.lower() + twice.lower().min(arb(0)) * most
+            if zeroth + worst.min(arb(0)) * most >= 0:
+                continue
+            if depth == _DEEPEST:
+                return False
+            half = (low + high) / 2
+            cells += [(low, half, depth + 1), (half, high, depth + 1)]
+        return True
+
+    def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
+        """Return whether the nearest point of the orbit is unique up to the radius."""
+        columns = list(zip(*x, strict=True))
+        gram = [[dot(a, b) for b in columns] for a in columns]
+        trace = sum((gram[a][a] for a in range(self.m)), arb(0))
+        if self.m < 3:
+            return self.m == 1 or bool(square(radius) < trace)
+        largest = norm([y for row in gram for y in row])
+        return bool((1 + arb(3).sqrt()) * radius * largest.sqrt() < trace - largest)
+
+
+def proposed_inverse(matrix: arb_mat) -> arb_mat:
+    """Return about the inverse of a matrix of balls, exact; nothing rests on it."""
+    return matrix.mid().inv().mid()
+
+
+def block(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
+    """Return the matrix across·1 + more·gap gapᵀ."""
+    return [[more * y * z + (across if a == b else 0) for b, z in enumerate(gap)] for a, y in enumerate(gap)]

@@ -1,26 +1,34 @@
 """Right-hand side of Algorithms 1 to 3 for the checker of tubes, in balls and series.
 
-Only the scalar functions of `intervals` are shared with the prover.
+Only the scalar functions of `intervals` are shared with the prover. With w = x − y, D = ‖w‖, e = w/D, the clearance
+c = D − R of a sphere and z = ‖c‖_σ, an agent is pushed by −c1β φ_β(z) c/√(1 + εc²) e and braked by −c2β ρ_h G,
+G = v − (R/D)(v − ⟨e, v⟩ e), its velocity past its β-agent.
 """
+
+from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, product
 from math import comb
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
-from flockana.certified.balls import AlphaParameters, ball, square
-from flockana.certified.check_sphere import Sphere, piece_of, taper
+from flockana.certified.balls import AlphaParameters, BetaParameters, ball, dot, norm, norm2, square
 from flockana.certified.intervals import (
     adjacency,
+    bump,
     bump_slope,
     d_alpha,
+    d_beta,
     phi_alpha,
     phi_alpha_slope,
+    phi_beta,
+    phi_beta_slope,
     psi_alpha,
+    psi_beta,
     r_alpha,
     shift,
     sigma_of_square,
@@ -66,7 +74,7 @@ class Motion:
 
     def pieces(self, q: Vector) -> list[int | None]:
         """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if it may be on two."""
-        norms = (sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps) for _, _, gap in self.gaps(q))
+        norms = (sigma_of_square(norm2(gap), self.par.eps) for _, _, gap in self.gaps(q))
         found = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
         return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
@@ -74,12 +82,10 @@ class Motion:
         """Return u along series of q and p about a time."""
         size, m = self.n * self.m, self.m
         q, p, g = self.agents(x[:size]), self.agents(x[size:]), self.gain
-        leader = [
-            arb_series([start + speed * t, speed]) for start, speed in zip(self.start, self.velocity, strict=True)
-        ]
+        leader = [arb_series([q + p * t, p]) for q, p in zip(self.start, self.velocity, strict=True)]
         away = [x[k] - leader[k % m] for k in range(size)]
         if self.bounded:
-            away = [a / (1 + sum((b * b for b in own), 0 * a)).sqrt() for own in self.agents(away) for a in own]
+            away = [a / (1 + norm2(own)).sqrt() for own in self.agents(away) for a in own]
         u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.declared[k % m]) for k, a in enumerate(away)]
         for (i, sphere), piece in zip(self.near(), pieces[self.n * (self.n - 1) // 2 :], strict=True):
             if piece != 2:
@@ -102,13 +108,13 @@ class Motion:
     def pull(self, x: Vector) -> list[Vector]:
         """Return the derivative c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
         away = [a - b for a, b in zip(x, self.start, strict=True)]
-        slant = (1 + sum(map(square, away), arb(0))).rsqrt()
+        slant = (1 + norm2(away)).rsqrt()
         cube, gain, rows = slant * slant * slant, self.gain["c1_gamma"], list(enumerate(away))
         return [[gain * ((slant if k == c else 0) - cube * a * b) for c, b in rows] for k, a in rows]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
         """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as numbers at the begin."""
-        par, s2 = self.par, sum((x * x for x in gap[1:]), gap[0] * gap[0])
+        par, s2 = self.par, norm2(gap)
         if piece is None:
             z = sigma_of_square(s2[0], par.eps)
             return phi_alpha(z, par) / (1 + ball(par.eps) * s2[0]).sqrt(), adjacency(z, par)
@@ -128,41 +134,37 @@ class Motion:
         q, p = self.agents(box[:size]), self.agents(box[size:])
         for i in range(self.n if self.bounded else 0):
             for k, row in enumerate(self.pull(list(q[i]))):
-                for c, value in enumerate(row):
-                    rows[size + i * m + k][i * m + c] = -value
+                rows[size + i * m + k][i * m : i * m + m] = [-value for value in row]
         for i, sphere in self.near():
-            for first, block in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
-                for k in range(m):
-                    for c in range(m):
-                        rows[size + i * m + k][first + c] += block[k][c]
+            for first, table in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
+                for k, c in product(range(m), repeat=2):
+                    rows[size + i * m + k][first + c] += table[k][c]
         for i, j, gap in self.gaps(box):
-            s2 = sum(map(square, gap), arb(0))
+            s2 = norm2(gap)
             z, root = sigma_of_square(s2, par.eps), (1 + ball(par.eps) * s2).sqrt()
             stress, weight = phi_alpha(z, par) / root, adjacency(z, par)
             steeper = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
             fading = bump_slope(z / r_alpha(par), par.h) / r_alpha(par) / root
-            for k in range(m):
-                relative = p[j][k] - p[i][k]
-                for c in range(m):
-                    block = (g["c1_alpha"] * steeper * gap[k] + g["c2_alpha"] * fading * relative) * gap[c]
-                    block += g["c1_alpha"] * stress if k == c else 0
-                    for r, o, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
-                        rows[size + r * m + k][o * m + c] += sign * block
-                        if k == c:
-                            rows[size + r * m + k][size + o * m + c] += sign * g["c2_alpha"] * weight
+            for k, c in product(range(m), repeat=2):
+                block = (g["c1_alpha"] * steeper * gap[k] + g["c2_alpha"] * fading * (p[j][k] - p[i][k])) * gap[c]
+                block += g["c1_alpha"] * stress if k == c else 0
+                for r, o, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
+                    rows[size + r * m + k][o * m + c] += sign * block
+                    if k == c:
+                        rows[size + r * m + k][size + o * m + c] += sign * g["c2_alpha"] * weight
         return arb_mat(rows)
 
     def length(self, x: Sequence[arb]) -> arb:
         """Return an upper bound of the Euclidean norm."""
-        return arb(sum(map(square, x), arb(0)).nonnegative_part().sqrt().upper())
+        return arb(norm(x).upper())
 
     def lengths(self, box: Vector) -> list[arb]:
         """Return the distances of the pairs."""
-        return [sum(map(square, gap), arb(0)).nonnegative_part().sqrt() for _, _, gap in self.gaps(box)]
+        return [norm(gap) for _, _, gap in self.gaps(box)]
 
     def radii(self, box: Vector) -> list[arb]:
         """Return the distances of the agents from their centre of mass."""
-        return [sum(map(square, row), arb(0)).nonnegative_part().sqrt() for row in self.centred(box[: self.n * self.m])]
+        return [norm(row) for row in self.centred(box[: self.n * self.m])]
 
     def centred(self, x: Vector) -> list[Vector]:
         """Return the deviations from the mean of all agents."""
@@ -176,17 +178,103 @@ class Motion:
         pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
         total = self.gain["c1_alpha"] * sum(pairs, arb(0))
         if not self.bounded:
-            inertia, kinetic = (
-                sum((square(y) for row in self.centred(part) for y in row), arb(0)) / 2 for part in (x[:size], x[size:])
-            )
+            inertia, kinetic = (sum(map(norm2, self.centred(part)), arb(0)) / 2 for part in (x[:size], x[size:]))
             return total + self.gain["c1_gamma"] * inertia + kinetic
         for y in self.agents(x[:size]):
-            far = sum((square(a - b) for a, b in zip(y, self.start, strict=True)), arb(0))
+            far = norm2([a - b for a, b in zip(y, self.start, strict=True)])
             total += self.gain["c1_gamma"] * ((1 + far).sqrt() - 1)
             total += sum((sphere.energy(y) for sphere in self.spheres), arb(0))
-        return total + sum(map(square, x[size:]), arb(0)) / 2
+        return total + norm2(x[size:]) / 2
 
 
 def number(text: str) -> arb:
     """Return a decimal as the ball of its value."""
     return ball(Fraction(text))
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Sphere of centre y and radius R with the β-pair law and its gains."""
+
+    par: BetaParameters
+    centre: tuple[arb, ...]
+    radius: arb
+    push: arb
+    drag: arb
+
+    @classmethod
+    def of(cls, law: Mapping[str, Any], one: Mapping[str, Any]) -> Sphere:
+        """Return the sphere of a certificate, its numbers as exact decimals."""
+        par = BetaParameters(d=law["beta_d"], eps=law["beta_eps"], h=law["beta_h"])
+        centre = tuple(ball(Fraction(x)) for x in one["centre"])
+        numbers = (ball(Fraction(x)) for x in (one["radius"], law["c1_beta"], law["c2_beta"]))
+        return cls(par, centre, *numbers)
+
+    def clearance(self, x: Sequence[arb]) -> arb:
+        """Return ‖x − y‖ − R."""
+        return norm([a - b for a, b in zip(x, self.centre, strict=True)]) - self.radius
+
+    def height(self, x: Sequence[arb]) -> arb:
+        """Return ‖c‖_σ of the clearance c."""
+        return sigma_of_square(square(self.clearance(x)), self.par.eps)
+
+    def energy(self, x: Sequence[arb]) -> arb:
+        """Return c1β ψ_β."""
+        return self.push * psi_beta(self.height(x), self.par)
+
+    def piece(self, x: Sequence[arb]) -> int | None:
+        """Return an agent's piece (`piece_of`)."""
+        return piece_of(self.height(x), d_beta(self.par), self.par.h)
+
+    def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
+        """Return the force along series of position and velocity; on an unknown piece as numbers at the begin."""
+        if piece is None:
+            x, v = [a[0] for a in x], [a[0] for a in v]
+        e, distance = self._direction(x)
+        c, eps = distance - self.radius, ball(self.par.eps)
+        if piece is None:
+            z = sigma_of_square(square(c), self.par.eps)
+            action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
+        else:
+            z, h = ((1 + eps * (c * c)).sqrt() - 1) / eps, ball(self.par.h)
+            rho = taper(z / d_beta(self.par), h, piece)
+            s = z - d_beta(self.par)
+            action = rho * (s / (1 + s * s).sqrt() - 1)
+        size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), dot(e, v)
+        share = self.radius / distance
+        return [-size * a - self.drag * rho * (w - share * (w - along * a)) for a, w in zip(e, v, strict=True)]
+
+    def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
+        """Return ∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
+        e, distance = self._direction(x)
+        c, along, share = distance - self.radius, dot(e, v), self.radius / distance
+        stretch, z = 1 + ball(self.par.eps) * square(c), sigma_of_square(square(c), self.par.eps)
+        action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
+        fading = bump_slope(z / d_beta(self.par), self.par.h) / d_beta(self.par) * c / stretch.sqrt()
+        size = self.push * action * c / stretch.sqrt()
+        steeper = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
+        by_x, by_v = ([[arb(0)] * len(x) for _ in x] for _ in range(2))
+        for k, h in product(range(len(x)), repeat=2):
+            a, w, b, u = e[k], v[k], e[h], v[h]
+            slip, aside = w - share * (w - along * a), int(k == h) - a * b
+            turn = share / distance * (b * (w - a * along) + aside * along + a * (u - b * along))
+            by_x[k][h] = -steeper * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn)
+            by_v[k][h] = -self.drag * rho * ((1 - share) * int(k == h) + share * a * b)
+        return by_x, by_v
+
+    def _direction(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
+        """Return the unit vector e from the centre, and its derivative D."""
+        away = [a - b for a, b in zip(x, self.centre, strict=True)]
+        distance = norm2(away).sqrt()
+        return [a / distance for a in away], distance
+
+
+def piece_of(z: arb, cutoff: arb, h: Any) -> int | None:
+    """Return the piece of ρ_h on which a σ-norm is: 0 up to h·cutoff, 1 up to the cutoff, 2 beyond, None if on two."""
+    knee = ball(h) * cutoff
+    return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
+
+
+def taper(z: Any, h: arb, piece: int) -> Any:
+    """Return ρ_h(z) of a series on piece 0 or 1."""
+    return arb_series([1]) if piece == 0 else (1 + ((z - h) / (1 - h)).cos_pi()) / 2

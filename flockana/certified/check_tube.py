@@ -25,24 +25,18 @@ import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, series_length
-from flockana.certified.check import check_data, ensure, positive
-from flockana.certified.check_motion import Motion, Vector, number
-from flockana.certified.check_sphere import Sphere
+from flockana.certified.check import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH, RejectedError, check_data, ensure, positive
+from flockana.certified.check_motion import Motion, Sphere, Vector, number
 from flockana.certified.decimals import at_least, at_most
-from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH, RejectedError
 from flockana.certified.intervals import c_star
 
 BITS = 128
-CLAIMS = (  # what a certificate states of all of a run, the fault if it is another, and the step that is verified
-    ("distance", "the least distance is not the one stated", "no two agents come nearer than {}"),
-    (
-        "cohesion_radius",
-        "the largest radius is not the one stated",
-        "no agent is farther than {} from the centre of mass",
-    ),
-    ("clearance", "the least clearance is not the one stated", "no agent comes nearer than {} to a sphere"),
+CLAIMS = (  # what a certificate states of all of a run, its name, and the step that is verified
+    ("distance", "the least distance", "no two agents come nearer than {}"),
+    ("cohesion_radius", "the largest radius", "no agent is farther than {} from the centre of mass"),
+    ("clearance", "the least clearance", "no agent comes nearer than {} to a sphere"),
     ("below_c_star", "H(0) < c*", ""),
-    ("energy", "the energy at the start is not the one stated", "the energy at the start is {}, rounded down"),
+    ("energy", "the energy at the start", "the energy at the start is {}, rounded down"),
 )
 
 
@@ -86,7 +80,6 @@ class Run(Motion):
         ensure(law["algorithm"] in ("Algorithm1", "Algorithm2", "Algorithm3"), "its law is unknown")
         bounded = law["algorithm"] == "Algorithm3"
         gain = {name: number(law[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
-        ensure(all(g >= 0 for g in gain.values()), "a gain is negative")
         start, velocity, declared = ([number(x) for x in law[name]] for name in ("start", "velocity", "declared"))
         led = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *declared)
         ensure(law["algorithm"] != "Algorithm1" or all(x == 0 for x in led), "Algorithm 1 has no γ-agent")
@@ -94,7 +87,8 @@ class Run(Motion):
         ensure(not (bounded and any(x != 0 for x in velocity)), "its γ-agent moves")
         spheres = tuple(Sphere.of(law, one) for one in law["spheres"]) if bounded else ()
         ensure(all(len(one.centre) == m and one.radius > 0 for one in spheres), "a sphere of another dimension")
-        ensure(all(one.push >= 0 and one.drag >= 0 for one in spheres), "a gain is negative")
+        signs = (*gain.values(), *(g for one in spheres for g in (one.push, one.drag)))
+        ensure(all(g >= 0 for g in signs), "a gain is negative")
         par = AlphaParameters(**{name: law[name] for name in ("d", "r", "eps", "h", "a", "b")})
         weight = number(data["weight"])
         ensure(bool(weight > 0), "the weight is not positive")
@@ -110,22 +104,18 @@ class Run(Motion):
         boxes = []
         for t, end, coefficients, stated in zip(times[:-1], times[1:], data["paths"], data["errors"], strict=True):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
-            ensure(
-                len(path) == size and all(len(row) == len(path[0]) in range(4, 65) for row in path),
-                "a path of another size",
-            )
-            error, bound = self.jumped(state, path, error), number(stated)
+            fits = len(path) == size and all(len(row) == len(path[0]) in range(4, 65) for row in path)
+            ensure(fits, "a path of another size")
+            error, bound, where = self.jumped(state, path, error), number(stated), f"t = {float(t):.6g}"
             found, box = self.grown(ball(t), h, path, error, bound)
-            ensure(bool(found < bound), f"t = {float(t):.6g}: the error may exceed what is stated")
-            ensure(
-                bool(bound < 2 * found + arb(2) ** -90), f"t = {float(t):.6g}: the error stated is not the one proved"
-            )
+            ensure(bool(found < bound), f"{where}: the error may exceed what is stated")
+            ensure(bool(bound < 2 * found + arb(2) ** -90), f"{where}: the error stated is not the one proved")
             state, error = self.at(path, h), found
             boxes.append(box)
         yield f"the run is within the errors stated of the path, through {len(times) - 1} steps"
         stated = self.stated(boxes, [ball(x) for x in x0])
-        for key, fault, step in CLAIMS:
-            ensure(data[key] == stated[key], fault)
+        for key, name, step in CLAIMS:
+            ensure(data[key] == stated[key], f"{name} is not the one stated")
             if step and stated[key] is not None:
                 yield step.format(data[key])
         ensure(data["basin"] is not None or data["turn"] == "0", "a turn of no basin")
@@ -194,9 +184,8 @@ class Run(Motion):
             with series_length(1):
                 bend = self.force(t, [arb_series([x]) for x in begin], pieces)
             along = (self.slope(during) * arb_mat([[row[1]] for row in whole])).entries()
-            drift = [self.gain["c1_gamma"] * self.velocity[k % self.m] for k in range(size)]
             for k in range(size):
-                jerk = 6 * whole[k][3] - along[size + k] - drift[k]
+                jerk = 6 * whole[k][3] - along[size + k] - self.gain["c1_gamma"] * self.velocity[k % self.m]
                 total.append(abs(2 * path[k][2] - bend[k][0]) + h * abs(jerk))
             return self.length(total)
         with series_length(order):
@@ -211,10 +200,7 @@ class Run(Motion):
         """Return a bound μ of ⟨e, A e⟩/|e|² over all A in the balls, in the weighted coordinates (w q, p)."""
         size, w, a = self.n * self.m, self.weight, slope.tolist()
         scale = [w] * size + [arb(1)] * size
-        rows = [
-            [(scale[r] * a[r][c] / scale[c] + scale[c] * a[c][r] / scale[r]) / 2 for c in range(2 * size)]
-            for r in range(2 * size)
-        ]
+        rows = [[(x * a[r][c] / y + y * a[c][r] / x) / 2 for c, y in enumerate(scale)] for r, x in enumerate(scale)]
         guess = float(np.linalg.eigvalsh(np.array([[float(x) for x in row] for row in rows]))[-1])
         for more in (0.01, 0.1, 1.0, 10.0, 1e3, 1e6):
             bound = arb(guess + more * (1 + abs(guess)))

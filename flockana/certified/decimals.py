@@ -52,11 +52,6 @@ def fraction(x: fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def format_decimal(x: fmpq) -> str:
-    """Return a rational as its exact decimal."""
-    return decimal(fraction(x))
-
-
 def _exponent(size: Fraction) -> int:
     """Return the exponent of 10 in scientific notation; 0 of 0."""
     exponent = 0
@@ -69,7 +64,7 @@ def _exponent(size: Fraction) -> int:
 
 def first_digits(x: arb, places: int) -> str | None:
     """Return the decimal digits shared by all of a positive ball; None if there are none."""
-    low, high = at_least(x, places), _shifted(floor(_end(x.upper()) * 10**places), places)
+    low, high = at_least(x, places), at_least(x.upper(), places)
     return low if low == high else None
 
 
@@ -78,8 +73,9 @@ def plus_minus(x: arb, digits: int) -> str:
     return str(x.str(digits)).strip("[]").replace(" +/- ", r" \pm ")
 
 
-def decimal(x: Fraction) -> str:
+def decimal(x: Fraction | fmpq) -> str:
     """Return a finite decimal as text, without rounding."""
+    x = fraction(x) if isinstance(x, fmpq) else x
     places = next(k for k in range(400) if (x * 10**k).denominator == 1)
     return _shifted(int(x * 10**places), places)
 

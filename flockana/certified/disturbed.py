@@ -103,8 +103,8 @@ def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
         gain = (2 * (1 + share * share) / (1 - share)).sqrt() / rate  # √F <= W gain in the end
         largest = ((1 - share) * ball(basin.level)).sqrt() / gain
         excess = (ball(size) * gain) ** 2 / (1 - share)
-        distance, speed = (2 * excess / ball(basin.curvature)).sqrt(), (2 * excess).sqrt()
-        up = (fraction(round_up(x, _STATED)) if x > 0 else Fraction(0) for x in (excess, distance, speed))
+        bounds = (excess, (2 * excess / ball(basin.curvature)).sqrt(), (2 * excess).sqrt())
+        up = (fraction(round_up(x, _STATED)) if x > 0 else Fraction(0) for x in bounds)
         return UltimateBound(basin, size, fraction(round_down(largest, _STATED)), *up)
 
 

@@ -1,7 +1,9 @@
 """`enclose`: rigorous enclosure of a run, step by step."""
 
+from __future__ import annotations
+
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from math import inf, isfinite, sqrt
@@ -10,16 +12,15 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
-from flockana.certified.flow import Flow
-from flockana.certified.laws import ensure_enclosable, flow_of
+from flockana.certified.energies import BITS
+from flockana.certified.flow import Flow, ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
 from flockana.certified.series import Piece
-from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed
@@ -29,16 +30,6 @@ _SHRINK, _GROW = 0.5, 4.0
 _PART = 1e-4  # of its own width, which a step may add to a wide set
 _FAR = 1e3  # times what a step may add: one that adds more is taken again, shorter
 _BLUR = 1e-4  # by which a step may let the set grow
-
-
-@dataclass(frozen=True)
-class _Settings:
-    """Options of `enclose`, and the law's length."""
-
-    order: int
-    remainder: float
-    widest: float
-    length: float
 
 
 def enclose(
@@ -103,38 +94,31 @@ def enclose(
     radii = radius if isinstance(radius, tuple) else (radius, radius)
     if len(radii) != 2:
         raise ArgumentError(f"radius = {radius!r}: expected one, or one of positions and one of velocities")
-    around = [ensure_nonnegative("radius", r) for r in radii]
+    limits = {"remainder": ensure_positive("remainder", remainder), "widest": ensure_positive("widest", widest)}
+    around = tuple(ensure_nonnegative("radius", r) for r in radii)
     if isinstance(order, bool) or not isinstance(order, int) or not 4 <= order <= 40:
         raise ArgumentError(f"order = {order!r}: expected a whole number from 4 to 40")
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
-        raise ArgumentError(f"steps = {steps!r}: expected a whole number >= 1")
-    knobs = _Settings(order, ensure_positive("remainder", remainder), ensure_positive("widest", widest), law.alpha.d)
-    started = time.perf_counter()
+    steps, started = ensure_count("steps", steps), time.perf_counter()
     with ctx.workprec(BITS):
-        tube = _collected(law, q0, p0, span, around, knobs, steps, progress)
-    return tube.with_seconds(time.perf_counter() - started)
+        march = _March(flow_of(law, *q0.shape), law.alpha.d, order, **limits)
+        radius = [arb(r) for r in around for _ in range(q0.size)]
+        start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], radius)
+        times, sets, taken, *ending = _collected(march, start, span, steps, progress)
+    stats = {"order": order, **limits, "radius": around, "steps": len(taken)}
+    stats["seconds"] = time.perf_counter() - started
+    return sealed(Tube(law, q0, p0, times, sets, taken, *ending, stats))
 
 
 def _collected(
-    law: Any,
-    q0: FloatArray,
-    p0: FloatArray,
-    span: tuple[float, float],
-    radii: Sequence[float],
-    knobs: _Settings,
-    most: int,
-    progress: bool,
-) -> Tube:
-    """Return all steps, or those before Ctrl-C or the failure of the enclosure."""
-    flow = flow_of(law, *q0.shape)
-    radius = [arb(r) for r in radii for _ in range(q0.size)]
-    start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], radius)
+    march: _March, start: StateSet, span: tuple[float, float], most: int, progress: bool
+) -> tuple[tuple[float, ...], tuple[StateSet, ...], tuple[Step, ...], str, str]:
+    """Return times, sets and steps, all or those before Ctrl-C or the failure of the enclosure, status and message."""
     times, sets, taken = [span[0]], [start], list[Step]()
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with restore_interrupts():
-                for t, step in _steps(flow, start, span, knobs):
+                for t, step in march.steps(start, span):
                     if isinstance(step, str):
                         message = step
                         break
@@ -148,57 +132,65 @@ def _collected(
                         break
         except KeyboardInterrupt:
             status, message = "interrupted", f"interrupted: it ends at t = {times[-1]:g}"
-    stats = {"order": knobs.order, "remainder": knobs.remainder, "widest": knobs.widest, "radius": tuple(radii)}
-    return sealed(Tube(law, q0, p0, tuple(times), tuple(sets), tuple(taken), status, message, stats))
+    return tuple(times), tuple(sets), tuple(taken), status, message
 
 
-def _steps(
-    flow: Flow, start: StateSet, span: tuple[float, float], knobs: _Settings
-) -> Iterator[tuple[float, Step | str]]:
-    """Yield each step with its end; a text instead of a step that cannot be proved."""
-    t, current, own = span[0], start, 1.0 / flow.pace
-    wanted = 0.1 * own
-    while t < span[1]:
-        h, crossing = _proposed(flow, t, current, min(wanted, span[1] - t))
-        step = None
+@dataclass(frozen=True)
+class _March:
+    """Step control of `enclose`, with its options and the law's length."""
+
+    flow: Flow
+    length: float
+    order: int
+    remainder: float
+    widest: float
+
+    def steps(self, start: StateSet, span: tuple[float, float]) -> Iterator[tuple[float, Step | str]]:
+        """Yield each step with its end; a text instead of a step that cannot be proved."""
+        flow, t, current, wanted = self.flow, span[0], start, 0.1 / self.flow.pace
+        while t < span[1]:
+            end, step, crosses = self._step(t, current, min(wanted, span[1] - t), span[1])
+            if step is None:
+                yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current)}"
+                return
+            if not self._width(step) <= self.widest * self.length:
+                where = _where(flow, current)
+                yield t, f"the set is wider than {2.0 * self.widest:g} d at t = {end:.6g}, where {where}"
+                return
+            if not crosses:
+                growth = _factor(step.blur / _BLUR, variation_order(self.order))
+                wanted = (end - t) * max(min(_factor(self._excess(step), self.order), growth, _GROW), 0.3)
+            t, current = end, step.after
+            yield t, step
+
+    def _step(self, t: float, current: StateSet, most: float, last: float) -> tuple[float, Step | None, bool]:
+        """Return the end of the next step, the step if one could be proved, and whether it crosses a switch."""
+        flow, shortest, end = self.flow, _SHORTEST / self.flow.pace, t
+        step: Step | None = None
+        length, crosses = _proposed(flow, current, most)
         for _ in range(_TRIES):
-            if crossing is None and h < _SHORTEST * own:
-                crossing = _SHORTEST * own
-            end = min(t + (h if crossing is None else crossing), span[1])
+            if not crosses and length < shortest:
+                length, crosses = shortest, True
+            end = min(t + length, last)
             if end <= t:
                 break
-            length = arb(end) - arb(t)
-            if crossing is None:
-                step = taylor_step(flow, arb(t), length, current, knobs.order)
+            h = arb(end) - arb(t)
+            if crosses:
+                step = crossing_step(flow, arb(t), h, current)
             else:
-                step = crossing_step(flow, arb(t), length, current)
-            if step is not None and (
-                crossing is not None or (step.blur < _BLUR**0.5 and _excess(flow, step, knobs) < _FAR)
-            ):
+                step = taylor_step(flow, arb(t), h, current, self.order)
+            if step is not None and (crosses or (step.blur < _BLUR**0.5 and self._excess(step) < _FAR)):
                 break
-            h, crossing = (_SHRINK * h, None) if crossing is None else (h, _SHRINK * crossing)
-        if step is None:
-            yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current)}"
-            return
-        widest = size(flow, [arb(x.rad()) for x in step.after.hull])
-        if not widest <= knobs.widest * knobs.length:
-            yield t, f"the set is wider than {2.0 * knobs.widest:g} d at t = {end:.6g}, where {_where(flow, current)}"
-            return
-        if crossing is None:
-            factors = [
-                _factor(_excess(flow, step, knobs), knobs.order),
-                _factor(step.blur / _BLUR, variation_order(knobs.order)),
-                _GROW,
-            ]
-            wanted = (end - t) * max(min(factors), 0.3)
-        t, current = end, step.after
-        yield t, step
+            length *= _SHRINK
+        return end, step, crosses
 
+    def _width(self, step: Step) -> float:
+        """Return the half-width of the set after a step."""
+        return size(self.flow, [arb(x.rad()) for x in step.after.hull])
 
-def _excess(flow: Flow, step: Step, knobs: _Settings) -> float:
-    """Return a step's remainder divided by the allowed one."""
-    widest = size(flow, [arb(x.rad()) for x in step.after.hull])
-    return step.added / max(knobs.remainder * knobs.length, _PART * widest)
+    def _excess(self, step: Step) -> float:
+        """Return a step's remainder divided by the allowed one."""
+        return step.added / max(self.remainder * self.length, _PART * self._width(step))
 
 
 def _factor(excess: float, order: int) -> float:
@@ -206,8 +198,8 @@ def _factor(excess: float, order: int) -> float:
     return float(0.9 * excess ** (-1.0 / order)) if excess > 0.0 else inf
 
 
-def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[float, float | None]:
-    """Return lengths of the next Taylor step and of a step across a switch, proposed in floating point."""
+def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, bool]:
+    """Return the length of the next step, proposed in floating point, and whether it crosses a switch."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
     (q, p), radii = state[:, 0].reshape(2, flow.n, flow.m), state[:, 1].reshape(2, -1)
     wide, blown = (2.0 * sqrt(flow.m) * float(part.max()) for part in radii)
@@ -221,14 +213,13 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
         elif speed != 0.0:
             h = min(h, max(6.0 * (abs(gap) - wide) / abs(speed), 2.0 * _SHORTEST / flow.pace))
     if crossing == 0.0:
-        return h, None
-    return h, float(min(max(1.5 * crossing, _SHORTEST / flow.pace), _LONGEST / flow.pace, longest))
+        return h, False
+    return float(min(max(1.5 * crossing, _SHORTEST / flow.pace), _LONGEST / flow.pace, longest)), True
 
 
-def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
+def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
     """Yield how far each pair and agent is beyond a switch, and how fast it moves away."""
-    eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
-    switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
+    switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):
         apart, relative = q[j] - q[i], p[j] - p[i]
         length = float(np.linalg.norm(apart))
@@ -247,6 +238,5 @@ def _where(flow: Flow, current: StateSet) -> str:
     width = max(float(x.rad()) for x in current.hull)
     if not isfinite(width):
         return "nothing is known of it any more"
-    return f"its half-width is {width:.2g}" + (
-        f", and {', '.join(about[:3])} may be about a switching distance" if about else ""
-    )
+    others = f", and {', '.join(about[:3])} may be about a switching distance" if about else ""
+    return f"its half-width is {width:.2g}{others}"

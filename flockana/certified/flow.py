@@ -1,4 +1,4 @@
-"""Right-hand side of Algorithms 1 to 3 on balls and on power series in time (Arb).
+"""Right-hand side of Algorithms 1 to 3, the laws that `enclose` supports, on balls and on power series in time (Arb).
 
 A state is a list of 2 n m numbers, all coordinates of q and then all of p, agent by agent. What is written here for one
 number holds for a ball (`arb`: an enclosure over all states in a box, also across the distances where the pair law is
@@ -8,15 +8,23 @@ only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from math import sqrt
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
-from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.balls import norm2, series_length
-from flockana.certified.krawczyk import column
+from flockana.base.errors import ArgumentError
+from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
+from flockana.certified.balls import exact, minus, norm2, series_length
+from flockana.certified.krawczyk import column, identity
 from flockana.certified.series import PairNumbers, Piece
+from flockana.environment.obstacles import Sphere
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import AlphaInteraction
+from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
+_LED = (Algorithm2, Algorithm3)
 Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
 
 
@@ -35,7 +43,7 @@ class Flow:
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
         q = self.split(state)[0]
-        pairs = [self.pair.piece(norm2(_minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
+        pairs = [self.pair.piece(norm2(minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
@@ -47,8 +55,7 @@ class Flow:
         """Return u(t, q, p), coordinate by coordinate."""
         (q, p), m = self.split(state), self.m
         u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
-        for i, j, piece in self._pairs(pieces):
-            apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
+        for i, j, piece, apart, relative in self._pairs(q, p, pieces):
             stress, adjacency = self.pair.pair(norm2(apart), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
@@ -62,11 +69,11 @@ class Flow:
         """Return the parts of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² of all pairs, then the power of each term."""
         q, p = self.split(state)
         heat, powers = 0 * q[0][0], [0 * q[0][0] for _ in self.terms]
-        for i, j, piece in self._pairs(pieces):
-            adjacency = self.pair.pair(norm2(_minus(q[j], q[i])), piece)[1]
+        for _, _, piece, apart, relative in self._pairs(q, p, pieces):
+            adjacency = self.pair.pair(norm2(apart), piece)[1]
             if isinstance(adjacency, arb):
                 adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-            heat = heat + adjacency * norm2(_minus(p[j], p[i]))
+            heat = heat + adjacency * norm2(relative)
         for k, i, piece in self._agents(pieces):
             powers[k] = powers[k] + self.terms[k].power(q[i], p[i], piece)
         return [-self.damping * heat, *powers]
@@ -75,8 +82,7 @@ class Flow:
         """Return (∂u/∂q, ∂u/∂p), square tables with the number 0 where nothing depends."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
-        for i, j, piece in self._pairs(pieces):
-            apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
+        for i, j, piece, apart, relative in self._pairs(q, p, pieces):
             s2 = norm2(apart)
             (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
@@ -93,10 +99,11 @@ class Flow:
                     table[i * m + k][i * m + h] += block[k][h]
         return by_q, by_p
 
-    def _pairs(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
-        """Return the pairs in range with their pieces."""
+    def _pairs(self, q: Any, p: Any, pieces: Pieces) -> Iterator[tuple[int, int, Piece, list[Any], list[Any]]]:
+        """Return the pairs in range with their pieces, relative positions and velocities."""
         pairs = zip(combinations(range(self.n), 2), pieces, strict=False)
-        return ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
+        near = ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
+        return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near)
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
         """Return the number of a term, an agent and its piece, for all agents on which terms act."""
@@ -123,15 +130,15 @@ class Flow:
             series = [arb_series(coefficients[:order]) for coefficients in path]
             by_q, by_p = self.slopes(arb_series([t, 1]), series, pieces)
             slopes = [(_coefficient(by_q, k), _coefficient(by_p, k)) for k in range(order)]
-        upper = [_block(half, 0)]
-        lower = [_block(half, 1)]
+        rows = identity(2 * half).tolist()
+        upper, lower = [arb_mat(rows[:half])], [arb_mat(rows[half:])]
         for k in range(order):
             rate = arb_mat(half, 2 * half)
             for j, (of_q, of_p) in enumerate(slopes[: k + 1]):
                 rate += of_q * upper[k - j] + of_p * lower[k - j]
             upper.append(lower[k] * (arb(1) / (k + 1)))
             lower.append(rate * (arb(1) / (k + 1)))
-        return [stacked(a, b) for a, b in zip(upper, lower, strict=True)]
+        return [arb_mat(a.tolist() + b.tolist()) for a, b in zip(upper, lower, strict=True)]
 
     def rate(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
         """Return x' = (p, u) on a box that may lie on several pieces."""
@@ -141,25 +148,15 @@ class Flow:
         """Return ∂(p, u)/∂(q, p) on a box that may lie on several pieces."""
         half = self.n * self.m
         by_q, by_p = self.slopes(t, state, pieces)
-        rows = [[int(c == half + r) for c in range(2 * half)] for r in range(half)]
-        return arb_mat(rows + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
+        return arb_mat(identity(2 * half).tolist()[half:] + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
 
     def acceleration(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
         """Return x'' = ∂x'/∂x x' + ∂x'/∂t on a box that may lie on several pieces."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
-        half, q = self.n * self.m, self.split(state)[0]
-        drifts = (zip(*(term.drift(t, x) for term in self.terms), strict=True) for x in q)
-        by_time = [sum(parts, arb(0)) for drift in drifts for parts in drift]
-        return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
-
-
-def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
-    """Return one matrix stacked above another."""
-    return arb_mat(upper.nrows() + lower.nrows(), upper.ncols(), upper.entries() + lower.entries())
-
-
-def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
-    return [x - y for x, y in zip(a, b, strict=True)]
+        for term in self.terms:
+            drift = [a for x in self.split(state)[0] for a in term.drift(t, x)]
+            along[self.n * self.m :] = [a + b for a, b in zip(along[self.n * self.m :], drift, strict=True)]
+        return along
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
@@ -173,6 +170,45 @@ def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
     return arb_mat([[x[k] if isinstance(x, arb_series) else (x if k == 0 else 0) for x in row] for row in table])
 
 
-def _block(half: int, which: int) -> arb_mat:
-    """Return the upper (0) or lower (1) half of the identity."""
-    return arb_mat([[int(c == r + which * half) for c in range(2 * half)] for r in range(half)])
+def ensure_enclosable(law: Any) -> None:
+    """Raise unless `enclose` supports a law."""
+    if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
+    if isinstance(law, _LED):
+        ensure_one_gain(law.gains)
+        if type(law.target) not in (StaticTarget, LinearTarget):
+            raise ArgumentError(
+                f"target = {law.target!r}: expected StaticTarget or LinearTarget, whose path is exact; under "
+                "Algorithm 2 the shape moves alike with every target"
+            )
+    if isinstance(law, Algorithm3):
+        for k, obstacle in enumerate(law.obstacles):
+            if type(obstacle) is not Sphere:
+                raise ArgumentError(f"obstacles[{k}] = {obstacle!r}: expected a Sphere, the one kind known in balls")
+
+
+def flow_of(law: Any, n: int, m: int) -> Flow:
+    """Return a law for n agents in m dimensions in balls, each number as its exact decimal."""
+    gains = law.gains
+    terms: tuple[AgentTerm, ...] = ()
+    rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
+    if isinstance(law, _LED):
+        path = law.target.harmonic.terms
+        unit = arb(exact(law.alpha.unit)) if isinstance(law, Algorithm3) else None
+        start, velocity, offset = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
+        declared = tuple(a + b for a, b in zip(velocity, offset, strict=True))  # p_r = dq_r/dt + offset
+        terms = (Pull(start, velocity, declared, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
+        rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
+    if isinstance(law, Algorithm3) and law.obstacles:
+        terms = (*terms, *sphere_terms(law))
+        rates += [gains.c2_beta, sqrt(gains.c1_beta)]
+    stiffness, damping = arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha))
+    return Flow(n, m, PairNumbers.of_alpha(law.alpha), stiffness, damping, max(rates) or 1.0, terms)
+
+
+def sphere_terms(law: Any) -> tuple[SphereTerm, ...]:
+    """Return the terms of a law's obstacles at the present precision."""
+    gains: Any = law.gains
+    beta, pull, drag = PairNumbers.of_beta(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
+    places = [(tuple(arb(exact(y)) for y in one.centre), arb(exact(one.radius))) for one in law.obstacles]
+    return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)

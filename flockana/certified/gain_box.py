@@ -80,7 +80,7 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
         values, _, errors = eigen(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
         if np.any(values.real > errors):
             own = (a * gains.c1_alpha, b * gains.c2_alpha, low * np.min(gains.c1_gamma), low * np.min(gains.c2_gamma))
-            return GainBox("refuted", tuple(float(x) for x in own))
+            return GainBox("refuted", tuple(map(float, own)))
     return GainBox("inconclusive")
 
 

@@ -45,13 +45,9 @@ def least_eigenvalue(matrix: arb_mat) -> arb | None:
     middle = np.array([[float(entry.mid()) for entry in row] for row in matrix.tolist()])
     q = arb_mat(size, size, [arb(float(x)) for x in np.linalg.eigh((middle + middle.T) / 2)[1].ravel()])
     discs = (q.transpose() * matrix * q).tolist()
-    lowest = arb(min((row[i] - _others(row, i)).lower() for i, row in enumerate(discs)))
+    radii = (sum(map(abs, [*row[:i], *row[i + 1 :]]), arb(0)) for i, row in enumerate(discs))
+    lowest = arb(min((row[i] - radius).lower() for i, (row, radius) in enumerate(zip(discs, radii, strict=True))))
     if not lowest > 0:
         return None
     length = arb(max(sum(map(abs, row), arb(0)).upper() for row in (q.transpose() * q).tolist()))
     return (lowest / length).lower()
-
-
-def _others(row: Sequence[arb], i: int) -> arb:
-    """Return the radius of a Gershgorin disc."""
-    return sum((abs(x) for j, x in enumerate(row) if j != i), arb(0))

@@ -68,7 +68,7 @@ def variation_order(order: int) -> int:
 
 def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
     """Return a step by a Taylor polynomial; None if it is too long, or a pair may change its piece on the way."""
-    span, box = _interval(h), before.hull
+    span, box = hull(arb(0), h), before.hull
     if Piece.SWITCH in (pieces := flow.pieces(box)):
         return None
     path = flow.taylor(t, box, order - 1, pieces)
@@ -91,7 +91,7 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
     """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long."""
     # x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
-    span, box = _interval(h), before.hull
+    span, box = hull(arb(0), h), before.hull
     during = _picard(flow, t, span, box)
     if during is None:
         return None
@@ -120,7 +120,7 @@ def _enclosed(
         last = [coefficients[order] for coefficients in flow.taylor(times, box, order, pieces)]
         if not all(x.is_finite() for x in last):
             return None
-        power, whole = h**order, _interval(h**order)
+        power, whole = h**order, hull(arb(0), h**order)
         image = [x + whole * rest for x, rest in zip(reach, last, strict=True)]
         if all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
             return image, [power * rest for rest in last]
@@ -158,7 +158,7 @@ def _variation(
     # At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest
     # row sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the
     # identity by more than e^{Lh} − 1.
-    span = _interval(h)
+    span = hull(arb(0), h)
     polynomial = flow.variation(t, path, order - 1, pieces)
     there = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
     rows = flow.jacobian(t + span, during, pieces).tolist()
@@ -226,11 +226,6 @@ def _blur(flow: Flow, slope: arb_mat) -> float:
     weights = np.repeat((1.0, 1.0 / flow.pace), slope.nrows() // 2)
     radii = np.array([[float(x.rad()) for x in row] for row in slope.tolist()])
     return float((radii * weights[:, None] / weights).sum(axis=1).max())
-
-
-def _interval(h: arb) -> arb:
-    """Return the ball [0, h]."""
-    return hull(arb(0), h)
 
 
 def _at(coefficients: Sequence[arb], s: arb) -> arb:

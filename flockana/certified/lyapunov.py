@@ -14,21 +14,29 @@ functions is convex. So d⟨w, v⟩/dt <= ‖v‖² − ⟨w, ∇U⟩ − ⟨w, 
 (`proofs/certified_basins.py` checks it.) And (1 − e)E <= F <= (1 + e)E, e = ε/√λ < 1: E falls at the rate α, distance
 and speed at half of it.
 
+D = c2γ + c2α L̂(x), and weights fall with the length while the eigenvalues of a Laplacian rise with its weights: the
+second eigenvalue is at least that of the net with every pair at its longest, and none is above twice the largest degree
+with every pair at its shortest.
+
 The best choice is known but for ε. At given α and ε, θ is 1 or α/ε, as θλ/2 + c rises in it or falls. Then the second
 inequality leaves X = θλ/2 + c − αλ/2ε for κM/2 + ατ/2, and the third wants μ/2κ + α/2τ small: by Cauchy and Schwarz it
 is (√(μM) + α)²/4X at least, where τ = 2X/(√(μM) + α) and κ = τ√(μ/M). What it then leaves falls in α, and is bisected.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.balls import ball
+from flockana.certified.balls import ball, square
 from flockana.certified.decimals import round_down, round_up
+from flockana.certified.krawczyk import least_eigenvalue
+from flockana.certified.structure import Structure
 
 _DIGITS, _CHOSEN = 3, 9  # digits of proved numbers, and of the parameters, whose differences can be small
+_DAMPING_DIGITS = 4
 _LEAST, _STEPS = 1e-6, 4000  # values of ε that are tried, from this share of the largest up, 0.4 % apart
 _HALVINGS = 60
 
@@ -53,6 +61,27 @@ class Decay:
     tau: fmpq
     rate: fmpq
     overshoot: fmpq
+
+
+def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -> tuple[fmpq, fmpq]:
+    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up."""
+    # So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
+    away = ball(reach)
+    weakest = {pair: u.weight(square(length + away)).lower() for pair, length in lengths.items()}
+    strongest = {pair: u.weight(square((length - away).max(arb(0)))) for pair, length in lengths.items()}
+    degrees = [sum((w for pair, w in strongest.items() if i in pair), arb(0)) for i in range(u.n)]
+    second = _second_eigenvalue(u.n, weakest)
+    floor = fmpq(0) if second is None else round_down(second, _DAMPING_DIGITS)
+    return floor, round_up(max(degree.upper() for degree in degrees), _DAMPING_DIGITS)
+
+
+def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | None:
+    """Return a positive lower bound of the Laplacian's second eigenvalue; None if none is certain."""
+    rows = [[arb(1)] * n for _ in range(n)]  # 11ᵀ, whose eigenvalue n is above the second one, as all weights are <= 1
+    for (i, j), weight in weights.items():
+        for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+            rows[p][q] += sign * weight
+    return least_eigenvalue(arb_mat(rows))
 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:

@@ -67,15 +67,14 @@ def sample_basin(
     if not sizes.size or not (sizes > 0.0).all():
         raise ArgumentError(f"distances = {sizes.tolist()}: expected one or more numbers > 0")
     rng, motions = np.random.default_rng(ensure_seed(seed)), rigid_motions(basin.rest)
-    still = np.zeros_like(basin.rest)
-    centre = np.zeros(basin.rest.shape[1]) if basin.law.target is None else basin.law.target.state(0.0)[0]
-    drift = still if basin.law.target is None else still + basin.law.target.state(0.0)[1]
+    target = basin.law.target
+    centre, drift = (0.0, 0.0) if target is None else target.state(0.0)
     returned = np.zeros(sizes.size, dtype=np.int64)
     for k, size in enumerate(sizes):
         for _ in range(runs):
             w = rng.standard_normal(basin.rest.size)
             w -= motions @ (motions.T @ w)
             start = basin.rest + centre + (size / np.linalg.norm(w) * w).reshape(basin.rest.shape)
-            run = simulate(basin.law, start, drift, (0.0, end), t_eval=[0.0, end])
+            run = simulate(basin.law, start, np.zeros_like(start) + drift, (0.0, end), t_eval=[0.0, end])
             returned[k] += basin.holds(run.q[-1], run.p[-1])
     return SampledBasin(basin, sizes, returned, runs)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 from typing import Any
 
 from flint import acb, arb
@@ -52,6 +53,12 @@ class PairNumbers:
     def knee(self) -> arb:
         """The σ-norm at which the bump begins to fall."""
         return self.h * self.cutoff
+
+    @property
+    def switches(self) -> list[float]:
+        """Distances at which pieces meet, in floating point."""
+        eps = float(self.eps)
+        return [sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (self.knee, self.cutoff)]
 
     def piece(self, s2: arb) -> Piece:
         """Return the piece on which every squared distance in a ball lies."""

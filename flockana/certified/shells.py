@@ -7,10 +7,26 @@ s t lies in the shell (t_{i−1}, t_i], then along the segment, ∇U(x*) being 0
 
 G'' = k_i in the i-th shell, G(0) = G'(0) = 0. The least of G'/t and of (t G' − G)/t² are at ends of shells, for they
 are monotone within each; and G >= ½λt² where G' >= λt.
+
+The k_i come from lower bounds of each pair's second derivative, uniform over all displacements up to a length.
+
+Let e be the relative displacement of a pair at rest at Δ, of length ℓ0 and direction u, and f(Δ + e) = F(|Δ + e|).
+Sought are numbers α ("along") and β ("across") with
+
+    ⟨e, ∇²f(Δ + e) e⟩ >= α ⟨u, e⟩² + β (|e|² − ⟨u, e⟩²)        for all |e| <= η.
+
+Only the direction in which the pair has been displaced counts, which costs in β the square of η/ℓ0 and not its first
+power. With ℓ = |Δ + e|, x = ℓ − ℓ0 and b = 1 − cos of the angle by which the pair has turned,
+
+    left − right = d0 + d1 b + d2 b²,    |e|² = x² + 2 ℓ ℓ0 b,
+    d0 = (F'' − α) x²,   d1 = 2x (F'' ℓ0 + α ℓ) + 2 (T ℓ0² − β ℓ²),   d2 = F'' ℓ0² − α ℓ² − T ℓ0² + β ℓ²,
+
+F'' and T = F'/ℓ at ℓ: of one length ℓ and of b in [0, (η² − x²)/(2 ℓ ℓ0)]. Lengths are cut into cells, and these again
+where their enclosures are too wide. (`proofs/certified_basins.py` checks the identity.)
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -19,17 +35,84 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.balls import ball, hull
+from flockana.certified.balls import ball, dot, hull, square
 from flockana.certified.decimals import round_down
 from flockana.certified.krawczyk import column, identity, least_eigenvalue
-from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.structure import Balls, Structure, outer
 
+LEVELS = 4  # cells of the first cut: 2^4 to either side, as many as there are shells
+SHELLS = 2**LEVELS
+_DEEPEST = 16
+_POINTS = 801  # at which floating point looks
+_SPARE = (0.03, 1e-5)  # of K (η/ℓ0)², and of K: margin that a proposed β keeps
 ROOT_TWO = fmpq(14142136, 10**7)  # a little more than √2: |w_j − w_i| <= √2 ‖w‖
 _ALIKE = 1e-7  # of d: pairs whose lengths agree so closely share one bound
 _SLACKS = (0.03, 0.06, 0.12, 0.25, 0.5, 0.8)  # of K: by how much α may be less than the least F''
 _LIFT = 10**7  # times the stiffest pair: curvature given to rigid motions, which are orthogonal to every w
 _DIGITS = 4
+
+
+@dataclass(frozen=True)
+class LengthCells:
+    """Cached enclosures of F'' and T over cells of lengths about ℓ0, shared by shells."""
+
+    u: Structure
+    rest: arb
+    reach: fmpq
+    kept: dict[tuple[int, int], tuple[arb, arb, arb]] = field(default_factory=dict, compare=False)
+
+    def at(self, level: int, k: int) -> tuple[arb, arb, arb]:
+        """Return (x, F'', T) over x in reach·[k, k + 1]/2^level."""
+        if (level, k) not in self.kept:
+            unit = self.reach / 2**level
+            x = ball(unit * k).union(ball(unit * (k + 1)))
+            s = square(self.rest + x)
+            self.kept[level, k] = x, self.u.stiffness(s), self.u.tension(s)
+        return self.kept[level, k]
+
+    def holds(self, shell: int, along: fmpq, across: fmpq) -> bool:
+        """Return whether (α, β) certainly are lower bounds up to η = reach·shell/SHELLS; False also if undecided."""
+        cells = [(LEVELS, k) for k in range(-shell, shell)]
+        limit = square(ball(self.reach * shell / SHELLS))
+        while cells:
+            level, k = cells.pop()
+            if self._cell_holds(level, k, limit, ball(along), ball(across)):
+                continue
+            if level == _DEEPEST:
+                return False
+            cells += [(level + 1, 2 * k), (level + 1, 2 * k + 1)]
+        return True
+
+    def _cell_holds(self, level: int, k: int, limit: arb, along: arb, across: arb) -> bool:
+        x, stiff, pull = self.at(level, k)
+        rest, length = self.rest, self.rest + x
+        least = (stiff - along).lower()  # by its ends: a product of balls about 0 would be far too wide
+        d0 = least * square(x.abs_lower() if least >= 0 else x.abs_upper())
+        d1 = 2 * x * (stiff * rest + along * length) + 2 * (pull * square(rest) - across * square(length))
+        d2 = (stiff - pull) * square(rest) - (along - across) * square(length)
+        most = ((limit - square(x)).nonnegative_part() / (2 * length * rest)).upper()
+        slope = d1.lower() + d2.lower().min(arb(0)) * most  # d1 + d2 b >= slope for b in [0, most]
+        return bool(d0 + slope.min(arb(0)) * most >= 0)
+
+
+def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
+    """Return a β for an α, proposed in floating point at points x, with slack for the proof."""
+    length, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
+    most = np.maximum((eta**2 - x**2) / (2.0 * length * rest), 0.0)
+    d1 = 2.0 * x * (stiff * rest + along * length) + 2.0 * pull * rest**2
+    d2 = np.minimum((stiff - pull) * rest**2 - along * length**2, 0.0)
+    turned = most > 0.0
+    room = (stiff - along) * x**2 + most * (d1 + d2 * most)
+    bound = np.min(room[turned] / (most * length**2 * (2.0 - most))[turned], initial=np.inf)
+    bound = min(bound, float(pull[np.argmin(np.abs(x))]))
+    return float(bound - _SPARE[0] * unit * (eta / rest) ** 2 - _SPARE[1] * unit)
+
+
+def points(reach: float) -> FloatArray:
+    """Return displacements at which floating point evaluates: the shells' ends, denser near 0."""
+    inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
+    ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
+    return reach * np.unique(np.concatenate([inner, ends]))
 
 
 @dataclass(frozen=True)
@@ -80,10 +163,10 @@ class BondTable:
     def lifts(self) -> arb_mat:
         """Return Σ g gᵀ/‖g‖² over the rigid motions, times a large number."""
         total = arb_mat(len(self.rest), len(self.rest))
-        at_rest = [abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values()]
+        stiffest = max(abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values())
         for motion in self.u.rotation_tangents(self.rest) + self.u.translations():
             g = column(motion)
-            total += g * g.transpose() * (_LIFT * arb(max(at_rest)) / sum((y * y for y in motion), arb(0)))
+            total += g * g.transpose() * (_LIFT * arb(stiffest) / dot(motion, motion))
         return total
 
     def matrix(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb_mat:
@@ -115,18 +198,15 @@ class BondTable:
         for i in range(SHELLS):
             eta = reach * (i + 1) / SHELLS
             inside = np.abs(x) <= eta * (1.0 + 1e-12)
-            best = -np.inf
+            near = [(rest, *(curve[inside] for curve in own)) for rest, own in zip(lengths, curves, strict=True)]
+            curvatures[i] = -np.inf
             for slack in _SLACKS:
-                stiffest = [float(np.abs(stiff[inside]).max()) for stiff, _ in curves]
-                a = [float(stiff[inside].min()) - slack * k for (stiff, _), k in zip(curves, stiffest, strict=True)]
-                b = [
-                    proposed_across(one, length, x[inside], stiff[inside], pull[inside], eta)
-                    for one, length, (stiff, pull) in zip(a, lengths, curves, strict=True)
-                ]
-                least = _least(fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1))
-                if least > best:
-                    best, along[i], across[i] = least, a, b
-            curvatures[i] = best
+                a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
+                b = [proposed_across(y, own[0], x[inside], *own[1:], eta) for y, own in zip(a, near, strict=True)]
+                matrix = fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1)
+                least = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
+                if least > curvatures[i]:
+                    curvatures[i], along[i], across[i] = least, a, b
         return ProposedBounds(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -151,10 +231,6 @@ class BondTable:
                 parts[1, k] += moved @ moved.T - np.outer(along, along)
         own = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
         return parts[0], parts[1], own * np.eye(len(basis))
-
-
-def _least(matrix: FloatArray) -> float:
-    return float(np.linalg.eigvalsh(matrix)[0]) if len(matrix) else np.inf
 
 
 @dataclass(frozen=True)
@@ -206,16 +282,14 @@ def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
     if len(bonds) != floors.along.shape[1]:
         return None
     cells = [LengthCells(around.u, bond.rest, reach) for bond in bonds]
-    along, across, curvatures = [], [], []
-    for i in range(SHELLS):
-        a = tuple(round_down(arb(y), _DIGITS) for y in floors.along[i])
-        b = tuple(round_down(arb(y), _DIGITS) for y in floors.across[i])
-        if not all(cell.holds(i + 1, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
+    along, across = (
+        tuple(tuple(round_down(arb(y), _DIGITS) for y in row) for row in rows) for rows in (floors.along, floors.across)
+    )
+    curvatures = []
+    for i, (a, b) in enumerate(zip(along, across, strict=True), start=1):
+        if not all(cell.holds(i, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
             return None
-        least = around.curvature(bonds, a, b)
-        if not least.is_finite():
+        if not (least := around.curvature(bonds, a, b)).is_finite():
             return None
-        along.append(a)
-        across.append(b)
         curvatures.append(round_down(least, _DIGITS))
-    return Shells(radius, tuple(bonds), tuple(along), tuple(across), tuple(curvatures))
+    return Shells(radius, tuple(bonds), along, across, tuple(curvatures))

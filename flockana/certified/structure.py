@@ -16,7 +16,7 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
-from flockana.certified.balls import AlphaParameters, ball, exact, square
+from flockana.certified.balls import AlphaParameters, ball, exact, norm2, square
 from flockana.certified.series import PairNumbers
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
@@ -55,19 +55,17 @@ class Structure:
         led, gains = isinstance(law, Algorithm2), law.gains
         if led:
             ensure_one_gain(gains)
-        if not gains.c1_alpha > 0.0:
-            raise ArgumentError(
-                f"c1_alpha = {gains.c1_alpha:g}: expected more than 0, or no force holds the agents together"
-            )
-        pull = (exact(gains.c1_gamma), exact(gains.c2_gamma)) if led else (exact(0), exact(0))
-        return cls(AlphaParameters.of(law.alpha), exact(gains.c1_alpha), exact(gains.c2_alpha), *pull, n, m)
+        if not (c1 := gains.c1_alpha) > 0.0:
+            raise ArgumentError(f"c1_alpha = {c1:g}: expected more than 0, or no force holds the agents together")
+        pull = (gains.c1_gamma, gains.c2_gamma) if led else (0, 0)
+        return cls(AlphaParameters.of(law.alpha), *map(exact, (c1, gains.c2_alpha, *pull)), n, m)
 
     def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
         """Return (i, j, x_j − x_i, squared distance) of every pair."""
         m = self.m
         for i, j in combinations(range(self.n), 2):
             gap = [x[m * j + a] - x[m * i + a] for a in range(m)]
-            yield i, j, gap, sum(map(square, gap), arb(0))
+            yield i, j, gap, norm2(gap)
 
     def near(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
         """Return the pairs that are not certainly out of range."""
@@ -113,19 +111,16 @@ class Structure:
 
     def energy(self, x: Balls) -> arb:
         """Return U."""
-        law, total = self._law, arb(0)
-        beyond = ball(self.par.r) ** 2
-        for *_, s in self.pairs(x):
-            total += law.far if s >= beyond else law.potential(s)
-        return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * sum(map(square, x), arb(0))
+        law, beyond = self._law, ball(self.par.r) ** 2
+        total = sum((law.far if s >= beyond else law.potential(s) for *_, s in self.pairs(x)), arb(0))
+        return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * norm2(x)
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
         """Return tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
         m, places = self.m, range(len(x))
         return [
-            [x[k - a + b] if k % m == a else -x[k - b + a] if k % m == b else arb(0) for k in places]
-            for a, b in product(range(m), repeat=2)
-            if b < a
+            [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in places]
+            for a, b in combinations(range(m), 2)
         ]
 
     def translations(self) -> list[list[arb]]:

@@ -14,9 +14,10 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import ensure_sealed, replace_sealed
-from flockana.certified.balls import norm2
-from flockana.certified.structural_energy import BITS, energy_of, structural_energy
+from flockana.base.seals import ensure_sealed
+from flockana.certified.balls import minus, norm
+from flockana.certified.energies import BITS, structural_energy
+from flockana.certified.flow import sphere_terms
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:
@@ -92,10 +93,6 @@ class Tube:
         known = f"{self.n} agents, m = {self.m}, {type(self.law).__name__}, {len(self.taken)} steps"
         return f"<Tube of {known}, t = {float(self.t[0]):g} to {float(self.t[-1]):g}, {self.status}>"
 
-    def with_seconds(self, seconds: float) -> Tube:
-        """Return the same tube with its computing time."""
-        return replace_sealed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
-
     def ensure_unedited(self) -> None:
         """Raise unless the tube is unchanged since `enclose` returned it."""
         ensure_sealed("tube", self, "a tube as enclose returned it", "enclose(law, q0, p0, t_span) proves another")
@@ -170,14 +167,15 @@ class Tube:
 
     def min_distance(self) -> Approach:
         """Return a proved lower bound of the distance of any two agents over the whole tube."""
-        least, q = Approach(inf, (0, 0), self.t[0]), self.state(0)[0]
-        with ctx.workprec(BITS):
-            start = [norm([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
-        for k, t in enumerate((self.t[0], *self.t[:-1])):  # the start by itself: a tube may break before its first step
-            for pair, distance in zip(self.pairs, start if k == 0 else self.distances_during(k - 1), strict=True):
-                if (lower := down(distance.lower())) < least.lower:
-                    least = Approach(lower, pair, t)
-        return least
+        with ctx.workprec(BITS):  # the start by itself: a tube may break before its first step
+            start = [minus(y, x) for x, y in combinations(self.state(0)[0], 2)]
+            rows = [[norm(gap) for gap in gaps] for gaps in (start, *(step.relative for step in self.taken))]
+        each = [
+            Approach(down(distance.lower()), pair, t)
+            for t, row in zip((self.t[0], *self.t), rows, strict=False)
+            for pair, distance in zip(self.pairs, row, strict=True)
+        ]
+        return min(each, key=lambda one: one.lower, default=Approach(inf, (0, 0), self.t[0]))
 
     def clearances_during(self, k: int) -> list[list[arb]]:
         """Return balls that hold the agents' clearances from each obstacle, from step k to the next.
@@ -192,8 +190,6 @@ class Tube:
 
     def _clearances(self, box: Sequence[arb]) -> list[list[arb]]:
         """Return the clearances of each agent from each obstacle, anywhere in a box."""
-        from flockana.certified.laws import sphere_terms
-
         agents = [box[i : i + self.m] for i in range(0, self.n * self.m, self.m)]
         terms = sphere_terms(self.law) if self.law.obstacles else ()
         return [[term.clearance(x) for x in agents] for term in terms]
@@ -201,8 +197,7 @@ class Tube:
     def min_clearance(self) -> ObstacleApproach:
         """Return a proved lower bound of any agent's clearance from any obstacle over the whole tube."""
         with ctx.workprec(BITS):
-            boxes = [self.boxes[0], *(step.during for step in self.taken)]
-            rows = [self._clearances(box) for box in boxes]
+            rows = [self._clearances(box) for box in (self.boxes[0], *(step.during for step in self.taken))]
         each = [
             ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
@@ -224,22 +219,9 @@ class Tube:
         k : int
             Step; negative from the end.
         """
-        _ensure_energy(self.law)
-        return structural_energy(self.law, *self.state(k))
-
-    def energy_during(self, k: int) -> arb:
-        """Return a ball around the structural energy from step k to the next.
-
-        Parameters
-        ----------
-        k : int
-            Step, the last one excluded.
-        """
-        _ensure_energy(self.law)
-        step, half = self.taken[k], self.n * self.m
-        p = [step.during[i : i + self.m] for i in range(half, 2 * half, self.m)]
-        with ctx.workprec(BITS):
-            return energy_of(self.law, [norm2(gap) for gap in step.relative], step.deviations, p)
+        if type(law := self.law) not in (Algorithm1, Algorithm2):
+            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
+        return structural_energy(law, *self.state(k))
 
     def ends_in(self, basin: Basin) -> bool:
         """Return whether every state at the end lies in a certified basin of the same law.
@@ -259,12 +241,6 @@ class Tube:
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 
-def _ensure_energy(law: Any) -> None:
-    """Raise on Algorithm 3, whose energy has more terms."""
-    if type(law) not in (Algorithm1, Algorithm2):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
-
-
 def up(x: arb) -> float:
     """Return a float that is certainly not below an exact number."""
     return nextafter(float(x), inf)
@@ -273,8 +249,3 @@ def up(x: arb) -> float:
 def down(x: arb) -> float:
     """Return a float that is certainly not above an exact number."""
     return nextafter(float(x), -inf)
-
-
-def norm(x: Sequence[arb]) -> arb:
-    """Return the length of a vector, a ball that is nowhere below 0."""
-    return norm2(x).nonnegative_part().sqrt()

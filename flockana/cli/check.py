@@ -24,8 +24,7 @@ def check_command(
     """
     from dataclasses import asdict
 
-    from flockana.certified.check import check_certificate
-    from flockana.certified.forms import RejectedError
+    from flockana.certified.check import RejectedError, check_certificate
 
     try:
         found = check_certificate(file)

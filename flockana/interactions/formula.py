@@ -19,7 +19,7 @@ from flockana.kernels.generated import generated_kernels, generated_potential
 if TYPE_CHECKING:
     from flockana.kernels.lift import PairKernels
     from flockana.symbolic.derivation import Derivation
-    from flockana.symbolic.slopes import SlopeBound
+    from flockana.symbolic.pair_facts import SlopeBound
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding
 
@@ -250,6 +250,6 @@ class FormulaInteraction(PairInteraction):
 
     def derivation(self) -> Derivation:
         """Return the derivation of potential, force, weight and adjacency, with LaTeX output."""
-        from flockana.symbolic.pair_derivation import pair_derivation
+        from flockana.symbolic.pair_formula import pair_derivation
 
         return pair_derivation(self._parts.cut.formula)

@@ -18,8 +18,8 @@ from flockana.interactions.formula_near import TERMS, NearZero, near_zero
 from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
+    from flockana.symbolic.pair_facts import SlopeBound
     from flockana.symbolic.pair_formula import PiecewiseFormula
-    from flockana.symbolic.slopes import SlopeBound
 
 _KEPT = 64  # formulas
 _GRID = 257  # distances at which the force is looked at
@@ -54,7 +54,7 @@ class FormulaParts:
 
     def slopes(self, parts: int) -> tuple[SlopeBound, ...]:
         """Return bounds of the slopes of force and adjacency on parts of the range."""
-        from flockana.symbolic.slopes import slope_bounds
+        from flockana.symbolic.pair_facts import slope_bounds
 
         eps = float(self.par[2])
         return slope_bounds(self.cut, eps, float(np.sqrt(self.par[0])), _places(self.cut, eps), parts)

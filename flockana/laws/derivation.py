@@ -40,7 +40,7 @@ def _pair_steps(pair: Any) -> tuple[Step, ...]:
     if isinstance(pair, FormulaInteraction):
         return pair.derivation().steps
     if isinstance(pair, AlphaInteraction):
-        from flockana.symbolic.pair_derivation import alpha_steps
+        from flockana.symbolic.pair_formula import alpha_steps
 
         return alpha_steps()
     raise ArgumentError(f"{type(pair).__name__} has no formula: expected pair_law(...) or AlphaInteraction(...)")

@@ -2,6 +2,8 @@ from . import bearing_distance as bearing_distance
 from . import dead_zone as dead_zone
 from . import spanning_trees as spanning_trees
 from .concrete import ConcreteFlock as ConcreteFlock
+from .concrete import NumericLaw as NumericLaw
+from .concrete import numeric_law as numeric_law
 from .derivation import Derivation as Derivation
 from .derivation import Step as Step
 from .energy import EnergyIdentity as EnergyIdentity
@@ -18,8 +20,6 @@ from .functions import phi_beta as phi_beta
 from .norms import sigma_1 as sigma_1
 from .norms import sigma_norm as sigma_norm
 from .norms import sigma_norm_gradient as sigma_norm_gradient
-from .numeric import NumericLaw as NumericLaw
-from .numeric import numeric_law as numeric_law
 from .pair import pair_force as pair_force
 from .pair import pair_potential as pair_potential
 from .parameters import ALPHA as ALPHA
@@ -33,7 +33,6 @@ from .potentials import derive_psi_alpha as derive_psi_alpha
 from .potentials import derive_psi_beta as derive_psi_beta
 from .potentials import psi_alpha as psi_alpha
 from .potentials import psi_beta as psi_beta
-from .split import derive_split as derive_split
 from .sums import collective_potential as collective_potential
 from .sums import half_square as half_square
 from .sums import hamiltonian as hamiltonian
@@ -41,6 +40,7 @@ from .sums import structural_hamiltonian as structural_hamiltonian
 from .sums import structural_potential as structural_potential
 from .sums import write_out as write_out
 from .translational import damping_ratio as damping_ratio
+from .translational import derive_split as derive_split
 from .translational import frequency_gain as frequency_gain
 from .translational import natural_frequency as natural_frequency
 from .translational import transfer_function as transfer_function

@@ -36,12 +36,9 @@ def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
     gap = p_j - p_i
     d = sp.sqrt(gap.dot(gap))
     b = gap / d
-    state, flow = [*p_i, *p_j], [*v_i, *v_j]
-
-    def rate(expression: sp.Expr) -> sp.Expr:
-        return sum((expression.diff(x) * v for x, v in zip(state, flow, strict=True)), sp.S.Zero)
-
-    return d, b, rate(d), b.applyfunc(rate)
+    flow = list(zip([*p_i, *p_j], [*v_i, *v_j], strict=True))
+    d_rate, *b_rate = (sp.Add(*(each.diff(x) * v for x, v in flow)) for each in (d, *b))
+    return d, b, d_rate, sp.Matrix(b_rate)
 
 
 def position_form(m: int = 2) -> dict[str, sp.Matrix]:
@@ -139,10 +136,8 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr = DRIVE, weight:
     (0, c - 3/4)
     """
     d = sp.Symbol("d", real=True)
-    push = exact("weight", weight) * (d - C)
-    forward = exact("drive", drive) * exact("v^d", desired_speed)
-    (distance,) = sp.solve(sp.Eq(forward + push, 0), d)
-    return sp.expand(distance)
+    balance = exact("drive", drive) * exact("v^d", desired_speed) + exact("weight", weight) * (d - C)
+    return sp.expand(sp.solve(balance, d)[0])
 
 
 def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repulsion: sp.Expr = LEAST) -> sp.Expr:
@@ -159,8 +154,7 @@ def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repul
     """
     d = sp.Symbol("d", positive=True)
     balance = exact("separation", separation) * (d - C) + exact("cohesion", cohesion) * d
-    (distance,) = sp.solve(sp.Eq(balance, 0), d)
-    return sp.Max(exact("repulsion", repulsion), sp.factor(distance))
+    return sp.Max(exact("repulsion", repulsion), sp.factor(sp.solve(balance, d)[0]))
 
 
 def altitude(speed: sp.Expr | None = None) -> sp.Expr:

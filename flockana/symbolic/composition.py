@@ -1,20 +1,27 @@
-"""Energy balance of composed laws, written out for a small flock, with drag and thrust.
+"""Energy balances of laws written out for three agents: composed laws, velocity consensus, leaders, copies.
 
 Three agents show every kind of pair, and a pull on one, two or all of them, so the identities are those of every n.
 """
 
+from collections.abc import Callable
 from itertools import combinations
 
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
-from flockana.symbolic.derivation import Derivation
-from flockana.symbolic.led_dead_zone import HALF_PULL, OF_SQUARE
-from flockana.symbolic.pair import energy_balance, vector
+from flockana.symbolic.dead_zone import K_2
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.pair import energy_balance, vector, with_derivative
 
 THRUST, BRAKE, DAMPING = sp.symbols("alpha beta c", real=True)
 PULL, MATCH = sp.symbols("c_1 c_2", nonnegative=True)
+WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
 _N = 3
+T = sp.Symbol("t", real=True)
+K1, K2, STIFFNESS, DRAG = sp.symbols("k_1 k_2 k b", real=True)  # of copies of a γ-agent with dynamics
+_GROUP, _PINNED = (0, 0, 1), (0,)  # two agents of one leader, the first of them pinned, and one of another
+_HALF_PULL = sp.Function("W", real=True)  # F(rho)/2rho as a function of rho^2: no roots, so residuals are polynomials
+_OF_SQUARE = with_derivative("psi", _HALF_PULL)
 
 
 def _state(m: int) -> tuple[list[sp.Matrix], list[sp.Matrix], tuple[sp.Matrix, sp.Matrix, sp.Matrix]]:
@@ -22,17 +29,24 @@ def _state(m: int) -> tuple[list[sp.Matrix], list[sp.Matrix], tuple[sp.Matrix, s
     return q, p, (vector("q_r", m), vector("p_r", m), vector("a_r", m))
 
 
-def _between_agents(q: list[sp.Matrix], p: list[sp.Matrix]) -> tuple[list[sp.Matrix], sp.Expr, sp.Expr]:
-    """Return (forces, potential, power of the consensus), with symmetric but otherwise free weights."""
-    u, potential, power = [sp.zeros(*x.shape) for x in q], sp.Integer(0), sp.Integer(0)
+def _weight(i: int, j: int) -> sp.Expr:
+    return sp.Symbol(f"a_{i}{j}", nonnegative=True)
+
+
+def _between_agents(
+    q: list[sp.Matrix], p: list[sp.Matrix], weight: Callable[[int, int, sp.Expr], sp.Expr]
+) -> tuple[list[sp.Matrix], list[sp.Matrix], sp.Expr, sp.Expr]:
+    """Return (forces of the potential, those and the consensus, potential, power of the consensus)."""
+    pulls, u, potential, power = [sp.zeros(*x.shape) for x in q], [sp.zeros(*x.shape) for x in q], sp.S.Zero, sp.S.Zero
     for i, j in combinations(range(_N), 2):
-        weight, apart, slip = sp.Symbol(f"a_{i}{j}", nonnegative=True), q[j] - q[i], p[j] - p[i]
+        apart, slip = q[j] - q[i], p[j] - p[i]
         square = apart.dot(apart)
-        push = 2 * HALF_PULL(square) * apart + DAMPING * weight * slip
-        u[i], u[j] = u[i] + push, u[j] - push
-        potential += OF_SQUARE(square)
-        power -= DAMPING * weight * slip.dot(slip)
-    return u, potential, power
+        pull, own = 2 * _HALF_PULL(square) * apart, weight(i, j, square)
+        for forces, force in ((pulls, pull), (u, pull + own * slip)):
+            forces[i], forces[j] = forces[i] + force, forces[j] - force
+        potential += _OF_SQUARE(square)
+        power -= own * slip.dot(slip)
+    return pulls, u, potential, power
 
 
 def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
@@ -40,7 +54,7 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
     # H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² + Σ
     # (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
     q, p, (q_r, _, _) = _state(m)
-    u, energy, rate = _between_agents(q, p)
+    _, u, energy, rate = _between_agents(q, p, lambda i, j, _: DAMPING * _weight(i, j))
     for i in range(_N):
         factor = THRUST - BRAKE * p[i].dot(p[i])
         u[i] += factor * p[i]
@@ -58,7 +72,7 @@ def moving_frame_identity(m: int = 2) -> Derivation:
     # H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
     # acts on all alike does no work there.
     q, p, (q_r, p_r, a_r) = _state(m)
-    u, energy, rate = _between_agents(q, p)
+    _, u, energy, rate = _between_agents(q, p, lambda i, j, _: DAMPING * _weight(i, j))
     centre, drift = (sum(x[1:], x[0]) / _N for x in (q, p))
     for i in range(_N):
         x, v = q[i] - centre, p[i] - drift
@@ -66,3 +80,72 @@ def moving_frame_identity(m: int = 2) -> Derivation:
         energy += PULL * x.dot(x) / 2 + v.dot(v) / 2
         rate += (THRUST - MATCH) * v.dot(v)
     return energy_balance("Energy in the moving frame", energy, rate, q, p, u)
+
+
+def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
+    """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n."""
+    # H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
+    q, p, _ = _state(m)
+    mean = (p[0] + p[1] + p[2]) / _N
+    pulls, u, energy, lost = _between_agents(q, p, lambda i, j, square: WEIGHT(square))
+    if not potential:
+        u, energy = [a - b for a, b in zip(u, pulls, strict=True)], sp.S.Zero
+    energy += sum((v - mean).dot(v - mean) for v in p) / 2
+    of = "The energy in the frame of the centre of mass,"
+    return energy_balance("Energy of agents that match velocities", energy, lost, q, p, u, of=of)
+
+
+def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
+    """Derive dH/dt of three agents and two leaders, with all kinds of pairs, pinned and not."""
+    # H = sum |p_i - p_l|^2/2 + sum psi(rho_ij^2) + c_1/2 sum of the pinned |q_i - q_l|^2; its rate has -k_2 p^T L p
+    # within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
+    q, p, _ = _state(m)
+    leaders = [[vector(f"{name}_{number}", m) for number in "gh"] for name in ("q", "p", "a")]
+    q_l, p_l, a_l = ([each[number] for number in _GROUP] for each in leaders)
+    slip = [own - led for own, led in zip(p, p_l, strict=True)]
+    same = [[int(a == b) for b in _GROUP] for a in _GROUP]
+    pairs, u, energy, lost = _between_agents(q, p, lambda i, j, _: K_2 * same[i][j] * _weight(i, j))
+    for i in range(_N):
+        u[i] += int(feedforward) * a_l[i]
+        energy += slip[i].dot(slip[i]) / 2
+        lost -= pairs[i].dot(p_l[i]) + (0 if feedforward else slip[i].dot(a_l[i]))
+        if i in _PINNED:
+            u[i] -= PULL * (q[i] - q_l[i]) + MATCH * slip[i]
+            energy += PULL * (q[i] - q_l[i]).dot(q[i] - q_l[i]) / 2
+            lost -= MATCH * slip[i].dot(slip[i])
+    flow = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
+    title = "Energy of the dead-zone law with leaders"
+    return energy_balance(title, energy, lost, *flow, of="The energy in the frames of the leaders,")
+
+
+def copies_balance() -> Derivation:
+    """Derive what the pull to a copy adds to dH/dt, a component of one agent: q'' = f - c1 (q - q_r) - c2 (q' - q_r').
+
+    f is all else; what it does, p f, is counted where its energy is.
+    """
+    q, place, other = (sp.Function(name)(T) for name in ("q", "q_r", "f"))
+    p, rate = q.diff(T), place.diff(T)
+    acceleration = other - PULL * (q - place) - MATCH * (p - rate)
+    energy = PULL * (q - place) ** 2 / 2 + p**2 / 2
+    along = energy.diff(T).subs(q.diff(T, 2), acceleration) - p * other
+    stated = -MATCH * p * (p - rate) - PULL * (q - place) * rate
+    steps = (
+        Step("Energy of one agent and its copy, a component of each:", energy),
+        Step("Its rate along the law, without the power of all else:", sp.expand(along)),
+    )
+    return Derivation("Balance of an agent and its copy", steps, stated, (sp.expand(along - stated),))
+
+
+def copies_part() -> Derivation:
+    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
+    copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
+    mean = sum(copies) / 3
+    pulls = (K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies)
+    pulled = {q.diff(T, 2): -STIFFNESS * q - DRAG * q.diff(T) + pull for q, pull in zip(copies, pulls, strict=True)}
+    away = copies[0] - mean
+    left = away.diff(T, 2).subs(pulled)
+    right = -(STIFFNESS + K1) * away - (DRAG + K2) * away.diff(T)
+    d = sp.Function("d")(T)
+    result = sp.Eq(d.diff(T, 2), (-DRAG - K2) * d.diff(T) + (-STIFFNESS - K1) * d)
+    steps = (Step("Of a copy less the mean:", result),)
+    return Derivation("How copies part", steps, result, (sp.expand((left - right).doit()),))

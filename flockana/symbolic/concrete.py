@@ -2,25 +2,33 @@
 
 Here nothing is lifted from a generic pair: the sums are formed, differentiated and compared as they stand,
 with the graph Laplacian as a matrix. So it tests the lifting of `flockana.symbolic.energy`, and reference
-values come from it.
+values come from it, by mpmath with thirty digits: slow and exact, for tests that hold a fast kernel against the formula
+itself. psi_alpha comes from its derived pieces, the rate of the energy from the chain rule, not from the closed form.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import numpy.typing as npt
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension, ensure_known
+from flockana.base.checks import FloatArray, ensure_count, ensure_dimension, ensure_known, ensure_state, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Printed, Step, latex_steps
-from flockana.symbolic.functions import HALF
+from flockana.symbolic.functions import HALF, adjacency, phi_alpha
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
-from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.parameters import GAINS, AlphaSymbols, GainSymbols
+from flockana.symbolic.potentials import ALPHA_NAMED, Z, psi_alpha
 
 LAWS = ("algorithm1", "algorithm2")
+DIGITS = 30
 
 
 @dataclass(frozen=True)
@@ -48,8 +56,7 @@ class ConcreteFlock(Printed):
 
     def __post_init__(self) -> None:
         ensure_known("law", self.law, LAWS)
-        if not isinstance(self.n, int) or self.n < 1:
-            raise ArgumentError(f"n = {self.n!r}: expected a number of agents >= 1")
+        ensure_count("n", self.n)
         ensure_dimension(self.m)
 
     @cached_property
@@ -77,13 +84,12 @@ class ConcreteFlock(Printed):
     def acceleration(self) -> tuple[sp.Matrix, ...]:
         """Input u_i of every agent."""
         total = []
-        for i, (q_i, p_i) in enumerate(zip(self.q, self.p, strict=True)):
+        for i, own in enumerate(agents := list(zip(self.q, self.p, strict=True))):
             u_i = sp.zeros(self.m, 1)
             if self.law == "algorithm2":
-                u_i += own_force(q_i, p_i, *self.target, gains=self.gains)
-            for j, (q_j, p_j) in enumerate(zip(self.q, self.p, strict=True)):
-                if j != i:
-                    u_i += pair_force(q_i, p_i, q_j, p_j, gains=self.gains)
+                u_i += own_force(*own, *self.target, gains=self.gains)
+            for other in agents[:i] + agents[i + 1 :]:
+                u_i += pair_force(*own, *other, gains=self.gains)
             total.append(sp.ImmutableMatrix(u_i))
         return tuple(total)
 
@@ -92,10 +98,9 @@ class ConcreteFlock(Printed):
         """H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2 as a function of q and p."""
         x, v = self.moving if self.law == "algorithm2" else (self.q, self.p)
         potential = sp.Add(*(pair_potential(x_i, x_j, gains=self.gains) for x_i, x_j in combinations(x, 2)))
-        kinetic = self.kinetic_factor * sp.Add(*(v_i.dot(v_i) for v_i in v))
-        if self.law == "algorithm1":
-            return potential + kinetic
-        return potential + self.gains.c1_gamma * HALF * sp.Add(*(x_i.dot(x_i) for x_i in x)) + kinetic
+        inertia, kinetic = (sp.Add(*(each.dot(each) for each in rows)) for rows in (x, v))
+        pull = self.gains.c1_gamma * HALF * inertia if self.law == "algorithm2" else sp.S.Zero
+        return potential + pull + self.kinetic_factor * kinetic
 
     @cached_property
     def rate(self) -> sp.Expr:
@@ -164,3 +169,99 @@ class ConcreteFlock(Printed):
             Step("What is left between the two:", self.residual),
         )
         return latex_steps(f"{self.law.capitalize()}, n = {self.n}, m = {self.m}", steps)
+
+
+@dataclass(frozen=True)
+class NumericLaw:
+    """Law with numeric parameters, evaluated from its symbolic expressions.
+
+    Parameters
+    ----------
+    flock : ConcreteFlock
+        The expressions.
+    functions : tuple of callables
+        Acceleration, energy and energy rate of the flat state.
+
+    Examples
+    --------
+    >>> paper = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+    >>> law = numeric_law("algorithm1", 2, 1, alpha=paper, gains=GainSymbols(1, 1))
+    >>> law.energy([[0.0], [0.0]], [[0.0], [0.0]])
+    52.38381178664486
+    """
+
+    flock: ConcreteFlock
+    functions: tuple[Callable[..., Any], ...]
+
+    def _evaluate(self, which: int, q: Any, p: Any) -> Any:
+        """Return one of the functions at a state, in high precision."""
+        q, p = ensure_state(q, p)
+        if q.shape != (self.flock.n, self.flock.m):
+            raise ArgumentError(f"q has shape {q.shape}: expected {(self.flock.n, self.flock.m)}, as derived")
+        with mpmath.workdps(DIGITS):
+            return self.functions[which](*(mpmath.mpf(x) for x in (*q.ravel().tolist(), *p.ravel().tolist())))
+
+    def acceleration(self, q: npt.ArrayLike, p: npt.ArrayLike) -> FloatArray:
+        """Return u, shape (n, m)."""
+        flat = [float(u) for u in self._evaluate(0, q, p)]
+        return np.array(flat).reshape(self.flock.n, self.flock.m)
+
+    def energy(self, q: npt.ArrayLike, p: npt.ArrayLike) -> float:
+        """Return H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2."""
+        return float(self._evaluate(1, q, p))
+
+    def energy_rate(self, q: npt.ArrayLike, p: npt.ArrayLike) -> float:
+        """Return the energy's time derivative along the flow, by the chain rule."""
+        return float(self._evaluate(2, q, p))
+
+
+def _numbers(alpha: AlphaSymbols) -> list[sp.Expr]:
+    return [alpha.h, alpha.a, alpha.b, alpha.c, alpha.d_alpha, alpha.r_alpha]
+
+
+def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
+    """Return a function of z with fixed parameters."""
+    function = sp.lambdify([Z, *_numbers(ALPHA_NAMED)], scalar(Z, alpha=ALPHA_NAMED), "mpmath")
+    with mpmath.workdps(DIGITS):
+        values = [mpmath.mpmathify(number.evalf(DIGITS)) for number in numbers]
+    return lambda z: function(z, *values)
+
+
+def numeric_law(
+    law: str, n: int, m: int, *, alpha: AlphaSymbols, gains: GainSymbols, q_r: Any = None, p_r: Any = None
+) -> NumericLaw:
+    """Return acceleration, energy and energy rate of a small flock as functions of numpy arrays.
+
+    Parameters
+    ----------
+    law : str
+        ``"algorithm1"`` or ``"algorithm2"``.
+    n, m : int
+        Number of agents (small: the expressions grow as n^2), dimension.
+    gains : GainSymbols
+        Gains, all numbers that the law uses.
+    q_r, p_r : array_like, shape (m,), optional
+        State of the gamma-agent; the origin at rest if not given.
+
+    Examples
+    --------
+    >>> paper = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
+    >>> law = numeric_law("algorithm2", 1, 1, alpha=paper, gains=GainSymbols(1, 1, 1, 2), q_r=[3.0])
+    >>> law.acceleration([[1.0]], [[0.5]]).tolist()
+    [[1.0]]
+    """
+    flock = ConcreteFlock(law, n, m, gains)
+    values: dict[sp.Expr, sp.Expr] = {EPS: alpha.eps}
+    for name, symbols, given in zip(("q_r", "p_r"), flock.target, (q_r, p_r), strict=True):
+        components = ensure_vector(name, np.zeros(m) if given is None else given, m)
+        values |= {symbol: sp.Rational(float(x)) for symbol, x in zip(symbols, components, strict=True)}
+    state = [symbol for part in (flock.q, flock.p) for row in part for symbol in row]
+    numbers = _numbers(alpha)
+    accelerations = [u.xreplace(values) for row in flock.acceleration for u in row]
+    expressions = [accelerations, flock.energy.xreplace(values), flock.rate.xreplace(values)]
+    missing = sp.Tuple(*numbers, *sp.flatten(expressions)).free_symbols - set(state)
+    if missing:
+        raise ArgumentError(f"parameters {sorted(map(str, missing))} are symbols: expected a number for each")
+    scalars = {"phi_alpha": phi_alpha, "psi_alpha": psi_alpha, "a": adjacency}
+    modules = [{name: _compile(scalar, numbers) for name, scalar in scalars.items()}, "mpmath"]
+    return NumericLaw(flock, tuple(sp.lambdify(state, each, modules, cse=True) for each in expressions))

@@ -1,11 +1,10 @@
 """The dead-zone pair law of Li, Yuan and Liu in sympy: force, potential in closed form, jumps, saturated energy."""
 
 import sympy as sp
-from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.pair import along_flow, vector, with_derivative
 
 RHO = sp.Symbol("rho", positive=True)
 ETA, ETA_POSITIVE = sp.Symbol("eta", nonnegative=True), sp.Symbol("eta", positive=True)
@@ -13,7 +12,7 @@ K_R, K_DELTA, K_1, K_2 = sp.symbols("k_r k_delta k_1 k_2", nonnegative=True)
 D_1, D_2, R, R_D = sp.symbols("d_1 d_2 r r_d", positive=True)
 
 FORCE = sp.Function("F", real=True)
-PSI = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, argindex=1: FORCE(self.args[0])})
+PSI = with_derivative("psi", FORCE)
 
 
 def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
@@ -101,14 +100,11 @@ def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
     9*k_1/2
     """
 
-    def primitive(s: sp.Expr) -> sp.Expr:
-        return attractive_primitive(s, eta=eta) - attractive_primitive(D_2, eta=eta)
+    def far(s: sp.Expr) -> sp.Expr:
+        return attractive_primitive(s, eta=eta) - attractive_primitive(D_2, eta=eta) + K_1 * s**2 / 2
 
-    def pull(s: sp.Expr) -> sp.Expr:
-        return K_1 * s**2 / 2
-
-    near = repulsive_primitive(D_1, eta=eta) - repulsive_primitive(rho, eta=eta)
-    return _pieces(rho, primitive(R) + pull(R), near + pull(rho), pull(rho), primitive(rho) + pull(rho))
+    pull, near = K_1 * rho**2 / 2, repulsive_primitive(D_1, eta=eta) - repulsive_primitive(rho, eta=eta)
+    return _pieces(rho, far(R), near + pull, pull, far(rho))
 
 
 def derive_potential() -> Derivation:

@@ -1,4 +1,4 @@
-"""Decisions about a formula over an interval by branch and bound: smoothness, sign and least value.
+"""Decisions about a formula over an interval by branch and bound: smoothness, sign, least value of it or its integral.
 
 Intervals are halved until an enclosure decides. What decides is the number of intervals, never the clock, so that the
 answer is the same on every machine.
@@ -6,6 +6,7 @@ answer is the same on every machine.
 
 import heapq
 from collections.abc import Callable
+from functools import reduce
 from itertools import count
 from math import inf, nextafter
 from typing import NamedTuple
@@ -25,7 +26,11 @@ _ORDERS = 8  # of the first derivative that is not 0
 _CLOSED, _CLOSED_OF_SCALE = 1e-13, 1e-15  # to which a least value is known, relative to it or to the scale
 _NARROWEST = 80  # halvings of an interval on which a least value is sought
 _BITS = 96
-Place = Callable[[float], float]
+_INTEGRAL_BITS, _TERMS = 128, 10  # of Taylor integrals with enclosed remainders
+_PARTS, _FINEST = 4000, 40  # intervals of a region, and halvings
+_EXACT = 1e-15  # of the scale: remainder of an interval
+_UNKNOWN = ((-inf, inf), (-inf, inf))
+Bounds = tuple[float, float]
 
 
 def down(x: arb) -> float:
@@ -41,18 +46,14 @@ def up(x: arb) -> float:
 
 def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | None:
     """Return whether a number is 0, by algebra or by its enclosure; None if undecided."""
-    if expression == 0:
-        return True
     exact = expression.xreplace(numbers)
-    if exact == 0:
+    if expression == 0 or exact == 0:
         return True
     with precision(600):
         value = Enclosed(exact, sp.Dummy()).series(arb(0))
-    if value is None:
-        return None
-    if not value[0].contains(0):
+    if value is not None and not value[0].contains(0):
         return False
-    return True if sp.expand(exact) == 0 or sp.expand(sp.together(exact)) == 0 else None
+    return True if value is not None and 0 in (sp.expand(exact), sp.expand(sp.together(exact))) else None
 
 
 class Region(NamedTuple):
@@ -67,12 +68,16 @@ class Region(NamedTuple):
     left: fmpq
     right: fmpq
     ends: tuple[sp.Expr, sp.Expr]
-    place: Place
+    place: Callable[[fmpq], float]
 
     @property
     def exact(self) -> sp.Expr:
         """The formula with its numbers inserted."""
         return self.expression.xreplace(self.numbers)
+
+    def between(self, left: fmpq, right: fmpq) -> tuple[float, float]:
+        """Distances of the ends of an interval, for messages."""
+        return self.place(left), self.place(right)
 
     @property
     def enclosed(self) -> Enclosed:
@@ -85,12 +90,9 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
     of, whole = region.enclosed, region.right - region.left
     open_: list[Fact] = []
     stack, looked = [(region.left, region.right, 0)], 0
-    while stack:
+    while stack and looked < MOST and len(open_) < _FEW:
         left, right, depth = stack.pop()
         looked += 1
-        if looked > MOST or len(open_) >= _FEW:
-            stack.append((left, right, depth))
-            break
         with precision(64 + 4 * depth, 2):
             if of.series(interval(left, right)) is not None:
                 continue
@@ -102,12 +104,12 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
         if fact.status == "unmet":
             return [fact]
         open_.append(fact)
-    rest = float(sum(float(arb(right - left)) for left, right, _ in stack))
+    rest = sum(_float(right - left) for left, right, _ in stack)
     if rest:
-        text = f"whether {name} is smooth is open from s = {region.place(_float(stack[-1][0])):.6g} on"
-        open_.append(Fact("assumed", text, _ends(region, stack[-1][0], stack[0][1]), rest))
+        text = f"whether {name} is smooth is open from s = {region.place(stack[-1][0]):.6g} on"
+        open_.append(Fact("assumed", text, region.between(stack[-1][0], stack[0][1]), rest))
     elif open_:
-        open_[0] = Fact("assumed", open_[0].detail, open_[0].witness, len(open_) * float(arb(whole)) * 2.0**-_DEEPEST)
+        open_[0] = Fact("assumed", open_[0].detail, open_[0].witness, len(open_) * _float(whole) * 2.0**-_DEEPEST)
     return open_[:1] if not rest else open_[-1:]
 
 
@@ -115,18 +117,12 @@ def _float(x: fmpq) -> float:
     return float(arb(x))
 
 
-def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
-    return region.place(_float(left)), region.place(_float(right))
-
-
-def _visible_faults(
-    of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
-) -> Fact:  # fmt: skip
+def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
     """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""
-    whole, place = region.right - region.left, region.place(_float(at))
+    whole, place = region.right - region.left, region.place(at)
     near, far = whole / 2**100, whole / 2**50
     sides: list[list[list[arb] | None]] = []
-    witness = _ends(region, max(at - near, region.left), min(at + near, region.right))
+    witness = region.between(max(at - near, region.left), min(at + near, region.right))
     with precision(900, 2):
         for sign in (-1, 1):
             points = [at + sign * step for step in (near, far)]
@@ -134,7 +130,7 @@ def _visible_faults(
                 sides.append([of.series(arb(point)) for point in points])
     if any(all(values is None for values in side) for side in sides):
         return Fact("unmet", f"{name} has no finite real value at s = {place:.6g}", witness)
-    if any(values is None for side in sides for values in side):
+    if any(None in side for side in sides):
         return Fact("assumed", f"whether {name} is defined at s = {place:.6g} is open", witness)
     for order, (scale, word) in enumerate(zip(scales, (name, kinks), strict=True)):
         if not word:
@@ -151,15 +147,14 @@ def _visible_faults(
 def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
     """Return the fact whether a formula is nonnegative on an interval, and positive inside."""
     if region.expression == 0:
-        return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", _ends(region, region.left, region.right))
+        return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", region.between(region.left, region.right))
     left, right = region.left, region.right
     for side in (0, 1):
         sign, width = _at_end(region, side)
         if sign < 0:
             box = (left, left + width) if side == 0 else (right - width, right)
-            fact = Fact("unmet", f"{name} is negative beside s = {region.place(_float(box[side])):.6g}",
-                        _ends(region, *box))  # fmt: skip
-            return fact, fact
+            text = f"{name} is negative beside s = {region.place(box[side]):.6g}"
+            return (Fact("unmet", text, region.between(*box)),) * 2
         left, right = (left + width, right) if side == 0 else (left, right - width)
     return _sign_inside(region, left, right, name)
 
@@ -168,14 +163,10 @@ def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
     """Return the sign of a formula beside an end where it vanishes, and how far it holds; else (0, 0)."""
     derivative, whole = region.expression, region.right - region.left
     end = region.ends[side]
-    for order in range(_ORDERS):
-        zero = is_zero(derivative.subs(region.variable, end), region.numbers)
-        if zero is None or (order == 0 and not zero):
-            return 0, fmpq(0)
-        if not zero:
-            break
-        derivative = sp.diff(derivative, region.variable)
-    else:
+    order = 0
+    while (zero := is_zero(derivative.subs(region.variable, end), region.numbers)) and order < _ORDERS - 1:
+        derivative, order = sp.diff(derivative, region.variable), order + 1
+    if zero is not False or order == 0:
         return 0, fmpq(0)
     of = region.enclosed
     for halving in range(2, 60):
@@ -200,9 +191,8 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
             middle = (left + right) / 2
             at = of.series(arb(middle))
             if at is not None and at[0] < 0:
-                value, place = float(at[0]), region.place(_float(middle))
-                fact = Fact("unmet", f"{name} is {value:.3g} at s = {place:.6g}", (place, place))
-                return fact, fact
+                place = region.place(middle)
+                return (Fact("unmet", f"{name} is {float(at[0]):.3g} at s = {place:.6g}", (place, place)),) * 2
         if sign == POSITIVE or (sign == NONNEGATIVE and depth >= _STRICT):
             weak += [(left, right)] * (sign == NONNEGATIVE)
             continue
@@ -210,17 +200,15 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
             stack.append((left, right, depth))
             break
         stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
-    rest = sum(_float(b) - _float(a) for a, b, _ in stack)
     if stack:
-        where = _ends(region, stack[-1][0], stack[0][1])
-        fact = Fact("assumed", f"whether {name} is negative is open from s = {where[0]:.6g} on", where, rest)
-        return fact, fact
+        where, rest = region.between(stack[-1][0], stack[0][1]), sum(_float(b) - _float(a) for a, b, _ in stack)
+        text = f"whether {name} is negative is open from s = {where[0]:.6g} on"
+        return (Fact("assumed", text, where, rest),) * 2
     met = Fact("met", f"{name} is enclosed at every distance")
-    if weak:
-        where = _ends(region, weak[0][0], weak[-1][1])
-        width = sum(_float(b) - _float(a) for a, b in weak)
-        return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
-    return met, met
+    if not weak:
+        return met, met
+    where, width = region.between(weak[0][0], weak[-1][1]), sum(_float(b) - _float(a) for a, b in weak)
+    return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
 
 
 def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
@@ -261,15 +249,14 @@ def least_on(region: Region, scale: float) -> Least:
         while looked < MOST // 2:
             looked += 1
             low, _, left, right = heap[0]
-            if low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best))):
-                break
-            if (right - left) * 2**_NARROWEST < region.right - region.left:
+            close = low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best)))
+            if close or (right - left) * 2**_NARROWEST < region.right - region.left:
                 break
             heapq.heappop(heap)
             middle = (left + right) / 2
             bound_part(left, middle)
             bound_part(middle, right)
-        return Least(min(heap[0][0], down(best)), up(best), region.place(_float(where)))
+        return Least(min(heap[0][0], down(best)), up(best), region.place(where))
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
@@ -290,3 +277,46 @@ def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
         square = (off * off).nonnegative_part()
         low = low.max((at[0] + at[1] * off + found[2] * square).lower())
     return low, seen, middle
+
+
+def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
+    """Return bounds of an integral's least value and of its value at the left end; it is 0 at the anchor."""
+    total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
+    with precision(_INTEGRAL_BITS, _TERMS):
+        for region in regions:
+            if abs(float(arb(region.left - anchor))) <= 1e-20 * float(arb(region.right)):
+                at_anchor = total
+            parts = _taylor_parts(region, scale)
+            if parts is None:
+                return _UNKNOWN
+            for whole, slope, width in parts:
+                if slope.contains(0):
+                    lows.append((total + arb(0).union(slope * width)).lower())
+                total += whole
+                lows.append(total.lower())
+                highs.append(total.upper())
+        if at_anchor is None:
+            at_anchor = total
+        least, most = reduce(arb.min, lows), reduce(arb.min, highs)
+        return (down(least - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
+
+
+def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
+    """Return integral, range and width of intervals on which Taylor's formula is exact to rounding."""
+    of, parts = region.enclosed, []
+    stack = [(region.left, region.right, 0)]
+    while stack:
+        left, right, depth = stack.pop()
+        middle, half = (left + right) / 2, (right - left) / 2
+        found, at = of.series(interval(left, right)), of.series(arb(middle))
+        if found is not None and at is not None:
+            whole = sum((2 * at[k] * arb(half) ** (k + 1) / (k + 1) for k in range(0, _TERMS - 1, 2)), arb(0))
+            rest = 2 * arb(half) ** _TERMS / _TERMS * found[_TERMS - 1].abs_upper()
+            crosses = found[0].contains(0) and float((found[0].abs_upper() * arb(2 * half)).upper()) > _EXACT * scale
+            if float(rest) <= _EXACT * scale and not (crosses and depth < _FINEST):
+                parts.append((whole + arb(0, rest), found[0], arb(2 * half)))
+                continue
+        if depth >= _FINEST or len(parts) + len(stack) > _PARTS:
+            return None
+        stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+    return parts

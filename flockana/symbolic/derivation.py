@@ -42,11 +42,14 @@ def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
 
 
 class Printed:
-    """Base class of what a notebook shows as LaTeX."""
+    """Base class of what a notebook shows as LaTeX: steps under a title."""
+
+    title: str
+    steps: tuple[Step, ...]
 
     def latex(self) -> str:
         """Return the steps as LaTeX."""
-        raise NotImplementedError
+        return latex_steps(self.title, self.steps)
 
     def _repr_latex_(self) -> str:
         return f"$${self.latex()}$$"
@@ -80,6 +83,3 @@ class Derivation(Printed):
     def holds(self) -> bool:
         """Return whether every computed residual vanishes identically."""
         return all(residual == 0 for residual in self.residuals)
-
-    def latex(self) -> str:  # noqa: D102
-        return latex_steps(self.title, self.steps)

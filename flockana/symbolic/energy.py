@@ -10,25 +10,13 @@ from dataclasses import dataclass
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
+from flockana.symbolic import sums
 from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
-from flockana.symbolic.sums import (
-    I_,
-    J_,
-    P,
-    Q,
-    V,
-    X,
-    Z,
-    hamiltonian,
-    over_agents,
-    over_pairs,
-    sigma_distance,
-    structural_hamiltonian,
-)
+from flockana.symbolic.sums import I_, J_, P, Q, V, X, Z, indexed, over_agents, over_pairs
 
 
 @dataclass(frozen=True)
@@ -66,8 +54,7 @@ class EnergyIdentity(Printed):
         """Return whether the residual vanishes identically."""
         return bool(self.residual == 0)
 
-    def latex(self) -> str:
-        """Return the derivation as LaTeX."""
+    def latex(self) -> str:  # noqa: D102
         return latex_steps(self.name, self.steps)
 
 
@@ -92,6 +79,13 @@ class GenericPair:
         """Return the rate of a pair's energy under the forces between the two, tidied."""
         components = [[*first, *second] for first, second in (self.q, self.p, self.forces(gains))]
         return self.tidy(along_flow(energy, *components))
+
+    def energy_rates(
+        self, gains: GainSymbols = GAINS, *, copies: sp.Expr = sp.S.One, factor: sp.Expr = HALF
+    ) -> tuple[sp.Expr, sp.Expr]:
+        """Return the rates of copies * psi_alpha and of factor * (|p_i|^2 + |p_j|^2)."""
+        kinetic = factor * sp.Add(*(p.dot(p) for p in self.p))
+        return self.along(copies * pair_potential(*self.q, gains=gains), gains), self.along(kinetic, gains)
 
     def laplacian_form(self) -> sp.Expr:
         """Return the pair's block of p^T L p: a_ij times [[1, -1], [-1, 1]] for every component."""
@@ -122,10 +116,7 @@ class GenericPair:
 
 def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple[sp.Expr, sp.Expr, tuple[Step, ...]]:
     """Return the pair's contribution to dH/dt, the one claimed, and the steps between."""
-    q_i, q_j = pair.q
-    p_i, p_j = pair.p
-    potential = pair.along(pair_potential(q_i, q_j, gains=gains), gains)
-    power = pair.along(factor * (p_i.dot(p_i) + p_j.dot(p_j)), gains)
+    potential, power = pair.energy_rates(gains, factor=factor)
     total = pair.tidy(potential + power)
     claimed = -gains.c2_alpha * pair.laplacian_form()
     first = r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
@@ -152,12 +143,12 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     """
     pair = GenericPair(m)
     total, claimed, steps = _pair_steps(pair, kinetic_factor, gains)
-    energy = hamiltonian(m, gains=gains, factor=kinetic_factor)
+    energy = sums.hamiltonian(m, gains=gains, factor=kinetic_factor)
     rate = pair.lift(total)
     stated = pair.lift(claimed)
     lifting = (
         Step("The energy, every pair once, with", energy),
-        Step("the sigma-distance of a pair:", sigma_distance(Q, m)),
+        Step("the sigma-distance of a pair:", sums.sigma_distance(Q, m)),
         *steps,
         Step(
             r"Lifting: $\dot H = \sum_{i<j} \dot\psi_{ij} + \sum_i p_i \cdot u_i$ and "
@@ -169,6 +160,13 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     )
     residual = pair.lift(pair.tidy(total - claimed))
     return EnergyIdentity("Algorithm 1: energy", energy, rate, stated, residual, lifting)
+
+
+def relative_feedback(x_i: sp.Matrix, v_i: sp.Matrix, gains: GainSymbols) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return the navigational feedback on an agent at (x_i, v_i) from the centre less that on the centre, and this."""
+    q_c, p_c, q_r, p_r = (vector(name, len(x_i)) for name in ("q_c", "p_c", "q_r", "p_r"))
+    centre = own_force(q_c, p_c, q_r, p_r, gains=gains)
+    return (own_force(q_c + x_i, p_c + v_i, q_r, p_r, gains=gains) - centre).expand(), centre
 
 
 def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.Expr | None = None) -> EnergyIdentity:
@@ -192,18 +190,16 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     pair = GenericPair(m, (X, V))
     total, claimed, steps = _pair_steps(pair, HALF, gains)
     (x_i, _), (v_i, _) = pair.q, pair.p
-    q_c, p_c, q_r, p_r = (vector(name, m) for name in ("q_c", "p_c", "q_r", "p_r"))
-    own = own_force(q_c + x_i, p_c + v_i, q_r, p_r, gains=gains) - own_force(q_c, p_c, q_r, p_r, gains=gains)
-    own = own.expand()
+    own = relative_feedback(x_i, v_i, gains)[0]
     agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own)))
     agent_claimed = -gains.c2_gamma * v_i.dot(v_i)
-    names = {s: base[I_, k] for base, part in ((X, x_i), (V, v_i)) for k, s in enumerate(part, start=1)}
-    energy = structural_hamiltonian(m, gains=gains, lambda_=lambda_)
+    names = indexed((X, x_i), (V, v_i))
+    energy = sums.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
     rate = pair.lift(total) + over_agents(agent.xreplace(names))
     stated = pair.lift(claimed) + over_agents(agent_claimed.xreplace(names))
     lifting = (
         Step("The energy in the moving frame, with", energy),
-        Step("the sigma-distance of a pair:", sigma_distance(X, m)),
+        Step("the sigma-distance of a pair:", sums.sigma_distance(X, m)),
         *steps,
         Step(
             r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; the feedback on it minus that on the centre is",

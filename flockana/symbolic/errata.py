@@ -1,16 +1,27 @@
-"""Erratum E1: the slides print H = V + sum |p_i|^2; the kinetic energy needs the factor 1/2."""
+"""Errata of the slides: E1 and E14.
+
+E1: they print H = V + sum |p_i|^2; the kinetic energy needs the factor 1/2. E14: in Reynolds' rules in Algorithm 1 they
+lose the term -S_i q_i.
+"""
 
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from flockana.symbolic.concrete import ConcreteFlock
-from flockana.symbolic.derivation import Step
+from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import EnergyIdentity, algorithm1_identity
 from flockana.symbolic.functions import HALF, adjacency, phi_alpha
 from flockana.symbolic.norms import EPS
 from flockana.symbolic.pair import ADJACENCY, PHI
 from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
+from flockana.symbolic.sums import sum_over
+
+FRIENDS, NEGATIVE = sp.symbols("k l", integer=True, positive=True)  # |F+| and |F-|
+_J = sp.Symbol("j", integer=True, positive=True)
+STRESS, PLACE, SHIFT = sp.IndexedBase("s", real=True), sp.IndexedBase("q", real=True), sp.Symbol("w", real=True)
+OWN = sp.Symbol("q_i", real=True)
+_PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F-; what has no stress adds nothing
 
 
 def e1_identity(m: int = 2) -> EnergyIdentity:
@@ -54,6 +65,12 @@ class RisingEnergy:
     true_rate: sp.Expr
 
 
+def with_pair_law(expression: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
+    """Return an expression with the paper's functions for phi_alpha and a_ij."""
+    concrete = expression.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
+    return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+
+
 def e1_counterexample() -> RisingEnergy:
     """Return two agents on a line, too close and separating, at which the printed H rises.
 
@@ -69,8 +86,37 @@ def e1_counterexample() -> RisingEnergy:
     def rate(factor: sp.Expr) -> sp.Expr:
         flock = ConcreteFlock("algorithm1", 2, 1, gains, factor)
         values = {row[0]: x for part, state in ((flock.q, q), (flock.p, p)) for row, x in zip(part, state, strict=True)}
-        at_state = flock.rate.subs({**values, EPS: alpha.eps})
-        concrete = at_state.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
-        return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+        return with_pair_law(flock.rate.subs({**values, EPS: alpha.eps}), alpha)
 
     return RisingEnergy(alpha, gains, q, p, rate(sp.S.One), rate(HALF))
+
+
+def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
+    """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i."""
+    pull = sp.expand(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)))
+    return sp.expand(sp.Add(*(sum_over(pull, part) for part in _PARTS)))
+
+
+def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
+    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-."""
+    # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
+    # means.
+    total = sp.S.Zero
+    for part in _PARTS:
+        stress = sum_over(STRESS[_J], part)
+        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), part) / stress
+        total += stress * (mean if printed else mean - (OWN + shift))
+    return sp.expand(total)
+
+
+def reynolds_form(*, printed: bool = False) -> Derivation:
+    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is."""
+    true, stated = gradient_part(), friends_form(printed=printed)
+    moved = friends_form(printed=printed, shift=SHIFT)
+    steps = (
+        Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true),
+        Step("What is stated in the stress-weighted means of both:", stated),
+        Step(r"Move all agents by $w$; it becomes", moved),
+    )
+    residuals = (sp.expand(true - stated), sp.expand(moved - stated))
+    return Derivation(r"Flock centring and collision avoidance, $u_i^g$", steps, stated, residuals)

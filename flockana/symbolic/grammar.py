@@ -55,9 +55,8 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        raise ArgumentError(
-            f"{where}: {_short(text)} cannot be read; expected a formula such as k*(s - d)**2"
-        ) from None
+        fault = f"{where}: {_short(text)} cannot be read; expected a formula such as k*(s - d)**2"
+        raise ArgumentError(fault) from None
     value = _Reader(text, symbols, where).expression(tree.body, 0)
     if not isinstance(value, sp.Expr):
         raise ArgumentError(f"{where}: {_short(text)} is a condition; expected a value")
@@ -132,10 +131,9 @@ class _Reader:
             return self._number(node.value)
         if isinstance(node, ast.Name):
             if node.id not in self.names:
-                raise ArgumentError(
-                    f"{self.where} has the unknown name {node.id!r}: expected one of "
-                    f"{', '.join(sorted(self.names))}; give a parameter its value, parameters={{{node.id!r}: ...}}"
-                )
+                known, remedy = ", ".join(sorted(self.names)), f"parameters={{{node.id!r}: ...}}"
+                fault = f"{self.where} has the unknown name {node.id!r}: expected one of {known}"
+                raise ArgumentError(f"{fault}; give a parameter its value, {remedy}")
             return self.names[node.id]
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
             value = self._value(node.operand, depth)
@@ -143,11 +141,11 @@ class _Reader:
         if isinstance(node, ast.BinOp):
             return self._operation(node, depth)
         if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _RELATIONS:
-            left, right = (self._value(each, depth) for each in (node.left, node.comparators[0]))
-            for each in (left, right):
-                _ensure_plain(each, self.where)
+            sides = [self._value(each, depth) for each in (node.left, node.comparators[0])]
+            for side in sides:
+                _ensure_plain(side, self.where)
             try:
-                return _RELATIONS[type(node.ops[0])](left, right)
+                return _RELATIONS[type(node.ops[0])](*sides)
             except TypeError as error:
                 raise ArgumentError(f"{self.where}: {error}; expected real values to compare") from None
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
@@ -211,8 +209,8 @@ class _Reader:
     def _ensure_small(self, value: sp.Expr) -> None:
         """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
         nodes, tower, degree = expression_size(value, self._sizes)
-        for found, most, what in ((nodes, NODES, "parts"), (tower, TOWER, "exponentials within each other"),
-                                  (degree, DEGREE, "as its degree")):  # fmt: skip
+        towers = tower, TOWER, "exponentials within each other"
+        for found, most, what in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):
             if found > most:
                 raise ArgumentError(f"{self.where} has {found} {what}: expected at most {most}, a simpler formula")
 
@@ -223,9 +221,8 @@ class _Reader:
         with precision(_DIVISOR_BITS):
             found = Enclosed(value, sp.Dummy()).series(arb(0))
         if found is None or found[0].contains(0):
-            raise ArgumentError(
-                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or not distinguishable from 0"
-            )
+            divisor = _short(ast.unparse(node))
+            raise ArgumentError(f"{self.where}: the divisor {divisor} is 0, or not distinguishable from 0")
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
         """Raise on powers such as 9**9**9 before they are computed."""

@@ -7,14 +7,13 @@ blocks for every n. The action functions and weights stay generic: φ' and a' ar
 from typing import Any
 
 import sympy as sp
-from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import GenericPair
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.obstacles import PHI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector
+from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector, with_derivative
 from flockana.symbolic.parameters import GAINS, GainSymbols
 from flockana.symbolic.theorem6 import gamma_force
 
@@ -26,13 +25,19 @@ PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
 
 def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
     """Return the derivative of a force, one column per variable, in terms of named functions of σ."""
-    aware = {}
-    for function, slope in table.items():  # the same function, with its derivative
-        derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
-        aware[function] = UndefinedFunction(f"{function.__name__}*", real=True, __dict__=derivative)
-        force = force.replace(function, aware[function])
+    aware = {function: with_derivative(f"{function.__name__}*", slope) for function, slope in table.items()}
+    for function, differentiable in aware.items():
+        force = force.replace(function, differentiable)
     slopes = sp.Matrix(force).jacobian(sp.Matrix(list(variables))).xreplace({sigma: z}).subs(1 + EPS * sigma, ROOT)
     return sp.ImmutableMatrix(slopes.xreplace({aware[function](z): function(z) for function in table}))
+
+
+def _jacobian(
+    name: str, steps: tuple[Step, ...], by_position: sp.Matrix, by_velocity: sp.Matrix, residuals: list[sp.Expr]
+) -> Derivation:
+    """Return the derivation of (∂u_i/∂q, ∂u_i/∂p), side by side."""
+    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
+    return Derivation(f"Jacobian of {name}", steps, result, tuple(residuals))
 
 
 def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
@@ -44,12 +49,6 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
     delta, slip, z = q_j - q_i, p_j - p_i, pair.z
     table = {PHI: PHI_SLOPE, ADJACENCY: ADJACENCY_SLOPE}
-    sigma = sigma_norm(delta)
-
-    def blocks(force: sp.Matrix) -> list[sp.Matrix]:
-        return [_slopes(force, table, end, sigma, z) for end in (q_i, q_j, p_i, p_j)]
-
-    on_i, on_j = (blocks(force) for force in pair.forces(gains))
     weight, slope = PHI(z) / ROOT, (PHI_SLOPE(z) - EPS * PHI(z) / ROOT) / (2 * ROOT**2)
     consensus = ADJACENCY_SLOPE(z) / (2 * ROOT)
     stiffness = gains.c1_alpha * (weight * sp.eye(m) + 2 * slope * delta * delta.T)
@@ -58,9 +57,9 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     stated = (-by_position, by_position, -by_velocity, by_velocity)
     residuals = [
         sp.expand(entry)
-        for derived, sign in ((on_i, 1), (on_j, -1))
-        for block, claimed in zip(derived, stated, strict=True)
-        for entry in block - sign * claimed
+        for force, sign in zip(pair.forces(gains), (1, -1), strict=True)
+        for end, claimed in zip((q_i, q_j, p_i, p_j), stated, strict=True)
+        for entry in _slopes(force, table, end, sigma_norm(delta), z) - sign * claimed
     ]
     first = r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:"
     steps = (
@@ -70,8 +69,7 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
         Step(r"so $\partial u_i/\partial q_j = -\partial u_i/\partial q_i$ has from this pair", by_position),
         Step(r"and $\partial u_i/\partial p_j = -\partial u_i/\partial p_i$", by_velocity),
     )
-    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
-    return Derivation("Jacobian of one pair", steps, result, tuple(residuals))
+    return _jacobian("one pair", steps, by_position, by_velocity, residuals)
 
 
 def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bool = False) -> Derivation:
@@ -79,10 +77,8 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
     q_i, p_i, q_r, p_r = (vector(name, ensure_dimension(m)) for name in ("q_i", "p_i", "q_r", "p_r"))
     x = q_i - q_r
     force = (gamma_force if bounded else own_force)(q_i, p_i, q_r, p_r, gains=gains)
-    pull = sp.eye(m)
-    if bounded:
-        root = sp.sqrt(1 + sp.Add(*(c**2 for c in x)))
-        pull = sp.eye(m) / root - x * x.T / root**3
+    root = sp.sqrt(1 + sp.Add(*(c**2 for c in x)))
+    pull = sp.eye(m) / root - x * x.T / root**3 if bounded else sp.eye(m)
     by_position, by_velocity = -gains.c1_gamma * pull, -gains.c2_gamma * sp.eye(m)
     stated = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
     residuals = [
@@ -95,8 +91,7 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
         Step(r"in $q_i$, and with the other sign in $q_r$,", by_position),
         Step(r"in $p_i$, and with the other sign in $p_r$,", by_velocity),
     )
-    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
-    return Derivation("Jacobian of the pull to the gamma-agent", steps, result, tuple(residuals))
+    return _jacobian("the pull to the gamma-agent", steps, by_position, by_velocity, residuals)
 
 
 def turn(obstacle: GenericObstacle) -> sp.Matrix:
@@ -141,5 +136,4 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
         Step(r"so in $q_i$, with $w = \sqrt{1 + \epsilon \|g\|^2}$,", by_position),
         Step(r"and in $p_i$", by_velocity),
     )
-    result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
-    return Derivation(f"Jacobian of a {kind}", steps, result, tuple(residuals))
+    return _jacobian(f"a {kind}", steps, by_position, by_velocity, residuals)

@@ -19,10 +19,7 @@ class Named(sp.Function):
     composed: sp.Expr  # by other named functions, where the formula has some
     stable = property(lambda self: self.composed)
 
-    @property
-    def formula(self) -> sp.Expr:
-        """Return the printed formula."""
-        return written(self.composed)
+    formula = property(lambda self: written(self.composed))  # as printed
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the derivative in the first argument; the others are parameters."""
@@ -87,8 +84,7 @@ class BumpSlope(Named):
     """Derivative of rho_h in z, which is 0 off the taper and at its ends."""
 
     @property
-    def composed(self) -> sp.Expr:
-        """Return the derivative of the half-cosine."""
+    def composed(self) -> sp.Expr:  # noqa: D102
         z, h = self.args
         at = sp.Dummy("at", positive=True)
         slope = sp.diff(written(Taper(Place(at, h))), at).subs(at, z)
@@ -102,13 +98,11 @@ class Phi(Named):
     """
 
     @property
-    def stable(self) -> sp.Expr:
-        """Return φ as the quotient of `PhiAbove` and `PhiBelow`, numerically stable."""
+    def stable(self) -> sp.Expr:  # noqa: D102
         return PhiAbove(*self.args).stable / PhiBelow(*self.args).stable
 
     @property
-    def composed(self) -> sp.Expr:
-        """Return φ as an expression in σ₁, as printed."""
+    def composed(self) -> sp.Expr:  # noqa: D102
         s, a, b, c = self.args
         return HALF * ((a + b) * Sigma1(s + c) + (a - b))
 
@@ -125,8 +119,7 @@ class PhiAbove(Phi):
     """Numerator of phi."""
 
     @property
-    def stable(self) -> sp.Expr:
-        """Return the numerator in a numerically stable form."""
+    def stable(self) -> sp.Expr:  # noqa: D102
         s, a, b, c = self.args
         x, g, _ = self._parts
         return HALF * (a + b) * sp.Piecewise((s * (s + 2 * c), x >= 0), (-(g**2), True))
@@ -135,24 +128,19 @@ class PhiAbove(Phi):
 class PhiBelow(Phi):
     """Denominator of phi."""
 
-    @property
-    def stable(self) -> sp.Expr:
-        """Return the denominator in a numerically stable form."""
-        return self._parts[1] * self._parts[2]
+    stable = property(lambda self: self._parts[1] * self._parts[2])
 
 
 class PhiIntegral(Named):
     """Integral of phi from 0 to s, never below 0; the stable form keeps its digits where s is small."""
 
     @property
-    def composed(self) -> sp.Expr:
-        """Return the closed form."""
+    def composed(self) -> sp.Expr:  # noqa: D102
         s, a, b, c = self.args
         return HALF * ((a + b) * (sp.sqrt(1 + (s + c) ** 2) - sp.sqrt(1 + c**2)) + (a - b) * s)
 
     @property
-    def stable(self) -> sp.Expr:
-        """Return the closed form, rearranged."""
+    def stable(self) -> sp.Expr:  # noqa: D102
         s, a, b, c = self.args
         at_s, at_0, product = sp.sqrt(1 + (s + c) ** 2), sp.sqrt(1 + c**2), c * (s + c)
         apart = (1 + c**2 + (s + c) ** 2) / (at_s * at_0 + product)

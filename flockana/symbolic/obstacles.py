@@ -4,28 +4,25 @@ The normal of a wall is any nonzero vector here, the centre and radius of a sphe
 q = y + x, with y a point of the wall or the centre. What is computed is rational in x and, at a sphere, |x|.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import sympy as sp
-from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.pair import along_flow, vector, with_derivative
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 KINDS = ("wall", "sphere")
 RADIUS = sp.Symbol("R", positive=True)
-MU = sp.Symbol("mu", positive=True)
 NORMAL_SPEED = sp.Symbol("w", real=True)  # <a, p>
 TANGENT_SQUARE = sp.Symbol("T", nonnegative=True)  # |P p|^2
 DEPTH = sp.Symbol("tau", positive=True)
 PHI_BETA = sp.Function("phi_beta", real=True)
 WEIGHT = sp.Function("b", real=True)
-PSI_BETA = UndefinedFunction("psi_beta", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI_BETA(self.args[0])})
+PSI_BETA = with_derivative("psi_beta", PHI_BETA)
 
 
 def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
@@ -54,12 +51,10 @@ class GenericObstacle:
         self.x, self.p, y = (vector(name, m) for name in ("x", "p_i", "y"))
         q = y + self.x
         if kind == "wall":
-            self.normal = vector("n", m)
-            self.mu = sp.S.One
+            self.normal, self.mu = vector("n", m), sp.S.One
             beta = wall_beta(q, self.p, y, self.normal)
         else:
-            self.normal = self.x
-            self.mu = RADIUS / sp.sqrt(self.x.dot(self.x))
+            self.normal, self.mu = self.x, RADIUS / sp.sqrt(self.x.dot(self.x))
             beta = sphere_beta(q, self.p, y, RADIUS)
         self.gap, self.rate = (beta[0] - q).applyfunc(sp.cancel), beta[1]
         self.derivative = beta[0].jacobian(self.x)  # of q_hat in q = y + x
@@ -76,11 +71,6 @@ class GenericObstacle:
     def braking(self) -> sp.Expr:
         """Return <p_i, p_hat - p_i>, by components."""
         return self.p.dot(self.rate - self.p)
-
-    def geometric_braking(self) -> sp.Expr:
-        """Return (mu - 1) |P p|^2 - <a, p>^2, by components."""
-        along = self.normal.dot(self.p) ** 2 / self.normal.dot(self.normal)
-        return (self.mu - 1) * (self.p.dot(self.p) - along) - along
 
     def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
         """Return the obstacle's part of u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
@@ -108,12 +98,7 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
     gap, jacobian = generic.gap, generic.derivative
     squared = HALF * gap.dot(gap)
     gradient = sp.Matrix([sp.diff(squared, x) for x in generic.x])
-    expressions: tuple[Iterable[sp.Expr], ...] = (
-        jacobian.T * gap,
-        gradient + gap,
-        jacobian * generic.p - generic.rate,
-        jacobian - jacobian.T,
-    )
+    expressions = (jacobian.T * gap, gradient + gap, jacobian * generic.p - generic.rate, jacobian - jacobian.T)
     steps = (
         Step(r"The derivative of the closest point, $D = \partial \hat q/\partial q$, with $x = q - y$:", jacobian),
         Step(r"maps the gap $\hat q - q =$", gap.applyfunc(generic.reduce)),
@@ -130,28 +115,20 @@ class Braking:
 
     kind: str
     residual: sp.Expr  # <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0
-    # the terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere)
-    terms: tuple[sp.Expr, ...]
-    inside: tuple[sp.Expr, ...]  # the same inside (mu = 1 + tau at a sphere; nothing changes at a wall)
+    terms: tuple[sp.Expr, ...]  # of the geometric form outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere)
 
     @property
     def holds(self) -> bool:
         """Return whether the form is exact, and every term provably nonpositive outside the obstacle."""
         return bool(self.residual == 0) and all(term.is_nonpositive is True for term in self.terms)
 
-    @property
-    def holds_inside(self) -> bool:
-        """Return whether every term is nonpositive inside too: true at a wall, not in a sphere."""
-        return all(term.is_nonpositive is True for term in self.inside)
-
 
 def derive_braking(kind: str, m: int = 2) -> Braking:
     """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall."""
     generic = GenericObstacle(kind, m)
-    residual = generic.reduce(generic.braking() - generic.geometric_braking())
-
-    def terms(mu: sp.Expr) -> tuple[sp.Expr, ...]:
-        return sp.factor((mu - 1) * TANGENT_SQUARE), -(NORMAL_SPEED**2)
-
-    outside, inside = (sp.S.One, sp.S.One) if kind == "wall" else (1 / (1 + DEPTH), 1 + DEPTH)
-    return Braking(kind, residual, terms(outside), terms(inside))
+    normal, p = generic.normal, generic.p
+    along = normal.dot(p) ** 2 / normal.dot(normal)
+    geometric = (generic.mu - 1) * (p.dot(p) - along) - along
+    residual = generic.reduce(generic.braking() - geometric)
+    mu = sp.S.One if kind == "wall" else 1 / (1 + DEPTH)
+    return Braking(kind, residual, (sp.factor((mu - 1) * TANGENT_SQUARE), -(NORMAL_SPEED**2)))

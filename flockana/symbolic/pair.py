@@ -7,6 +7,7 @@ distance here: what is derived from them holds for every interaction with psi' =
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import UndefinedFunction
@@ -16,9 +17,15 @@ from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
+
+def with_derivative(name: str, derivative: Any) -> Any:
+    """Return an undefined function of one variable with a given derivative."""
+    return UndefinedFunction(name, real=True, __dict__={"fdiff": lambda self, argindex=1: derivative(self.args[0])})
+
+
 PHI = sp.Function("phi_alpha", real=True)
 ADJACENCY = sp.Function("a", real=True)
-PSI = UndefinedFunction("psi_alpha", real=True, __dict__={"fdiff": lambda self, argindex=1: PHI(self.args[0])})
+PSI = with_derivative("psi_alpha", PHI)
 
 
 def vector(name: str, m: int) -> sp.Matrix:

@@ -1,25 +1,25 @@
-"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential."""
+"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential, slopes."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite, sqrt
+from typing import NamedTuple
 
 import sympy as sp
 from flint import arb, fmpq
 
 from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
-from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
-from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
-from flockana.symbolic.germs import Germ, germ
-from flockana.symbolic.integrals import least_of_integral
-from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, Z
+from flockana.symbolic.decide import Least, Region, down, is_zero, least_of_integral, least_on, sign_on, smooth_on, up
+from flockana.symbolic.enclosed import Enclosed, Germ, germ, interval, precision, rational
+from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, S, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
 _NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach
 _CLOSE = 400  # the same, where the limit at contact is read
 _BITS = 200
+_SLOPE_BITS, _SLOPE_HALVINGS = 96, 6  # halvings of a part, for a bound within twice the slope at its middle
 _PROOF = "every operation of the formula is analytic between the cuts, and both sides agree at them"
 
 
@@ -70,8 +70,11 @@ class _NumericFormula:
     @cached_property
     def _marks(self) -> list[sp.Expr]:
         """Symbols of 0, the cuts and the range."""
-        in_norm = self._y == Z
-        return [sp.Integer(0), *self.cut.exact_marks[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
+        return [sp.Integer(0), *self.cut.exact_marks[1:-1], self._declared("r")]
+
+    def _declared(self, name: str) -> sp.Symbol:
+        """Return the symbol of the range or the length in the formula's distance."""
+        return sp.Symbol(f"{name}_z" if self._y == Z else name, positive=True)
 
     def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
         return [self.cut.chosen(formula, 0.5 * (a + b)) for a, b in pairwise(self.cut.marks)]
@@ -84,8 +87,9 @@ class _NumericFormula:
     def _weights(self) -> list[sp.Expr]:
         return self._chosen(self.cut.formula.adjacency)
 
-    def place(self, y: float) -> float:
+    def place(self, at: fmpq | float) -> float:
         """Return the Euclidean distance of y."""
+        y = float(arb(at))
         return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
 
     def _point(self, mark: sp.Expr, side: int) -> fmpq:
@@ -100,7 +104,7 @@ class _NumericFormula:
 
     def _regions(self, formulas: list[sp.Expr], *, split: bool = True) -> Iterator[Region]:
         """Yield regions of each formula between marks, also split at the desired distance."""
-        length = sp.Symbol("d_z" if self._y == Z else "d", positive=True)
+        length = self._declared("d")
         for formula, (left, right) in zip(formulas, pairwise(self._marks), strict=True):
             inside = self._point(left, 1) < self._point(length, 0) and self._point(length, 1) < self._point(right, 0)
             for a, b in pairwise([left, length, right] if split and inside else [left, right]):
@@ -121,7 +125,7 @@ class _NumericFormula:
                     region = region._replace(left=width)
                     if not known:
                         text = f"whether {what} is smooth near contact is open"
-                        yield Fact("assumed", text, (0.0, self.place(float(arb(width)))), float(arb(width)))
+                        yield Fact("assumed", text, (0.0, self.place(width)), float(arb(width)))
                 for fact in smooth_on(region, what, scale, slope, kinks=kinks):
                     last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
                     at_end = fact.status == "unmet" and last and "no limit" in fact.detail
@@ -144,8 +148,7 @@ class _NumericFormula:
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
         slopes = self._main_pieces if forces else [sp.diff(each, self._y) for each in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
-        if not forces:
-            rows.append((self._main_pieces, "the potential", energy))
+        rows += [] if forces else [(self._main_pieces, "the potential", energy)]
         for k, mark in enumerate(self._marks[1:-1]):
             place = self.place(self.cut.marks[k + 1])
             for row, name, scale in rows:
@@ -165,67 +168,64 @@ class _NumericFormula:
         zero = is_zero(number, self._numbers)
         if zero:
             return
+        status: FactStatus = "assumed"
+        text = f"open is whether {fault}"
         if zero is False:
             with precision(_BITS):
                 size = abs(_value(number.xreplace(self._numbers)))
+            text = f"{fault} by {float(size):.2g}, as by rounding of a parameter"
             if size > _SMALL * scale:
-                yield Fact("unmet", fault, (place, place))
-                return
-            yield Fact("assumed", f"{fault} by {float(size):.2g}, as by rounding of a parameter", (place, place))
-            return
-        yield Fact("assumed", f"open is whether {fault}", (place, place))
+                status, text = "unmet", fault
+        yield Fact(status, text, (place, place))
 
     def _signs(self) -> tuple[Fact, Fact]:
         """Return facts whether the adjacency is nonnegative, and positive below the range."""
         found = []
         for region in self._regions([_factored(each, self._y) for each in self._weights]):
             if region.left == 0 and self._limit(region.exact) is None:
-                near = self._sign_near(region)
-                if near is None:
-                    fact = Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0))
-                    found.append((fact, fact))
-                    continue
-                fact, width = near
+                fact, width = self._sign_near(region)
                 found.append((fact, fact))
+                if fact.status == "assumed":
+                    continue
                 region = region._replace(left=width)
             found.append(sign_on(region, "the adjacency"))
             found += [(Fact("met"), fact) for fact in self._zeros(region)]
-        return conjunction([one for one, _ in found], "its sign is enclosed at every distance"), conjunction(
-            [two for _, two in found], "its sign is enclosed at every distance below the range"
-        )
+        weights, insides = zip(*found, strict=True)
+        text = "its sign is enclosed at every distance"
+        return conjunction(weights, text), conjunction(insides, f"{text} below the range")
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
         """Yield ends of a region, except contact and range, at which the adjacency vanishes or may."""
         for end, at in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
-                place = self.place(float(arb(at)))
+                place = self.place(at)
                 status: FactStatus = "unmet" if zero else "assumed"
                 yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
 
-    def _sign_near(self, region: Region) -> tuple[Fact, fmpq] | None:
-        """Return the sign near contact of a formula that has no value there."""
+    def _sign_near(self, region: Region) -> tuple[Fact, fmpq]:
+        """Return the sign near contact of a formula that has no value there, and how far it is known."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
                 found, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
                 end = region.enclosed.series(arb(width))
-            far = self.place(float(arb(width)))
-            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, far))
+            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, self.place(width)))
             if found is not None and not found.factor.contains(0):
                 return Fact("met") if found.factor > 0 else fault, width
             if falls is None or end is None or falls.factor.contains(0) or end[0].contains(0):
                 continue
             if (falls.factor < 0) == (end[0] > 0):  # it rises to contact from above 0, or falls to it from below
                 return Fact("met") if end[0] > 0 else fault, width
-        return None
+        return Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0)), region.left
 
     def _limit(self, formula: sp.Expr) -> arb | None:
         """Return the value at contact of a formula that is analytic there."""
+        found = Enclosed(formula, self._y)
         with precision(_BITS, 2):
-            width = fmpq(1) / 2**_CLOSE
-            found = Enclosed(formula, self._y)
-            values = None if found.series(interval(fmpq(0), width)) is None else found.series(arb(0))
+            if found.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
+                return None
+            values = found.series(arb(0))
         return None if values is None else values[0]
 
     def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -233,15 +233,10 @@ class _NumericFormula:
         scale = self.strength * self.cut.end
         if self.cut.formula.forces:
             regions = list(self._regions(self._main_pieces))
-            length = self._point(sp.Symbol("d_z" if self._y == Z else "d", positive=True), 0)
-            return least_of_integral(regions, length, scale)
-        found, contact, regions = [], (-inf, inf), list(self._regions(self._main_pieces))
-        for region in regions:
-            left = region.left
-            if left == 0:
-                contact, least, left = self._contact(region)
-                found.append(least)
-            found.append(least_on(region._replace(left=left), scale))
+            return least_of_integral(regions, self._point(self._declared("d"), 0), scale)
+        first, *rest = regions = list(self._regions(self._main_pieces))
+        contact, least, left = self._contact(first)
+        found = [least, *(least_on(region, scale) for region in (first._replace(left=left), *rest))]
         low, high = min(each.low for each in found), min(each.high for each in found)
         return self._sharpened(regions, low, high), contact
 
@@ -273,7 +268,7 @@ class _NumericFormula:
                 end = Enclosed(formula, y).series(arb(width))
             if falls is None or end is None or falls.factor.contains(0):
                 continue
-            at_width = Least(down(end[0]), up(end[0]), self.place(float(arb(width))))
+            at_width = Least(down(end[0]), up(end[0]), self.place(width))
             if falls.power <= -1:
                 level = inf if falls.factor < 0 else -inf
                 return (level, level), at_width if level > 0 else Least(-inf, -inf, 0.0), width
@@ -283,7 +278,7 @@ class _NumericFormula:
             return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
         if own is not None and (limit := _bounds(own)) is not None:  # of the narrowest, whose slope has no sign known
             with precision(_BITS):
-                power = (arb(width).log() * arb(fmpq(own.power.numerator, own.power.denominator))).exp()
+                power = (arb(width).log() * arb(rational(own.power))).exp()
                 low = down(own.factor * arb(0).union(power) if own.power > 0 else own.factor)
             return limit, Least(min(low, limit[0]), limit[1], 0.0), width
         return (-inf, inf), Least(-inf, inf, 0.0), width
@@ -293,7 +288,7 @@ class _NumericFormula:
         width = fmpq(1) / 2**_CLOSE
         with precision(4 * _CLOSE):
             end = Enclosed(formula, self._y).series(arb(width))
-            power = arb(fmpq(slope.power.numerator, slope.power.denominator)) + 1
+            power = arb(rational(slope.power)) + 1
             if end is None or not power > 0:
                 return None
             way = slope.factor * (arb(width).log() * power).exp() / power
@@ -317,3 +312,43 @@ def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
     """Return a polynomial as a product, in which double zeros are visible."""
     small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
     return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
+
+
+class SlopeBound(NamedTuple):
+    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where unknown."""
+
+    left: float
+    right: float
+    force: float
+    adjacency: float
+
+
+def slope_bounds(
+    cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
+) -> tuple[SlopeBound, ...]:
+    """Return bounds of the slopes on equal parts of the range, also split at the cuts."""
+    numbers, found = exact_numbers(cut.numbers, eps), []
+    root = sp.sqrt(1 + EPS * S**2)
+    norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
+    edges = sorted({r * k / parts for k in range(parts)} | {*places, r})
+    for left, right in pairwise(edges):
+        middle = 0.5 * (left + right)
+        at = middle * middle / ((1.0 + eps * middle * middle) ** 0.5 + 1.0) if eps else middle
+        main, weight = (cut.chosen(each, at).subs(Z, norm) for each in (cut.formula.main, cut.formula.adjacency))
+        force, order = (main * along, 1) if cut.formula.forces else (main, 2)
+        rows = (Enclosed(force.xreplace(numbers), S), order), (Enclosed(weight.xreplace(numbers), S), 1)
+        ends = fmpq(*left.as_integer_ratio()), fmpq(*right.as_integer_ratio())
+        found.append(SlopeBound(left, right, *(order * _most(of, order, *ends, 0) for of, order in rows)))
+    return tuple(found)
+
+
+def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:
+    """Return a bound of a Taylor coefficient on an interval."""
+    middle = (left + right) / 2
+    with precision(_SLOPE_BITS, order + 1):
+        found, at = of.series(interval(left, right)), of.series(arb(middle))
+        if found is not None and at is not None and found[order].abs_upper() <= 2 * at[order].abs_upper():
+            return up(found[order].abs_upper())
+    if depth >= _SLOPE_HALVINGS:
+        return inf if found is None else up(found[order].abs_upper())
+    return max(_most(of, order, *ends, depth + 1) for ends in ((left, middle), (middle, right)))

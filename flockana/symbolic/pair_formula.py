@@ -14,6 +14,8 @@ import mpmath  # type: ignore[import-untyped]
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
+from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.functions import adjacency, phi_alpha
 from flockana.symbolic.grammar import FUNCTIONS, expression_size, read_formula
 
 DIGITS = 160  # of values that decide something: they are asked for where a formula cancels almost all of them
@@ -43,9 +45,8 @@ class PairFormula:
 
 def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
     """Return a pair law from texts, given either the potential or its derivative."""
-    taken = sorted(RESERVED & {*names})
-    if taken or not all(name.isidentifier() for name in names):
-        bad = taken or [name for name in names if not name.isidentifier()]
+    bad = sorted(RESERVED & {*names}) or [name for name in names if not name.isidentifier()]
+    if bad:
         raise ArgumentError(f"parameter {bad[0]!r}: expected a name that has no meaning of its own, such as 'k'")
     symbols: dict[str, sp.Symbol] = {"s": S, "z": Z} | {name: sp.Symbol(name, positive=True) for name in OWN}
     symbols |= {name: EPS if name == "eps" else sp.Symbol(name, real=True) for name in names}
@@ -89,25 +90,22 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
     """Return weight w of q_j − q_i, dw/d(s²), adjacency and da/d(s²) of smooth expressions."""
     _ensure_derived(sp.diff(main, distance), _SLOPE)
     if distance == Z:
-        action = main if forces else sp.diff(main, Z)
-        slope = (sp.diff(action, Z) - EPS * action / ROOT) / (2 * ROOT**2)
-        potential = None if forces else main
-        return Piece(potential, action, action / ROOT, slope, adjacency, sp.diff(adjacency, Z) / (2 * ROOT))
-    at = sp.sqrt(SQUARE)
-    main, adjacency = main.subs(S, at), adjacency.subs(S, at)
-    weight = main / at if forces else 2 * sp.diff(main, SQUARE)
-    potential = None if forces else main
-    force = main if forces else weight * at
-    return Piece(potential, force, weight, sp.diff(weight, SQUARE), adjacency, sp.diff(adjacency, SQUARE))
+        force = main if forces else sp.diff(main, Z)
+        weight, slope = force / ROOT, (sp.diff(force, Z) - EPS * force / ROOT) / (2 * ROOT**2)
+        fading = sp.diff(adjacency, Z) / (2 * ROOT)
+    else:
+        at = sp.sqrt(SQUARE)
+        main, adjacency = main.subs(S, at), adjacency.subs(S, at)
+        weight = main / at if forces else 2 * sp.diff(main, SQUARE)
+        force = main if forces else weight * at
+        slope, fading = sp.diff(weight, SQUARE), sp.diff(adjacency, SQUARE)
+    return Piece(None if forces else main, force, weight, slope, adjacency, fading)
 
 
 def _ensure_derived(derivative: sp.Expr, most: int) -> None:
     """Raise on a formula whose derivatives are too large to compile."""
-    nodes = expression_size(derivative, {})[0]
-    if nodes > most:
-        raise ArgumentError(
-            f"a derivative of the formula has {nodes} parts: expected at most {most}, a simpler formula"
-        )
+    if (nodes := expression_size(derivative, {})[0]) > most:
+        raise ArgumentError(f"a derivative of the formula has {nodes} parts: expected at most {most}")
 
 
 @dataclass(frozen=True)
@@ -186,12 +184,10 @@ class PiecewiseFormula:
         """Return an expression as a function of y, to `DIGITS`; NaN where it is not real."""
         y = Z if self.formula.distance == Z else SQUARE
         expression = expression.subs(ROOT, 1 + EPS * Z)
-        symbols = list(self.numbers)
         bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
-        given = [sp.Dummy() for _ in symbols]  # a parameter may have the name of a function of mpmath
-        nameless = bounded.xreplace(dict(zip(symbols, given, strict=True)))
-        compiled = sp.lambdify([y, *given], nameless, [_BOUNDED, "mpmath"], dummify=True)
-        values = [mpmath.mpf(self.numbers[symbol]) for symbol in symbols]
+        given = {symbol: sp.Dummy() for symbol in self.numbers}  # a parameter may be named like a function of mpmath
+        compiled = sp.lambdify([y, *given.values()], bounded.xreplace(given), [_BOUNDED, "mpmath"], dummify=True)
+        values = [mpmath.mpf(number) for number in self.numbers.values()]
 
         def at(distance: Any) -> Any:
             with mpmath.workdps(DIGITS):
@@ -230,7 +226,30 @@ _BOUNDED: dict[str, Callable[..., Any]] = {
 
 def _conditions(expression: sp.Basic) -> Iterator[Any]:
     """Return the comparisons that select the pieces of an expression."""
-    for piecewise in expression.atoms(sp.Piecewise):
-        for _, condition in piecewise.args:
-            if condition not in (sp.true, sp.false):
-                yield condition
+    conditions = (condition for piecewise in expression.atoms(sp.Piecewise) for _, condition in piecewise.args)
+    return (condition for condition in conditions if condition not in (sp.true, sp.false))
+
+
+def pair_derivation(formula: PairFormula) -> Derivation:
+    """Derive the consequences of a formula, with the residual of every equation that can be checked."""
+    y = formula.distance
+    psi, named = sp.Function("psi")(y), "s" if y == S else "z"
+    derivative = formula.derivative
+    weight = derivative / y if y == S else derivative / (1 + EPS * Z)
+    potential = sp.Integral(formula.main, y) if formula.forces else formula.main
+    square = sp.Symbol("x", positive=True)
+    at = sp.sqrt(square) if y == S else (sp.sqrt(1 + EPS * square) - 1) / EPS
+    residuals = () if formula.forces else (2 * sp.diff(formula.main.subs(y, at), square) - weight.subs(y, at),)
+    steps = (
+        Step(f"The potential of a pair, in ${named}$,", sp.Eq(psi, potential, evaluate=False)),
+        Step("its derivative, negative where the pair repels,", sp.Eq(psi.diff(y), derivative, evaluate=False)),
+        Step(r"the force on $i$ is $w\,(q_j - q_i)$ with", sp.Eq(sp.Symbol("w"), weight, evaluate=False)),
+        Step("and velocities are averaged with", sp.Eq(sp.Symbol("a_ij"), formula.adjacency, evaluate=False)),
+    )
+    return Derivation("The pair law", steps, weight, tuple(sp.simplify(each) for each in residuals))
+
+
+def alpha_steps() -> tuple[Step, ...]:
+    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
+    first = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
+    return first, Step("and its adjacency", adjacency(Z))

@@ -26,23 +26,20 @@ def exact(name: str, value: Any) -> sp.Expr:
     return expression
 
 
-def _fill(bundle: Any, *derived: str) -> None:
-    """Convert every given field of a frozen bundle to an exact expression; raise on one that is certainly not > 0."""
-    for field in fields(bundle):
-        value = getattr(bundle, field.name)
-        if value is not None or field.name not in derived:
-            object.__setattr__(bundle, field.name, exact(field.name, value))
+def _fill(bundle: Any, *derived: str, least: str = "a number > 0", sign: str = "is_positive") -> None:
+    """Convert the given fields of a frozen bundle to exact expressions; raise on one that is certainly too small."""
     for name in (field.name for field in fields(bundle) if field.name not in derived):
-        value = getattr(bundle, name)
-        _require(value.is_positive, f"{name} = {value}: expected a number > 0")
-    _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
+        value = exact(name, getattr(bundle, name))
+        object.__setattr__(bundle, name, value)
+        _require(getattr(value, sign), f"{name} = {value}: expected {least}")
 
 
 def _derive(bundle: Any, **values: sp.Expr) -> None:
     """Set the fields of a frozen bundle that were not given."""
+    _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
     for name, value in values.items():
-        if getattr(bundle, name) is None:
-            object.__setattr__(bundle, name, value)
+        given = getattr(bundle, name)
+        object.__setattr__(bundle, name, value if given is None else exact(name, given))
 
 
 def _require(condition: bool | None, message: str) -> None:
@@ -149,11 +146,7 @@ class GainSymbols:
     c2_beta: sp.Expr = _C2_BETA
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = exact(field.name, getattr(self, field.name))
-            if value.is_negative:
-                raise ArgumentError(f"{field.name} = {value}: expected a gain >= 0")
-            object.__setattr__(self, field.name, value)
+        _fill(self, least="a gain >= 0", sign="is_nonnegative")
 
 
 ALPHA = AlphaSymbols()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import sympy as sp
 
@@ -23,11 +24,8 @@ Z = sp.Symbol("z", nonnegative=True)
 _S = sp.Symbol("s", nonnegative=True)
 Scalar = Callable[[sp.Expr], sp.Expr]
 
-ALPHA_NAMED = AlphaSymbols(
-    c=sp.Symbol("c", nonnegative=True),
-    d_alpha=sp.Symbol("d_alpha", positive=True),
-    r_alpha=sp.Symbol("r_alpha", positive=True),
-)
+_D, _R = sp.symbols("d_alpha r_alpha", positive=True)
+ALPHA_NAMED = AlphaSymbols(c=sp.Symbol("c", nonnegative=True), d_alpha=_D, r_alpha=_R)
 BETA_NAMED = BetaSymbols(d_beta=sp.Symbol("d_beta", positive=True))
 
 
@@ -40,6 +38,10 @@ class _Potential:
     zero: sp.Expr
     cutoff: sp.Expr
     h: sp.Expr
+
+    def __post_init__(self) -> None:
+        if self.h == 1:
+            raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
 
     @property
     def edge(self) -> sp.Expr:
@@ -63,10 +65,6 @@ class _Potential:
             lambda z: level + self.integral(start, z),
             lambda z: level + self.integral(start, self.cutoff),
         )
-
-    def conditions(self, z: sp.Expr) -> tuple[sp.Basic, sp.Basic, sp.Basic]:
-        """Return the condition of each piece."""
-        return sp.Le(z, self.edge), sp.And(sp.Ge(z, self.edge), sp.Le(z, self.cutoff)), sp.Ge(z, self.cutoff)
 
     def expression(self, z: sp.Expr) -> sp.Expr:
         """Return all pieces in one Piecewise; numeric parameters leave only the case that holds."""
@@ -109,26 +107,14 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
 def alpha_potential(alpha: AlphaSymbols) -> _Potential:
     """Return the pieces of psi_alpha."""
-
-    def smooth(z: sp.Expr) -> sp.Expr:
-        return phi(z - alpha.d_alpha, alpha=alpha)
-
-    def closed(z: sp.Expr) -> sp.Expr:
-        return alpha_antiderivative(z, alpha=alpha)
-
-    return _Potential(smooth, closed, alpha.d_alpha, alpha.r_alpha, alpha.h)
+    closed = partial(alpha_antiderivative, alpha=alpha)
+    return _Potential(lambda z: phi(z - alpha.d_alpha, alpha=alpha), closed, alpha.d_alpha, alpha.r_alpha, alpha.h)
 
 
 def _beta(beta: BetaSymbols) -> _Potential:
     """Return the pieces of psi_beta, which is 0 at its cut-off."""
     smooth, closed = (lambda z, of=of: written(of(z, beta)) for of in (beta_smooth, beta_closed))
     return _Potential(smooth, closed, beta.d_beta, beta.d_beta, beta.h)
-
-
-def _refuse_indicator(h: sp.Expr) -> None:
-    """Raise for h = 1, at which there is no taper to integrate over."""
-    if h == 1:
-        raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
 
 
 @check_kinds
@@ -151,7 +137,6 @@ def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     >>> psi_alpha(sp.Integer(0), alpha=paper).evalf(17)
     52.383811786644864
     """
-    _refuse_indicator(alpha.h)
     return alpha_potential(alpha).expression(sp.sympify(z))
 
 
@@ -174,7 +159,6 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     >>> psi_beta(sp.Integer(2), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
     0
     """
-    _refuse_indicator(beta.h)
     potential = _beta(beta)
     near, middle, _ = potential.pieces(zero_on_plateau=False)
     z = sp.sympify(z)
@@ -184,15 +168,15 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
     """Return one step per piece, with the condition under which it holds."""
     psi = sp.Function(name)(Z)
-    texts = (
-        "Plateau, where the bump is 1: closed form.",
-        "Taper: a smooth one-dimensional integral.",
-        "Beyond the cut-off: constant.",
+    edge, cutoff, pieces = potential.edge, potential.cutoff, potential.pieces(zero_on_plateau)
+    rows = (
+        ("Plateau, where the bump is 1: closed form.", sp.Le(Z, edge)),
+        ("Taper: a smooth one-dimensional integral.", sp.And(sp.Ge(Z, edge), sp.Le(Z, cutoff))),
+        ("Beyond the cut-off: constant.", sp.Ge(Z, cutoff)),
     )
-    pieces = potential.pieces(zero_on_plateau)
     return tuple(
         Step(text, sp.Eq(psi, piece(Z), evaluate=False), sp.And(case, where))
-        for text, piece, where in zip(texts, pieces, potential.conditions(Z), strict=True)
+        for (text, where), piece in zip(rows, pieces, strict=True)
     )
 
 
@@ -211,25 +195,17 @@ def derive_psi_alpha() -> Derivation:
     >>> derive_psi_alpha().holds
     True
     """
-    alpha = ALPHA_NAMED
-    potential = alpha_potential(alpha)
+    alpha, potential = ALPHA_NAMED, alpha_potential(ALPHA_NAMED)
     zero, phi_at_zero = _phi_at_zero()
     plateau = sp.Ge(potential.edge, potential.zero)
-    antiderivative = sp.Derivative(potential.closed(Z), Z)
+    named = sp.Function("phi")
+    force = sp.Eq(named(Z - alpha.d_alpha), potential.smooth(Z), evaluate=False)
+    vanishing = sp.Eq(named(0), zero, evaluate=False)
+    closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
     steps = (
-        Step(
-            r"The force integrated: $\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha)$ with",
-            sp.Eq(sp.Function("phi")(Z - alpha.d_alpha), potential.smooth(Z), evaluate=False),
-        ),
-        Step(
-            r"It vanishes at $d_\alpha$, since $\sqrt{1 + c^2} = (a + b)/\sqrt{4ab}$:",
-            sp.Eq(sp.Function("phi")(0), zero, evaluate=False),
-            sp.Le(alpha.a, alpha.b),
-        ),
-        Step(
-            "A closed antiderivative, checked by differentiating:",
-            sp.Eq(antiderivative, sp.diff(potential.closed(Z), Z), evaluate=False),
-        ),
+        Step(r"The force integrated: $\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha)$ with", force),
+        Step(r"It vanishes at $d_\alpha$, since $\sqrt{1 + c^2} = (a + b)/\sqrt{4ab}$:", vanishing, alpha.a <= alpha.b),
+        Step("A closed antiderivative, checked by differentiating:", closed),
         *_piece_steps("psi_alpha", potential, True, plateau),
         *_piece_steps("psi_alpha", potential, False, sp.Not(plateau)),
     )
@@ -246,12 +222,10 @@ def derive_psi_beta() -> Derivation:
     True
     """
     potential = _beta(BETA_NAMED)
+    closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
+    first = r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:"
     steps = (
-        Step(
-            r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:",
-            sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False),
-            sp.Lt(Z, potential.edge),
-        ),
+        Step(first, closed, sp.Lt(Z, potential.edge)),
         *_piece_steps("psi_beta", potential, False, sp.true),
     )
     return Derivation(r"The potential $\psi_\beta$", steps, psi_beta(Z, beta=BETA_NAMED), potential.residuals(False))

@@ -18,10 +18,7 @@ class Constants:
         self.variables, self.first = frozenset(variables), first
         self.places: dict[sp.Expr, sp.Symbol] = {}
 
-    @property
-    def values(self) -> list[sp.Expr]:
-        """Return the values of the constants, in the order of their places."""
-        return list(self.places)
+    values = property(lambda self: list(self.places))  # of the constants, in the order of their places
 
     def extract_constants(self, expression: sp.Expr) -> sp.Expr:
         """Return an expression with symbols for its constants."""
@@ -59,8 +56,7 @@ class FloatCode(PythonCodePrinter):
 
     def _print_Mul(self, product: sp.Expr) -> str:  # noqa: N802  # sympy's name
         number, rest = product.as_coeff_Mul()
-        above: list[sp.Expr] = []
-        below: list[sp.Expr] = []
+        above, below = list[sp.Expr](), list[sp.Expr]()
         for factor in sp.Mul.make_args(rest):
             exponent = factor.as_base_exp()[1]
             inverse = exponent.is_Rational and exponent < 0

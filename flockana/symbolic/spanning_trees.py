@@ -189,5 +189,5 @@ def spacing_spectrum(m: int) -> Derivation:
         Step(r"Its derivative at length $\rho$ along the first axis:", stiffness),
         Step("The characteristic polynomial of the edge:", expected),
     )
-    residuals = (sp.expand(determinant - expected),)
-    return Derivation("Spectrum at the desired spacing", steps, sp.factor(expected), residuals)
+    left = sp.expand(determinant - expected)
+    return Derivation("Spectrum at the desired spacing", steps, sp.factor(expected), (left,))

@@ -18,7 +18,7 @@ Z = sp.IndexedBase("z", nonnegative=True)
 LAMBDA = sp.Symbol("lambda", nonnegative=True)
 
 
-def _sum(summand: sp.Expr, *limits: tuple[sp.Symbol, sp.Expr, sp.Expr]) -> sp.Expr:
+def sum_over(summand: sp.Expr, *limits: tuple[sp.Symbol, sp.Expr, sp.Expr]) -> sp.Expr:
     """Return a sum term by term, factors that do not depend on the indices in front."""
     indices = [index for index, _, _ in limits]
     terms = (term.as_independent(*indices) for term in sp.Add.make_args(summand))
@@ -51,14 +51,19 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
     return generic.subs({N: n, M: m}).replace(lambda e: isinstance(e, sp.Sum), terms)
 
 
+def indexed(*parts: tuple[sp.IndexedBase, sp.Matrix]) -> dict[sp.Symbol, sp.Indexed]:
+    """Return the components of one agent's vectors as those of agent i in sums."""
+    return {symbol: base[I_, k] for base, vector in parts for k, symbol in enumerate(vector, start=1)}
+
+
 def over_pairs(summand: sp.Expr) -> sp.Expr:
     """Return the sum over all unordered pairs i < j of an expression in i and j."""
-    return _sum(summand, (J_, I_ + 1, N), (I_, 1, N))
+    return sum_over(summand, (J_, I_ + 1, N), (I_, 1, N))
 
 
 def over_agents(summand: sp.Expr) -> sp.Expr:
     """Return the sum over all agents of an expression in i."""
-    return _sum(summand, (I_, 1, N))
+    return sum_over(summand, (I_, 1, N))
 
 
 def sigma_distance(base: sp.IndexedBase = Q, m: sp.Expr = M) -> sp.Basic:

@@ -11,13 +11,13 @@ import sympy as sp
 
 from flockana.symbolic.derivation import Step
 from flockana.symbolic.energy import EnergyIdentity, GenericPair
-from flockana.symbolic.errata import RisingEnergy
-from flockana.symbolic.functions import HALF, adjacency, phi_alpha
+from flockana.symbolic.errata import RisingEnergy, with_pair_law
+from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import sigma_1, sigma_norm
 from flockana.symbolic.obstacles import KINDS, PSI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, pair_potential, vector
+from flockana.symbolic.pair import along_flow, vector
 from flockana.symbolic.parameters import GAINS, AlphaSymbols, GainSymbols
-from flockana.symbolic.sums import I_, K_, N, P, Q, collective_potential, half_square, over_agents
+from flockana.symbolic.sums import I_, K_, N, P, Q, collective_potential, half_square, indexed, over_agents, sum_over
 
 COUNT = sp.Symbol("l", integer=True, nonnegative=True)  # of obstacles
 CLEARANCE = sp.IndexedBase("zhat", nonnegative=True)  # sigma-norm of q_hat_ik - q_i
@@ -27,8 +27,7 @@ _ONE = sp.Integer(1)
 
 def _over_obstacles(summand: sp.Expr) -> sp.Expr:
     """Return the sum over all agents and obstacles."""
-    front, rest = summand.as_independent(I_, K_)
-    return front * sp.Sum(rest, (K_, 1, COUNT), (I_, 1, N)) if summand != 0 else sp.S.Zero
+    return sum_over(summand, (K_, 1, COUNT), (I_, 1, N))
 
 
 def gamma_force(
@@ -45,8 +44,7 @@ def _agent_rates(m: int, gains: GainSymbols, moving: bool) -> tuple[sp.Expr, sp.
     force = gamma_force(q_i, p_i, q_r, p_r, gains=gains)
     rate = along_flow(energy, [*q_i, *q_r], [*p_i, *speed], [*force, *sp.zeros(m, 1)])
     claimed = -gains.c2_gamma * p_i.dot(p_i - p_r) - gains.c1_gamma * sigma_1(q_i - q_r).dot(speed)
-    names = {s: base[I_, k] for base, part in ((Q, q_i), (P, p_i)) for k, s in enumerate(part, start=1)}
-    names |= {} if moving else dict.fromkeys(speed, sp.S.Zero)
+    names = indexed((Q, q_i), (P, p_i)) | ({} if moving else dict.fromkeys(speed, sp.S.Zero))
     return sp.expand(rate).xreplace(names), sp.expand(claimed).xreplace(names)
 
 
@@ -60,11 +58,7 @@ def theorem6_identity(
 ) -> EnergyIdentity:
     """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6)."""
     pair = GenericPair(m)
-    (q_i, q_j), (p_i, p_j) = pair.q, pair.p
-    total = pair.tidy(
-        pair.along(copies * pair_potential(q_i, q_j, gains=gains), gains)
-        + pair.along(HALF * (p_i.dot(p_i) + p_j.dot(p_j)), gains)
-    )
+    total = pair.tidy(sp.Add(*pair.energy_rates(gains, copies=copies)))
     dissipation = -gains.c2_alpha * pair.laplacian_form()
     own, own_claimed = _agent_rates(m, gains, moving)
     left = sp.Add(*(GenericObstacle(kind, m).energy_residual(gains) for kind in kinds))
@@ -72,8 +66,7 @@ def theorem6_identity(
     rate = pair.lift(total) + over_agents(own) + braking + _over_obstacles(left)
     claimed = pair.lift(dissipation) + over_agents(own_claimed) + braking
     residual = pair.lift(pair.tidy(total - dissipation)) + over_agents(sp.expand(own - own_claimed))
-    q_r = vector("q_r", m)
-    pull = sigma_norm(sp.Matrix([Q[I_, k] for k in range(1, m + 1)]) - q_r, eps=_ONE)
+    pull = sigma_norm(sp.Matrix([Q[I_, k] for k in range(1, m + 1)]) - vector("q_r", m), eps=_ONE)
     energy = (
         copies * collective_potential(gains)
         + gains.c1_beta * _over_obstacles(PSI_BETA(CLEARANCE[I_, K_]))
@@ -125,10 +118,7 @@ def e2_counterexample() -> RisingEnergy:
     drag = -gains.c2_gamma * sp.Add(*(speed**2 for speed in p))  # the gamma-agent's pull and potential cancel
 
     def rate(copies: int) -> sp.Expr:
-        potential = pair.along(copies * pair_potential(*pair.q, gains=gains), gains)
-        power = pair.along(HALF * sp.Add(*(end[0] ** 2 for end in pair.p)), gains)
-        at_state = pair.tidy(potential + power).subs(state)
-        concrete = at_state.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
-        return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha))) + drag
+        total = pair.tidy(sp.Add(*pair.energy_rates(gains, copies=sp.Integer(copies))))
+        return with_pair_law(total.subs(state), alpha) + drag
 
     return RisingEnergy(alpha, gains, q, p, rate(2), rate(1))

@@ -11,8 +11,7 @@ import pytest
 import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import is_sealed
-from flockana.certified.certificate import basin_certificate
-from flockana.certified.tube_certificate import tube_certificate
+from flockana.certified.certificate import basin_certificate, tube_certificate
 from flockana.equilibria.record import write_equilibrium
 from flockana.explore.watching import shown
 from flockana.stability.motion import mode_motion

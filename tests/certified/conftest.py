@@ -1,7 +1,8 @@
 """Basins that several tests read, each certified once."""
 
 import copy
-from functools import cache
+from functools import cache, reduce
+from operator import getitem
 
 import numpy as np
 import pytest
@@ -63,11 +64,14 @@ def oscillator(t):
 def with_leaf(data, at, change):
     """A copy of a certificate in which what stands at a path of keys is changed."""
     altered = copy.deepcopy(data)
-    place = altered
-    for key in at[:-1]:
-        place = place[key]
+    place = leaf(altered, at[:-1])
     place[at[-1]] = change(place[at[-1]])
     return altered
+
+
+def leaf(data, at):
+    """What stands at a path of keys."""
+    return reduce(getitem, at, data)
 
 
 def resealed(data):

@@ -4,16 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from flint import arb, fmpq
+from flint import arb
 
-from flockana import DeadZoneFlocking, Gains, StaticTarget, certify, find_equilibrium, lattice, simulate
+from flockana import DeadZoneFlocking, Gains, StaticTarget, certify, find_equilibrium, simulate
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.certified.alignment import unique_projection
 from flockana.certified.shells import SHELLS
-from flockana.certified.structure import Structure
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
+from tests.certified.conftest import ALL, STARTS, basin_of, displaced
 
 
 def energy(basin, x):
@@ -116,48 +114,37 @@ def test_only_what_is_below_both_bounds_is_in():
         basin.holds(basin.rest[:2], fast)
 
 
-def test_what_is_no_strict_minimum_of_a_connected_flock_of_distinct_agents_is_refused():
-    law, led = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
-    with pytest.raises(ArgumentError, match=r"no equilibrium beside these positions.*find_equilibrium"):
-        certify([[0.0, 0.0], [6.0, 0.0]], law=law)
-    with pytest.raises(ArgumentError, match="disconnected"):
-        certify([[0.0, 0.0], [7.0, 0.0], [30.0, 0.0], [37.0, 0.0]], law=law)
-    with pytest.raises(ArgumentError, match="the equilibrium has coincident agents"):
-        certify([[0.0, 0.0], [7.0, 0.0], [7.0, 0.0]], law=law)
-    saddle = find_equilibrium(led, [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]], method="root")
+LAW, PAIR, HINGE = Algorithm1(), STARTS["pair"], [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]]  # a hinge bends freely
+PER_AGENT = Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0)), target=StaticTarget((0.0, 0.0)))
+
+
+@pytest.mark.parametrize(
+    ("q", "law", "message"),
+    [
+        ([[0.0, 0.0], [6.0, 0.0]], LAW, r"no equilibrium beside these positions.*find_equilibrium"),
+        ([[0.0, 0.0], [7.0, 0.0], [30.0, 0.0], [37.0, 0.0]], LAW, "disconnected"),
+        ([[0.0, 0.0], [7.0, 0.0], [7.0, 0.0]], LAW, "the equilibrium has coincident agents"),
+        (HINGE, LAW, r"strict minimum|isolated equilibrium|no equilibrium beside"),
+        ([[0.0, 0.0, 0.0], [7.0, 0.0, 0.0]], LAW, "on one line in space"),
+        (PAIR, None, "law = None: expected the law"),
+        (PAIR, DeadZoneFlocking(), "expected Algorithm1 or Algorithm2"),
+        (PAIR, Algorithm1(alpha=AlphaInteraction(unit=2.0)), r"unit = 2: expected 1; rescale"),
+        (PAIR, PER_AGENT, "given per agent"),
+        (PAIR, Algorithm1(gains=Gains(c1_alpha=0.0)), "c1_alpha = 0: expected more than 0"),
+        (PAIR[:1], LAW, "1 agent: expected two or more"),
+        (PAIR, Algorithm1(gains=Gains(c2_alpha=0.0)), "c2_alpha = 0 and no c2_gamma: expected a gain that damps"),
+    ],
+)
+def test_what_the_argument_does_not_cover_is_refused(q, law, message):
+    with pytest.raises(FlockanaError, match=message):
+        certify(q, law=law)
+
+
+def test_a_saddle_is_refused():
+    saddle = find_equilibrium(Algorithm2(target=StaticTarget((0.0, 0.0))), HINGE, method="root")
     assert saddle.kind == "saddle"
     with pytest.raises(ArgumentError, match="expected a strict minimum"):
         certify(saddle)
-    hinge = [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]]  # it bends freely
-    with pytest.raises(FlockanaError, match=r"strict minimum|isolated equilibrium|no equilibrium beside"):
-        certify(hinge, law=law)
-    with pytest.raises(ArgumentError, match="on one line in space"):
-        certify([[0.0, 0.0, 0.0], [7.0, 0.0, 0.0]], law=law)
-
-
-def test_what_the_argument_does_not_cover_is_refused():
-    q = STARTS["pair"]
-    with pytest.raises(ArgumentError, match="law = None: expected the law"):
-        certify(q)
-    with pytest.raises(ArgumentError, match="expected Algorithm1 or Algorithm2"):
-        certify(q, law=DeadZoneFlocking())
-    with pytest.raises(ArgumentError, match=r"unit = 2: expected 1; rescale"):
-        certify(q, law=Algorithm1(alpha=AlphaInteraction(unit=2.0)))
-    with pytest.raises(ArgumentError, match="given per agent"):
-        certify(q, law=Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0)), target=StaticTarget((0.0, 0.0))))
-    with pytest.raises(ArgumentError, match="c1_alpha = 0: expected more than 0"):
-        certify(q, law=Algorithm1(gains=Gains(c1_alpha=0.0)))
-    with pytest.raises(ArgumentError, match="1 agent: expected two or more"):
-        certify(q[:1], law=Algorithm1())
-    with pytest.raises(ArgumentError, match="c2_alpha = 0 and no c2_gamma: expected a gain that damps"):
-        certify(q, law=Algorithm1(gains=Gains(c2_alpha=0.0)))
-
-
-def test_where_the_flock_was_found_does_not_matter():
-    basin = basin_of("hexagon", 2)
-    again = certify(find_equilibrium(basin.law, lattice.hexagonal_patch(1, 7.0) + 50.0))
-    assert float(again.radius) == pytest.approx(float(basin.radius), rel=1e-2)
-    assert float(again.level) == pytest.approx(float(basin.level), rel=2e-2)
 
 
 def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
@@ -169,20 +156,7 @@ def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
     assert not basin.holds(basin.rest, [[arb(0, 3)] * 2] * 3)
 
 
-def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
-    square = [arb(x) for x in (1, 1, 1, -1, -1, 1, -1, -1)]  # its size is √8
-    u = Structure.of(Algorithm1(), 4, 2)
-    assert unique_projection(u, square, fmpq(282, 100))
-    assert not unique_projection(u, square, fmpq(283, 100))
-    four = [arb(x) for row in TETRAHEDRON * np.sqrt(8.0) / 7.0 for x in map(round, row)]  # Σ x xᵀ = 4: tr 12, norm √48
-    space = Structure.of(Algorithm1(), 4, 3)
-    most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
-    assert unique_projection(space, four, fmpq(int(most * 1e6), 10**6))
-    assert not unique_projection(space, four, fmpq(int(most * 1e6) + 1, 10**6))
-
-
-def test_a_state_that_is_no_number_is_refused():
-    pair = certify([[0.0], [7.0]], law=Algorithm1())
-    for bad in (float("nan"), float("inf")):
-        with pytest.raises(ArgumentError, match="q holds a number that is not finite"):
-            pair.holds([[bad], [7.0]], [[0.0], [0.0]])
+@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+def test_a_state_that_is_no_number_is_refused(bad):
+    with pytest.raises(ArgumentError, match="q holds a number that is not finite"):
+        basin_of("pair", 1).holds([[bad, 0.0], [7.0, 0.0]], np.zeros((2, 2)))

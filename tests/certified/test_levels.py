@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
+import flockana as fl
 from flockana import Algorithm1, AlphaInteraction, Gains
-from flockana.certified import levels
+from flockana.certified import energies as levels
+from flockana.certified.energies import structural_energy
 from flockana.certified.series import PairNumbers
 from flockana.equilibria.barrier import coincident_lattice, collision_bounds
 from flockana.theorems.olfati_saber.any_potential import disconnected_energy
@@ -111,3 +113,16 @@ def test_on_a_line_a_lattice_is_exact_below_twice_its_length():
         assert levels.disconnected_state(alpha, 5, 1).overlaps(7 * far)  # 10 pairs less 3 bonds
     assert levels.disconnected_state(alpha, 5, 2) is None
     assert levels.disconnected_state(AlphaInteraction(d=5.0, r=10.0), 5, 1) is None
+
+
+Q = np.array([[0.0, 0.0], [6.5, 0.5], [2.0, 7.5], [9.0, 6.0]])
+P = np.array([[1.0, 0.0], [0.5, -1.0], [0.0, 2.0], [-0.5, 0.5]])
+
+
+@pytest.mark.parametrize(
+    "law", [fl.Algorithm1(), fl.Algorithm2(target=fl.StaticTarget(Q.mean(axis=0).tolist()))], ids=["1", "2"]
+)
+def test_it_is_the_energy_of_the_law_seen_from_the_centre(law):
+    found = structural_energy(law, *([[arb(x) for x in row] for row in state.tolist()] for state in (Q, P)))
+    assert float(found.mid()) == pytest.approx(law.energy(0.0, Q, P - P.mean(axis=0)), rel=1e-13)
+    assert float(found.rad()) < 1e-20

@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from itertools import islice
 from types import SimpleNamespace
 
 import pytest
@@ -48,7 +49,7 @@ def test_the_energy_of_free_motion_is_the_same_all_the_time(meeting):
     """½ Σ (v − v_c)², v − v_c = 0, −2 and 2, and three pairs out of range."""
     law = meeting.law
     exact = 4 + 3 * 30 * arb(float(law.alpha.far_potential))
-    for ball in (meeting.energy(0), meeting.energy(-1), meeting.energy_during(0)):
+    for ball in (meeting.energy(0), meeting.energy(-1)):
         assert abs(ball - exact) < 1e-9
 
 
@@ -78,13 +79,10 @@ def test_floats_are_on_the_safe_side(number, by):
 
 
 def test_a_tube_ends_in_a_basin_of_its_own_law_only(meeting):
-    for law, inside in ((Algorithm1(), True), (Algorithm1(gains=Gains(c1_alpha=29.0)), False)):
-        assert (
-            meeting.ends_in(SimpleNamespace(ensure_unedited=lambda: None, law=law, holds=lambda q, p: True)) is inside
-        )
-    assert not meeting.ends_in(
-        SimpleNamespace(ensure_unedited=lambda: None, law=Algorithm1(), holds=lambda q, p: False)
-    )
+    other = Algorithm1(gains=Gains(c1_alpha=29.0))
+    for law, holds, inside in ((Algorithm1(), True, True), (other, True, False), (Algorithm1(), False, False)):
+        basin = SimpleNamespace(ensure_unedited=lambda: None, law=law, holds=lambda q, p, holds=holds: holds)
+        assert meeting.ends_in(basin) is inside
 
 
 def test_a_run_that_starts_later_follows_the_target_from_there():
@@ -112,15 +110,13 @@ def test_one_radius_is_that_of_places_and_of_velocities():
 
 
 def test_a_tube_that_was_interrupted_holds_what_it_has_and_says_so(monkeypatch):
-    steps = MODULE._steps
+    steps = MODULE._March.steps
 
     def stopped(*given):
-        for k, step in enumerate(steps(*given)):
-            if k == 2:
-                raise KeyboardInterrupt
-            yield step
+        yield from islice(steps(*given), 2)
+        raise KeyboardInterrupt
 
-    monkeypatch.setattr(MODULE, "_steps", stopped)
+    monkeypatch.setattr(MODULE._March, "steps", stopped)
     tube = enclose(Algorithm2(gains=ALONE, target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 3.0))
     assert (tube.status, len(tube.taken), len(tube.t)) == ("interrupted", 2, 3)
     assert tube.message == f"interrupted: it ends at t = {tube.t[-1]:g}"

@@ -11,7 +11,7 @@ from flockana import CircleTarget, LedDeadZoneFlocking, LinearTarget, RescaledVe
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.terms.leaders import known_path
-from flockana.symbolic.led_dead_zone import led_energy_identity
+from flockana.symbolic.composition import led_energy_identity
 from tests.refused import refused
 
 LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))

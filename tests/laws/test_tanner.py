@@ -6,7 +6,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.symbolic.matching import WEIGHT, matching_identity
+from flockana.symbolic.composition import WEIGHT, matching_identity
 from flockana.symbolic.pair import vector
 from tests.refused import refused
 

@@ -20,6 +20,11 @@ def test_all_steps_hold_and_none_is_missing(of):
     assert len(steps) == of.PROOF.size
 
 
+@pytest.mark.parametrize(("count", "factor", "holds"), [(4, 4, True), (4, 3, False), (1, 1, True)])
+def test_squares_over_a_path_need_the_number_of_its_links(count, factor, holds):
+    assert matched_velocities.over_links(count, factor).holds is holds
+
+
 @pytest.mark.parametrize(("less", "holds"), [(1, True), (0, False)])
 def test_a_cut_of_one_agent_leaves_one_pair_less_than_there_are_agents(less, holds):
     assert proof.cut(less).holds is holds

@@ -96,12 +96,6 @@ def test_a_sign_is_told_only_where_the_coefficients_tell_it():
     assert bearing_distance_printed.one_sign(1 - t) is None
 
 
-def test_the_runaway_path_is_the_laws():
-    law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))
-    u = law.acceleration(0.0, np.array([[-5 / 3, 0.0], [0.0, 0.0], [-5 / 3, 0.0]]), np.full((3, 2), 0.7))
-    np.testing.assert_allclose(u, np.tile([2 / 3, 0.0], (3, 1)), atol=1e-15)
-
-
 def test_the_controls_of_the_runaway_path_are_the_laws_at_any_rates():
     u, _, _ = bearing_distance_printed.three_path(2)
     law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))

@@ -7,10 +7,11 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 
 import sympy as sp
 
-from flockana import DeadZoneFlocking, DeadZoneInteraction
+from flockana import DeadZoneFlocking, DeadZoneInteraction, simulate
 from flockana.symbolic import dead_zone as symbolic
 from flockana.symbolic.dead_zone import D_1, D_2, K_1, R_D, RHO, R
 from proofs import dead_zone, dead_zone_pairs, dead_zone_parting
+from proofs.evaluate import enclosed
 from tests.proofs.steps import failing
 
 HARD = DeadZoneInteraction(ramp=0.0)
@@ -86,8 +87,6 @@ def test_a_strong_pull_leaves_no_contact_at_d_1():
 
 
 def test_a_strong_attraction_holds_a_pair_that_parts_at_12():
-    from flockana.dynamics.simulate import simulate
-
     values = dead_zone_pairs.defaults()
     assert dead_zone_parting.parting_speed(values, 14, 9) <= 12
     assert not dead_zone_parting.parting_speed(values, 13, 9) <= 12
@@ -121,8 +120,6 @@ def test_the_constants_are_those_of_the_default_law():
 
 
 def test_the_force_of_a_pair_is_at_most_that_just_below_r():
-    from proofs.evaluate import enclosed
-
     for pair in (HARD, DeadZoneInteraction()):
         most = enclosed(symbolic.jumps()["r"][0], dead_zone_pairs.balls(dead_zone_pairs.defaults())).real
         force = pair.force(np.linspace(0.1, np.nextafter(15.0, 0.0), 300))
@@ -130,8 +127,6 @@ def test_the_force_of_a_pair_is_at_most_that_just_below_r():
 
 
 def test_a_pair_that_parts_at_12_parts_for_ever_and_one_at_1_does_not():
-    from flockana.dynamics.simulate import simulate
-
     for speed, parted in ((12.0, True), (1.0, False)):
         p = [[-speed / 2, 0.0], [speed / 2, 0.0]]
         run = simulate(DeadZoneFlocking(), [[0.0, 0.0], [14.0, 0.0]], p, (0.0, 3.0))

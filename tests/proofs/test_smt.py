@@ -31,6 +31,7 @@ MUTANTS = [
     ("signs_of_phi", "_control", "        gap**2 <= 2 * p_i + 2 * p_j,\n", "        gap**2 <= p_i + p_j,\n"),
     ("signs_of_phi", "_control", "u <= n * (c1 * bound + 2 * c2 * s)", "u <= n * (c1 * bound + c2 * s)"),
     ("signs_of_phi", "_phi", "f > -B, f < A), *known, latex", "f > -B, f < A / 2), *known, latex"),
+    ("signs_of_phi", "_phi", "(A + B) * (s + C) + (A - B) * w", "(A + B) * (s + C) - (A - B) * w"),
     ("signs_of_phi", "potential_signs", "(Z - D_ALPHA) * g == PAIR", "(D_ALPHA - Z) * g == PAIR"),
     ("collisions", "_instant", "TOGETHER * C1 * C_STAR <= H,", "2 * TOGETHER * C1 * C_STAR <= H,"),
     ("bearing_distance", "_energies", "z3.And(x >= rho - gap, rho - gap > 0)", "z3.And(x >= rho - gap / 2, rho > gap)"),

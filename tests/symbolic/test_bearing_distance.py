@@ -56,8 +56,6 @@ def test_the_drag_of_the_printed_bound(step, speed):
 
 
 def test_stand_off():
-    assert symbolic.stand_off(desired_speed=3, drive=5, weight=5).subs(symbolic.C, 3) == 0
-    assert symbolic.stand_off(desired_speed=3, drive=5, weight=20).subs(symbolic.C, 3) == sp.Rational(9, 4)
     general = symbolic.stand_off()
     assert sp.simplify(general - (symbolic.C - symbolic.SPEED * sp.Symbol("w^ga", positive=True) / symbolic.GAIN)) == 0
 

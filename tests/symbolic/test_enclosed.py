@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.symbolic.enclosed import NONNEGATIVE, OPEN, POSITIVE, Enclosed, interval, precision
+from flockana.symbolic.enclosed import NONNEGATIVE, OPEN, POSITIVE, Enclosed, germ, interval, precision
 
 S = sp.Symbol("s", positive=True)
 FORMULAS = [
@@ -60,3 +60,9 @@ def test_nothing_is_enclosed_across_a_point_where_an_operation_is_not_analytic(t
 def test_signs_follow_from_what_a_formula_is_made_of(text, sign):
     with precision(80, 2):
         assert Enclosed(exactly(text), S).sign(interval(fmpq(1, 2), fmpq(3, 2))) == sign
+
+
+def test_the_leading_power_of_a_potential_at_contact():
+    found = germ(S**-12 - S**-6, S, fmpq(1, 2))
+    assert int(found.power) == -12
+    assert 0.984 <= float(found.factor.lower()) <= float(found.factor.upper()) <= 1.001

@@ -6,11 +6,12 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import GAINS, ConcreteFlock, GainSymbols, derive_split, energy, norms, pair, sums
+from flockana.symbolic import GAINS, ConcreteFlock, derive_split, energy, norms, pair, sums
 from flockana.symbolic.energy import algorithm1_identity, structural_identity
 from flockana.symbolic.errata import e1_counterexample, e1_identity
-from flockana.symbolic.potentials import derive_psi_alpha, derive_psi_beta
-from flockana.symbolic.sums import hamiltonian, structural_hamiltonian
+from flockana.symbolic.obstacles import derive_envelope
+from flockana.symbolic.potentials import derive_psi_alpha
+from flockana.symbolic.theorem6 import theorem6_identity
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
 
@@ -21,21 +22,6 @@ def test_identities_hold_for_generic_n(m: int) -> None:
         assert identity.residual == 0
         assert identity.rate == identity.claimed
         assert identity.rate.has(sums.N)
-
-
-@DIMENSIONS
-def test_energies_are_the_ones_defined(m: int) -> None:
-    assert algorithm1_identity(m).energy == hamiltonian(m)
-    assert structural_identity(m).energy == structural_hamiltonian(m, lambda_=GAINS.c1_gamma)
-
-
-def test_algorithm_1_in_the_moving_frame_loses_only_by_consensus() -> None:
-    gains = GainSymbols(c1_gamma=0, c2_gamma=0)
-    identity = structural_identity(2, gains=gains)
-    square = (sums.V[sums.I_, 1] - sums.V[sums.J_, 1]) ** 2 + (sums.V[sums.I_, 2] - sums.V[sums.J_, 2]) ** 2
-    stated = -GAINS.c2_alpha * sums.over_pairs(pair.ADJACENCY(sums.Z[sums.I_, sums.J_]) * square)
-    assert identity.residual == 0
-    assert identity.rate == stated
 
 
 @pytest.mark.parametrize("law", ["algorithm1", "algorithm2"])
@@ -120,8 +106,8 @@ def test_a_bad_dimension_is_named(m: object) -> None:
 
 
 def test_everything_prints_as_latex() -> None:
-    identities = algorithm1_identity(2), structural_identity(3), e1_identity(1), derive_split(2)
-    results = (*identities, derive_psi_alpha(), derive_psi_beta(), ConcreteFlock("algorithm2", 2, 1))
+    identities = algorithm1_identity(2), structural_identity(3), e1_identity(1), derive_split(2), theorem6_identity(2)
+    results = (*identities, derive_psi_alpha(), derive_envelope("sphere"), ConcreteFlock("algorithm2", 2, 1))
     for result in results:
         text = result.latex()
         assert text.isascii()

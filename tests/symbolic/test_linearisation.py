@@ -46,8 +46,7 @@ def test_a_wrong_turn_of_the_closest_point_is_found_out(monkeypatch):
     assert not lin.derive_obstacle_jacobian("sphere", 2).holds
 
 
-def test_the_steps_print_and_bad_dimensions_are_refused():
-    assert r"\partial u_i/\partial q_j" in lin.derive_pair_jacobian(1).latex()
+def test_bad_dimensions_are_refused():
     with pytest.raises(ArgumentError, match="expected a dimension"):
         lin.derive_agent_jacobian(4)
 

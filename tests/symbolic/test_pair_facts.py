@@ -5,10 +5,12 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import flockana as fl
 from flockana import AlphaInteraction, DeadZoneInteraction, FormulaInteraction, RationalWeight
 from flockana.base.facts import Fact, conjunction
+from flockana.symbolic.decide import is_zero
 from flockana.symbolic.pair_facts import _NumericFormula
 from tests.toys.formulas import alpha_formula, spring
 
@@ -208,3 +210,9 @@ def test_slopes_at_a_pole_have_no_bound():
     slopes = [bound.force for bound in pair("k*s**2/(r - s)", k=1.0).slopes(4)]
     assert np.isfinite(slopes[:3]).all()
     assert slopes[3] == np.inf
+
+
+def test_a_number_is_zero_by_algebra_or_not_by_its_enclosure():
+    k = sp.Symbol("k")
+    assert is_zero(k - 2, {k: sp.Integer(2)}) is True
+    assert is_zero(k - sp.pi, {k: sp.Integer(3)}) is False

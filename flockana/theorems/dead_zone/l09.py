@@ -116,7 +116,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     of the agents does not suffice.
     """
     # Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one.
-    from flockana.symbolic.led_dead_zone import led_energy_identity
+    from flockana.symbolic.composition import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
     one, turning = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"

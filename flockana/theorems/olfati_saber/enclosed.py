@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from flockana.certified.balls import exact
-from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
+from flockana.certified.energies import BITS, coincident_floor, coincident_state, disconnected_state, gain
 from flockana.certified.series import PairNumbers
-from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, down, up
 from flockana.theorems import from_tube
 from flockana.theorems.claims import undecided, vacuous

@@ -67,7 +67,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     friends and the push from that of the negative ones. The term −S_i q_i is lost, and the force depends on the origin.
     The correct form is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i).
     """
-    from flockana.symbolic.reynolds import reynolds_form
+    from flockana.symbolic.errata import reynolds_form
 
     printed, true = reynolds_form(printed=True), reynolds_form()
     return [

@@ -3,8 +3,8 @@
 import pytest
 import sympy as sp
 
-from flockana.symbolic import reynolds
-from flockana.symbolic.reynolds import FRIENDS, NEGATIVE, OWN, PLACE, SHIFT, STRESS, friends_form, gradient_part
+from flockana.symbolic import errata
+from flockana.symbolic.errata import FRIENDS, NEGATIVE, OWN, PLACE, SHIFT, STRESS, friends_form, gradient_part
 
 
 def written_out(expression, positive, negative):
@@ -24,11 +24,11 @@ def test_few_friends_written_out(positive, negative):
 
 def test_what_is_lost_is_what_translation_shows():
     """−S_i q_i is left over, and moving by w adds S_i w: the same S_i."""
-    left, moved = reynolds.reynolds_form(printed=True).residuals
+    left, moved = errata.reynolds_form(printed=True).residuals
     assert sp.expand(left.subs(OWN, SHIFT) + moved) == 0
     assert left != 0
 
 
 def test_another_force_is_not_that_form(monkeypatch):
-    monkeypatch.setattr(reynolds, "gradient_part", lambda: 2 * gradient_part())
-    assert not reynolds.reynolds_form().holds
+    monkeypatch.setattr(errata, "gradient_part", lambda: 2 * gradient_part())
+    assert not errata.reynolds_form().holds
