@@ -74,7 +74,7 @@ def observe_command(
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if none is given."""
     from flockana.interactions import pair_law
-    from flockana.laws.olfati_saber import Algorithm1
+    from flockana.laws import Algorithm1
     from flockana.recorded.recording import scaled_alpha
     from flockana.scenarios import scenario
 

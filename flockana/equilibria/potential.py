@@ -9,14 +9,10 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import ensure_consistent
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.environment import Obstacle, Sphere, Wall
 from flockana.equilibria.terminal import generators, rigid_motions
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.law import Law
-from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.navigation import Navigation
-from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Term
+from flockana.laws import Law, Navigation, PairTerm, SumOfTerms, Term
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 

@@ -20,7 +20,7 @@ from flockana.base.files import atomic_write, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.plots.gif import GifWriter
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import limit, style

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 
 _INSTANTS = 1500  # about as many as a figure has pixels across
 

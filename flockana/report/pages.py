@@ -6,7 +6,7 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
@@ -16,8 +16,7 @@ from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
-from flockana.theorems import Theorem, Verdict, theorem
-from flockana.theorems.theorem import Status
+from flockana.theorems import Status, Theorem, Verdict, theorem
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight lines; so many it gets then

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.environment.targets import CircleTarget, SineTarget, StaticTarget
+from flockana.environment import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg

@@ -10,7 +10,7 @@ from flockana.base.errors import ArgumentError, FlockanaError, SolverError, Unkn
 from flockana.base.interrupts import restore_interrupts
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import worker_pool
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.section import MANY_LAWS, Section
 from flockana.report.surveys import Survey, SurveyResult, make_survey

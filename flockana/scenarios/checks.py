@@ -15,10 +15,9 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError
-from flockana.laws.discrete import ensure_law
+from flockana.laws import ensure_law
 from flockana.scenarios.start import is_lazy
-from flockana.theorems import theorems
-from flockana.theorems.theorem import Status
+from flockana.theorems import Status, theorems
 
 SOURCE = "source"  # the id under which a source's own report is judged
 _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes

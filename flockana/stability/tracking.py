@@ -12,18 +12,9 @@ from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CircleTarget, SineTarget
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.centre_path import (
-    Motion,
-    centre_path,
-    motion,
-    path_and_factor,
-    steady_error,
-    steady_motion,
-    transient,
-)
+from flockana.environment import CircleTarget, SineTarget
+from flockana.laws import Algorithm2, MSNDiscretisation
+from flockana.stability.centre_path import Motion, centre_path, motion, path_and_factor, steady_error, transient
 from flockana.stability.translational import CentreOfMass, map_gain
 
 _SAMPLES, _APART = 8, 1e-2  # least number of samples of a fit of four unknowns, and least ratio of its singular values
@@ -69,14 +60,10 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
     start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
-    turn = np.exp(1j * moving.omega * start)
     if gains.c1_gamma > 0.0:
-        lag, swing = steady_motion(gains, moving)
-        steady = moving.start + moving.velocity * start - lag + (swing * turn).real
-        slip = speed - moving.velocity - (1j * moving.omega * swing * turn).real
-        return transient(gains, t - start, place - steady, slip)
+        return transient(gains, moving, t, start, place, speed)
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
-    slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
+    slip = speed - moving.drift - (1j * moving.omega * swing * np.exp(1j * moving.omega * start)).real
     since, drag = (t - start)[:, None], gains.c2_gamma
     return -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
 
