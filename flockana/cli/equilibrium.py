@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, print_error
+from flockana.cli.show import OK, UNEXPECTED, print_error, show, show_files, show_json
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.cli.options import AsJson, Time, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK
+from flockana.cli.show import OK, show, show_files, show_json
 
 if TYPE_CHECKING:
     from flockana.cli.source import Source

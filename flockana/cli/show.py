@@ -1,4 +1,4 @@
-"""Printing of results: tables under a title, files written, or JSON."""
+"""What a command says: results as tables or JSON, files written, errors in one line, exit status."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from flockana.cli.streams import in_output_encoding
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+
+
+OK, BAD_INPUT, UNEXPECTED, INTERRUPTED = 0, 2, 3, 130
 
 
 def show(title: str, *tables: RenderableType) -> Console:
@@ -42,3 +45,8 @@ def show_files(quiet: bool = False, /, **files: Path | None) -> None:
 def show_json(data: Any) -> None:
     """Print plain data as JSON."""
     typer.echo(in_output_encoding(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)))
+
+
+def print_error(message: object) -> None:
+    """Print an error in one line on the error stream."""
+    typer.echo(f"flockana: {' '.join(str(message).split())}", err=True)

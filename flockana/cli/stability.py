@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, print_error
+from flockana.cli.show import OK, UNEXPECTED, print_error, show, show_files, show_json
 from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:

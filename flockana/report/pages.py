@@ -23,23 +23,6 @@ _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight l
 
 
 @dataclass(frozen=True)
-class ScenarioResult:
-    """A scenario that was run and verified."""
-
-    scenario: Scenario  # what was run
-    trajectory: Trajectory
-    verdicts: tuple[Verdict, ...]  # what `Scenario.verify` found
-
-
-@dataclass(frozen=True)
-class FixedResult:
-    """A theorem or erratum that was checked by itself."""
-
-    theorem: Theorem  # what was checked
-    verdict: Verdict
-
-
-@dataclass(frozen=True)
 class Finding:
     """Verdict with its statement, source and expected status."""
 
@@ -116,22 +99,27 @@ class FixedPage:
 Page = ScenarioPage | FixedPage
 
 
-def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
-    """Return a result as plain data, with its figures drawn."""
-    if isinstance(result, FixedResult):
-        return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
-    scenario, run = result.scenario, result.trajectory
+def fixed_page(verdict: Verdict) -> FixedPage:
+    """Return the verdict on a theorem or erratum by itself as plain data."""
+    item = theorem(verdict.theorem)
+    return FixedPage(_finding(verdict, item, item.expected))
+
+
+def scenario_page(
+    scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...], *, figures: bool = True
+) -> ScenarioPage:
+    """Return a scenario's run with the verdicts of `Scenario.verify` as plain data, with its figures drawn."""
     early_end = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
     return ScenarioPage(
         scenario.name,
         scenario.title,
         scenario.source,
         _facts(scenario, run),
-        tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
+        tuple(_scenario_finding(scenario, verdict) for verdict in verdicts),
         pictures(run, scenario.instants) if figures else (),
         early_end,
         tuple(scenario.references),
-        _play(scenario, run, result.verdicts) if figures else "",
+        _play(scenario, run, verdicts) if figures else "",
         still(run, float(run.t[-1])) if figures else "",
     )
 

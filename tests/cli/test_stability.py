@@ -4,8 +4,8 @@ from math import sqrt
 import pytest
 
 from flockana.base.errors import SolverError
+from flockana.cli.show import UNEXPECTED
 from flockana.cli.stability import stability_command
-from flockana.cli.status import UNEXPECTED
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
