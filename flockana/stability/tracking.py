@@ -203,38 +203,22 @@ def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quanti
 
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
     """Return turning points along the line from the start to the target, and the time between two."""
-    target = run.law.target.position(0.0)
+    from scipy.interpolate import BPoly, PPoly
+
     t, *states, _ = run.path  # its own steps too: samples of one's own choice may miss a turn
     x, v, a = (series.mean(axis=1) for series in states)
-    x = x - target
+    x = x - run.law.target.position(0.0)
     axis = x[0] / (float(np.linalg.norm(x[0])) or 1.0)
-    place, speed, slope = x @ axis, v @ axis, a @ axis
-    at_rest = [float(t[0])] if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()) else []
-    turns, places = list(at_rest), [float(place[0])] * len(at_rest)
-    ahead = speed > 0.0
-    for k in np.flatnonzero(ahead[:-1] != ahead[1:]):
-        if k == 0 and at_rest:
-            continue
-        time, where = _rest(t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
-        turns.append(time)
-        places.append(where)
-    if len(turns) < 2:
+    speed = v @ axis
+    place = PPoly.from_bernstein_basis(BPoly.from_derivatives(t, np.column_stack([x @ axis, speed, a @ axis])))
+    turns = place.derivative().roots(extrapolate=False)
+    if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()):  # at rest at the start: a root, found or not by rounding
+        turns = np.append(t[0], turns[turns > t[0] + 0.5 * (t[1] - t[0])])
+    if turns.size < 2 or not np.isfinite(turns).all():
         return []
-    period = 2.0 * float(np.mean(np.diff(turns)))
-    damping = 0.5 * centre.gains.c2_gamma
-    farthest = -places[0] * float(np.exp(-damping * 0.5 * centre.period))
+    period, damping = 2.0 * float(np.mean(np.diff(turns))), 0.5 * centre.gains.c2_gamma
+    farthest = -float(place(turns[0])) * float(np.exp(-damping * 0.5 * centre.period))
     return [
         Quantity("period (time)", centre.period, period),
-        Quantity("first turning point beyond the target (length)", farthest, places[1]),
+        Quantity("first turning point beyond the target (length)", farthest, float(place(turns[1]))),
     ]
-
-
-def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[float, float]:
-    """Return time and place between two steps at which the velocity vanishes, on the quintic path."""
-    from scipy.interpolate import BPoly
-    from scipy.optimize import brentq
-
-    place = BPoly.from_derivatives(t, np.column_stack([x, v, a]))
-    velocity = place.derivative()
-    time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14 * float(t[1] - t[0])))
-    return time, float(place(time))
