@@ -141,6 +141,8 @@ def inside_obstacle(law: Law, q: FloatArray) -> bool:
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
     """Return the skew matrices that leave every obstacle in place."""
     # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
+    from scipy.linalg import null_space
+
     m = centre.size
     skew = generators(m)
     if not skew or not obstacles:
@@ -156,6 +158,4 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: f
         else:
             return []
     moved = np.array([[generator @ axis for axis in axes] for generator in skew]).reshape(len(skew), -1)
-    _, sizes, rows = np.linalg.svd(moved.T, full_matrices=True)
-    kept = [k for k in range(len(skew)) if k >= sizes.size or sizes[k] <= _CONCENTRIC]  # of unit axes
-    return [np.tensordot(rows[k], skew, axes=1) for k in kept]
+    return [np.tensordot(kept, skew, axes=1) for kept in null_space(moved.T, rcond=_CONCENTRIC).T]

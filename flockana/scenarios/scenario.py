@@ -16,7 +16,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws import DiscreteLaw, Law
 from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.start import accepts_lazy
+from flockana.scenarios.start import LazyField
 from flockana.theorems import Claim, Status, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
 
@@ -36,7 +36,6 @@ class Report:
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
-@accepts_lazy("q0", "p0")
 @dataclass(frozen=True)
 class Scenario:
     """Published simulation, ready to run.
@@ -168,6 +167,10 @@ class Scenario:
             Of this scenario.
         """
         return differences(verdict, self.expected)
+
+
+for _name in ("q0", "p0"):
+    setattr(Scenario, _name, LazyField(_name))
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
