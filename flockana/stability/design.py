@@ -6,7 +6,7 @@ What was found for thirty agents is in docs/gain-design.md.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, overload
+from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -82,10 +82,18 @@ class GainDesign:
         return replace(base, c1_gamma=pair[0], c2_gamma=pair[1])
 
 
+class _Search(TypedDict, total=False):
+    """Keyword arguments of `design_gains`."""
+
+    bounds: tuple[float, float] | None
+    starts: int
+    seed: int
+
+
 @overload
-def design_gains(problem: GainProblem, asked: Specifications, **how: Any) -> SpecifiedGains: ...
+def design_gains(problem: GainProblem, asked: Specifications, **how: Unpack[_Search]) -> SpecifiedGains: ...
 @overload
-def design_gains(problem: GainProblem, asked: None = ..., **how: Any) -> GainDesign: ...
+def design_gains(problem: GainProblem, asked: None = ..., **how: Unpack[_Search]) -> GainDesign: ...
 def design_gains(
     problem: GainProblem,
     asked: Specifications | None = None,

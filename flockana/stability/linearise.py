@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -33,10 +33,20 @@ _LATER = 0.7310585786  # of the flock's own time: after it a steady motion must 
 _STEADY = 1e-9  # relative
 
 
+class _Options(TypedDict, total=False):
+    """Keyword arguments of `linearise`."""
+
+    t: float
+    links: Any
+    force_tolerance: float
+    allow_residual: bool
+    zero: float | None
+
+
 @overload
-def linearise(law: DiscreteLaw, equilibrium: Any, p: Any = ..., **how: Any) -> MapLinearisation: ...
+def linearise(law: DiscreteLaw, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> MapLinearisation: ...
 @overload
-def linearise(law: Any, equilibrium: Any, p: Any = ..., **how: Any) -> Linearisation: ...
+def linearise(law: Any, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> Linearisation: ...
 def linearise(
     law: Any,
     equilibrium: Any,
