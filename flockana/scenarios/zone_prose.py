@@ -175,9 +175,10 @@ def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scen
         f"{velocities:g} m/s (standard deviation), both ours; the scenario's seed is that of the noise too."
     )
     law = ZoneFlocking(FREE, noise=ZoneNoise(weights=weights, velocities=velocities, seed=seed))
-    reports, own = (_unpredictable, *OPEN), {"as_it_is": (_repeats,)}
+    reports, as_it_is = (_unpredictable, *OPEN), (_repeats,)
     expected = verified("source:repeats", "source:unpredictable", "source:speed", "source:bounds")
-    return zone_entry("zone-51-noisy", title, source, law, apart, 20.0, expected, reports, **own)(seed)
+    build = zone_entry("zone-51-noisy", title, source, law, apart, 20.0, expected, reports, as_it_is=as_it_is)
+    return build(seed)
 
 
 _UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
