@@ -28,6 +28,16 @@ def show(title: str, *tables: RenderableType) -> Console:
     return console
 
 
+def show_facts(facts: Any, as_json: bool, title: str, rows: Any, *more: RenderableType) -> None:
+    """Print facts as JSON, or else a title, a table of rows, and what stands under it."""
+    from flockana.report.tables import fact_table
+
+    if as_json:
+        show_json(facts)
+    else:
+        show(title, fact_table(rows), *more)
+
+
 def show_lines(text: str) -> None:
     """Print lines as they are, whatever the width; letters that the encoding lacks are written as escapes."""
     from rich.console import Console
