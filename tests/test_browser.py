@@ -15,8 +15,8 @@ from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
-from flockana.report.pages import FixedResult, ScenarioResult
-from flockana.theorems import Claim, Verdict, theorem, verify
+from flockana.report.pages import fixed_page, scenario_page
+from flockana.theorems import Claim, Verdict, verify
 
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
 
@@ -29,14 +29,14 @@ def visit(open_tab):
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    results = []
+    pages = []
     for name in ("hexagon", "three-agents-1d"):
         item = scenario(name)
         run = item.run()
-        results.append(ScenarioResult(item, run, (item.verdict("energy", run),) if name == "hexagon" else ()))
+        pages.append(scenario_page(item, run, (item.verdict("energy", run),) if name == "hexagon" else ()))
     derived = Verdict("E1", (), (Claim("corrected", "verified", "symbolic"),))
-    results += [FixedResult(theorem("E8"), verify("E8")), FixedResult(theorem("E1"), derived)]
-    return write_report(results, tmp_path_factory.mktemp("report"))
+    pages += [fixed_page(verify("E8")), fixed_page(derived)]
+    return write_report(pages, tmp_path_factory.mktemp("report"))
 
 
 @pytest.fixture(scope="module")

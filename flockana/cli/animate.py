@@ -12,8 +12,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_target
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AsJson, Seed, output
-from flockana.cli.show import show_files, show_json
-from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
 
 
 def animate_command(

@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from flockana.cli.options import AsJson
-from flockana.cli.show import show_json
-from flockana.cli.status import OK, UNEXPECTED, print_error
+from flockana.cli.show import OK, UNEXPECTED, print_error, show_json
 
 
 def check_command(

@@ -9,8 +9,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.options import AsJson
-from flockana.cli.show import show_json
-from flockana.cli.status import OK
+from flockana.cli.show import OK, show_json
 
 
 def course_command(

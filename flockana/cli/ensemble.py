@@ -10,8 +10,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.cli.options import AsJson, Drawing, Jobs, ScenarioName, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED
+from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     import xarray

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, print_error
+from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium
@@ -44,7 +43,6 @@ def equilibrium_command(
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
-    from flockana.report.tables import fact_table
 
     ensure_file(save_to, (".json",))
     ensure_file(picture)
@@ -56,10 +54,7 @@ def equilibrium_command(
         print_error(error)
         return UNEXPECTED
     facts = summary(equilibrium, source)
-    if as_json:
-        show_json(facts)
-    else:
-        show(f"{source}: {equilibrium.kind}", fact_table(_rows(equilibrium, facts)))
+    show_facts(facts, as_json, f"{source}: {equilibrium.kind}", _rows(equilibrium, facts))
     if save_to is not None:
         write_equilibrium(equilibrium, save_to)
     write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.cli.status import OK
+from flockana.cli.show import OK
 
 
 def explore_command(

@@ -8,8 +8,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from flockana.cli.options import AsJson, ScenarioName, Seed
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK
+from flockana.cli.show import OK, show, show_files, show_json
 
 
 def export_command(

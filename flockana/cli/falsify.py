@@ -10,8 +10,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.options import AsJson, Drawing, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -38,9 +38,9 @@ def read_flock(
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
     from flockana.cli.source import ensure_source, read_source
-    from flockana.environment.targets import StaticTarget
+    from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction
-    from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+    from flockana.laws import Algorithm1, Algorithm2
     from flockana.scenarios import scenarios
 
     if source in scenarios():
@@ -116,7 +116,7 @@ def _ensured(law: Any, m: int, potential: bool) -> Any:
 
 def _with_fixed_target(law: Any, t: float) -> Any:
     """Return the law with its γ-agent fixed at its position at time t."""
-    from flockana.environment.targets import StaticTarget
+    from flockana.environment import StaticTarget
 
     target = law.target
     return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))

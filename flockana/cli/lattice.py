@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.cli.options import AsJson, Time, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK
+from flockana.cli.show import OK, show_facts, show_files
 
 if TYPE_CHECKING:
     from flockana.cli.source import Source
@@ -52,7 +51,6 @@ def lattice_command(
     from flockana.cli.source import read_source
     from flockana.lattice import links
     from flockana.report.console import details
-    from flockana.report.tables import fact_table
     from flockana.theorems import verify
 
     ensure_file(picture)
@@ -61,10 +59,8 @@ def lattice_command(
     tolerances = _tolerances(tol)
     verdict = verify("os-5", q=given.q, d=given.d, r=given.r, subject=given.name, tolerances=tolerances)
     facts = lattice_facts(given, pairs, verdict)
-    if as_json:
-        show_json(facts | {"verdict": verdict.to_dict()})
-    else:
-        show(given.name, fact_table(_rows(facts)), details(verdict), *_hint(facts, tolerances))
+    more, hint = {"verdict": verdict.to_dict()}, _hint(facts, tolerances)
+    show_facts(facts | more, as_json, given.name, _rows(facts), details(verdict), *hint)
     write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
     show_files(as_json, picture=picture)
     return OK

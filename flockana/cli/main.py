@@ -20,7 +20,7 @@ from flockana.base.interrupts import restore_interrupts
 from flockana.cli.command import Command
 from flockana.cli.groups import EXAMPLES, Groups
 from flockana.cli.home import prepare_home
-from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, print_error
+from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, print_error
 from flockana.cli.streams import finish_output, prepare_output
 
 _NAME = "flockana"

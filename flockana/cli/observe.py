@@ -10,8 +10,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.options import AsJson, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED
+from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
@@ -74,7 +73,7 @@ def observe_command(
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if none is given."""
     from flockana.interactions import pair_law
-    from flockana.laws.olfati_saber import Algorithm1
+    from flockana.laws import Algorithm1
     from flockana.recorded.recording import scaled_alpha
     from flockana.scenarios import scenario
 

@@ -34,12 +34,13 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...] = KINDS) -> None:
 
 def write_picture(draw: Callable[[Axes], object], path: Path | None, *, m: int = 2) -> None:
     """Draw on new axes and write them as PNG, SVG or PDF, by the file's name; nothing without one."""
-    if path is not None:
-        write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
+    write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
 
 
-def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[float, float] = _SIZE) -> None:
-    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name."""
+def write_figure(draw: Callable[[Figure], object], path: Path | None, *, size: tuple[float, float] = _SIZE) -> None:
+    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name; nothing without one."""
+    if path is None:
+        return
     from matplotlib.figure import Figure
 
     from flockana.plots.style import style

@@ -12,8 +12,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_folder_of, ensure_target
 from flockana.cli.options import AsJson, ScenarioName, Seed, output
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 
 def run_command(

@@ -1,4 +1,4 @@
-"""Printing of results: tables under a title, files written, or JSON."""
+"""What a command says: results as tables or JSON, files written, errors in one line, exit status."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
 
+OK, BAD_INPUT, UNEXPECTED, INTERRUPTED = 0, 2, 3, 130
+
+
 def show(title: str, *tables: RenderableType) -> Console:
     """Print a title in bold, and tables under it; return the console."""
     from rich.console import Console
@@ -23,6 +26,16 @@ def show(title: str, *tables: RenderableType) -> Console:
     for table in tables:
         console.print(table)
     return console
+
+
+def show_facts(facts: Any, as_json: bool, title: str, rows: Any, *more: RenderableType) -> None:
+    """Print facts as JSON, or else a title, a table of rows, and what stands under it."""
+    from flockana.report.tables import fact_table
+
+    if as_json:
+        show_json(facts)
+    else:
+        show(title, fact_table(rows), *more)
 
 
 def show_lines(text: str) -> None:
@@ -42,3 +55,8 @@ def show_files(quiet: bool = False, /, **files: Path | None) -> None:
 def show_json(data: Any) -> None:
     """Print plain data as JSON."""
     typer.echo(in_output_encoding(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)))
+
+
+def print_error(message: object) -> None:
+    """Print an error in one line on the error stream."""
+    typer.echo(f"flockana: {' '.join(str(message).split())}", err=True)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, print_error
+from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
@@ -59,7 +58,6 @@ def stability_command(
     from flockana.cli.picture import KINDS, ensure_file, write_figure
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.rest import resting_state
-    from flockana.report.tables import fact_table
     from flockana.stability import linearise
 
     ensure_file(plot, KINDS)
@@ -76,14 +74,9 @@ def stability_command(
     except SolverError as error:
         print_error(error)
         return UNEXPECTED
-    if as_json:
-        show_json(facts)
-    else:
-        show(_title(facts), fact_table(_rows(facts)), *([_mode_table(slow)] if slow else []))
-    if plot is not None:
-        write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
-    if not as_json:
-        show_files(picture=plot)
+    show_facts(facts, as_json, _title(facts), _rows(facts), *([_mode_table(slow)] if slow else []))
+    write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
+    show_files(as_json, picture=plot)
     return OK
 
 
@@ -218,16 +211,13 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         if margin is not None:
             at = "" if margin["frequency"] is None else f", then a swing at {margin['frequency']:.4g} rad per time unit"
             most = "" if margin["certified"] else "at most "
-            rows.append(("delay margin", f"{words}: {most}{_or_none(margin['delay'])}{at}"))
+            delay = "none" if margin["delay"] is None else f"{margin['delay']:.5g}"
+            rows.append(("delay margin", f"{words}: {most}{delay}{at}"))
     for name, unit in (("H2", "time^(3/2)"), ("Hinf", "time²")):
         if name in facts:
             value = facts[name]
             rows.append((name, "infinite" if value is None else f"{value:.5g} {unit}, from forces to the shape"))
     return rows
-
-
-def _or_none(value: float | None) -> str:
-    return "none" if value is None else f"{value:.5g}"
 
 
 def _mode_table(slow: tuple[Mode, ...]) -> Table:

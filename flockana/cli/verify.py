@@ -11,8 +11,7 @@ import typer
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AnySeed, AsJson, Jobs
-from flockana.cli.show import show_files
-from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
+from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.streams import in_output_encoding
 from flockana.cli.threads import one_thread_for_matrices
 
@@ -158,7 +157,7 @@ def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> 
 def _saved(name: str | None, path: Path, figures: bool) -> Page:
     """Check a saved run, as one of its scenario or against one theorem."""
     from flockana.dynamics.trajectory import Trajectory
-    from flockana.report.pages import ScenarioResult, page
+    from flockana.report.pages import scenario_page
     from flockana.scenarios import Scenario, scenario, scenarios
     from flockana.theorems import verify
 
@@ -168,10 +167,10 @@ def _saved(name: str | None, path: Path, figures: bool) -> Page:
         item = scenario(name)
         if type(item.law) is not type(run.law) or item.q0.shape != run.q[0].shape:
             raise ArgumentError(f"{path} holds no run of {name}: its law or its number of agents differs")
-        return page(ScenarioResult(item, run, item.verify(run)), figures=figures)
+        return scenario_page(item, run, item.verify(run), figures=figures)
     span = (float(run.t[0]), float(run.t[-1]))
     item = Scenario(path.name, "A saved run", f"Read from {path.name}.", run.law, run.q[0], run.p[0], span)
-    return page(ScenarioResult(item, run, (verify(name, run, subject=path.name),)), figures=figures)
+    return scenario_page(item, run, (verify(name, run, subject=path.name),), figures=figures)
 
 
 def _print_verdicts(

@@ -15,7 +15,7 @@ from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws import Algorithm1
 
 # Least ratio of the longest to the shortest distance among so many points, by dimension: in the plane 4 are at best a
 # square, 5 a regular pentagon (Bateman and Erdős 1951, who go up to 7); in space 5 are a bipyramid (Seidel 1969).

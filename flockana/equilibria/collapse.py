@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.environment.targets import StaticTarget
+from flockana.environment import StaticTarget
 from flockana.equilibria.solve import Equilibrium, find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws import Algorithm2
 from flockana.measures.metrics import coincident_pairs, min_distance
 
 CONTACT = 1e-6  # of d: closer than this two agents coincide

@@ -42,17 +42,11 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
 def _frame(x: FloatArray) -> list[int]:
     """Return up to m agents with independent positions about the centre, the farthest first."""
-    chosen: list[int] = []
-    rest, extent = x.copy(), float(np.linalg.norm(x, axis=1).max())
-    for _ in range(min(x.shape)):
-        k = int(np.argmax(np.linalg.norm(rest, axis=1)))
-        size = float(np.linalg.norm(rest[k]))
-        if size <= _FLAT * extent:
-            break
-        chosen.append(k)
-        axis = rest[k] / size
-        rest = rest - np.outer(rest @ axis, axis)
-    return chosen
+    from scipy.linalg import qr
+
+    triangle, order = qr(x.T, mode="r", pivoting=True)
+    sizes = np.abs(np.diag(triangle))
+    return [int(k) for k, size in zip(order, sizes, strict=False) if size > _FLAT * sizes[0]]
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:

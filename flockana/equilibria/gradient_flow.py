@@ -8,15 +8,15 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.equilibria.potential import Potential
+from flockana.equilibria.solve import polish
+from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.measures.frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NOT_YET = 10.0  # times the force that is waited for: where it was asked for last, a correction beside a step's end
-_NEWTON_STEPS = 20
 _TOL = 1e-11  # relative force at which it ends
-_NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 _MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
 _ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one process may not step in turns
 
@@ -43,7 +43,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, horizon: float = 1e4
     q = ensure_points("q0", q0)
     if law.target is not None:
         ensure_one_gain(law.gains)
-    shape, scale = q.shape, law.scales.force
+    potential, shape, scale = Potential(law), q.shape, law.scales.force
     horizon = ensure_positive("horizon", horizon)
     pace = law.alpha.length / scale
     nearby = np.inf  # largest component of the force where it was asked for last, beside the end of a step
@@ -70,29 +70,11 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, horizon: float = 1e4
             if nearby > _NOT_YET * level * scale:
                 continue
             here = solver.y.reshape(shape)
-            force = _largest(structural_force(law, here)) / scale
+            force = potential.residual(here)
             if force <= level:
-                polished, least = _polished(law, here)
-                if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= _TOL:
+                polished = polish(potential, here)
+                if (least := potential.residual(polished)) <= _TOL:
                     return GradientLimit(polished, least, float(solver.t), True)
                 level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
         here = solver.y.reshape(shape)
-        return GradientLimit(here, _largest(structural_force(law, here)) / scale, float(solver.t), False)
-
-
-def _polished(law: Algorithm1 | Algorithm2, q: FloatArray) -> tuple[FloatArray, float]:
-    """Return the result of Newton's method from q, and the relative force there."""
-    scale = law.scales.force
-    for _ in range(_NEWTON_STEPS):
-        residual = structural_force(law, q)
-        if _largest(residual) <= _TOL * scale:
-            break
-        # least squares leaves the rigid motions alone, in which the stiffness is singular
-        q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(q.shape)
-        if not np.isfinite(q).all():
-            return q, np.inf
-    return q, _largest(structural_force(law, q)) / scale
-
-
-def _largest(vectors: FloatArray) -> float:
-    return float(np.linalg.norm(vectors, axis=1).max())
+        return GradientLimit(here, potential.residual(here), float(solver.t), False)

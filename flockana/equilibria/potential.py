@@ -9,14 +9,10 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import ensure_consistent
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.environment import Obstacle, Sphere, Wall
 from flockana.equilibria.terminal import generators, rigid_motions
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.law import Law
-from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.navigation import Navigation
-from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Term
+from flockana.laws import Law, Navigation, PairTerm, SumOfTerms
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 
@@ -77,21 +73,9 @@ class Potential:
         return self.pairs.stiffness
 
     @property
-    def others(self) -> tuple[Term, ...]:
-        """All terms with a potential but the pair term."""
-        return tuple(term for term in self.law.terms if term is not self.pairs and not term.idle)
-
-    @property
     def target(self) -> FloatArray | None:
         """Position q_r(t), or None without a γ-agent."""
         return None if self.law.target is None else np.asarray(self.law.target.state(self.t)[0], dtype=float)
-
-    @property
-    def centre(self) -> FloatArray:
-        """Position q_r(t) of a law that has a γ-agent."""
-        if (target := self.target) is None:
-            raise ArgumentError(f"{self.law}: expected a law with a γ-agent")
-        return target
 
     def energy(self, q: FloatArray) -> float:
         """Return the potential energy, pairs out of range included."""
@@ -101,7 +85,8 @@ class Potential:
         """Return the energy of listed pairs less their far potential, without a large constant to round."""
         lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
-        return total + sum(term.energy(self.t, q) for term in self.others)
+        others = (term for term in self.law.terms if term is not self.pairs and not term.idle)
+        return total + sum(term.energy(self.t, q) for term in others)
 
     def force(self, q: FloatArray) -> FloatArray:
         """Return the negative gradient of the potential from the law's kernels, shape (n, m)."""
@@ -126,10 +111,9 @@ class Potential:
         # All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
         if not self.pinned:
             return rigid_motions(q)
-        if self.target is None or any(term.invariance == "none" for term in self.law.terms):
+        if (centre := self.target) is None or any(term.invariance == "none" for term in self.law.terms):
             return np.zeros((q.size, 0))
-        x = q - self.centre
-        free = _free_rotations(self.law.obstacles, self.centre, self.pair.length)
+        x, free = q - centre, _free_rotations(self.law.obstacles, centre, self.pair.length)
         turns = [(x @ generator.T).ravel() for generator in free]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
@@ -145,6 +129,8 @@ def inside_obstacle(law: Law, q: FloatArray) -> bool:
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
     """Return the skew matrices that leave every obstacle in place."""
     # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
+    from scipy.linalg import null_space
+
     m = centre.size
     skew = generators(m)
     if not skew or not obstacles:
@@ -160,6 +146,4 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: f
         else:
             return []
     moved = np.array([[generator @ axis for axis in axes] for generator in skew]).reshape(len(skew), -1)
-    _, sizes, rows = np.linalg.svd(moved.T, full_matrices=True)
-    kept = [k for k in range(len(skew)) if k >= sizes.size or sizes[k] <= _CONCENTRIC]  # of unit axes
-    return [np.tensordot(rows[k], skew, axes=1) for k in kept]
+    return [np.tensordot(kept, skew, axes=1) for kept in null_space(moved.T, rcond=_CONCENTRIC).T]

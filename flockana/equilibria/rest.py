@@ -6,8 +6,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.laws.discrete import ensure_law
-from flockana.laws.law import Law
+from flockana.laws import Law, ensure_law
 
 _STEPS = 40
 _RANK = 1e-10  # of the largest singular value: what is less is a direction in which nothing pushes

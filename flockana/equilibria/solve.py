@@ -28,7 +28,7 @@ from flockana.equilibria.classify import (
 )
 from flockana.equilibria.descent import descend
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
-from flockana.laws.terms.navigation import Navigation
+from flockana.laws import Navigation
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray, link_lengths, links
 
@@ -190,7 +190,7 @@ def find_equilibrium(
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
     """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
-    q = _polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
+    q = polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
@@ -266,7 +266,7 @@ def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[Float
             continue
         if escapes == _ESCAPES or q.size > _SMALL:
             return q, True, status
-        if (downhill := falling(potential, polished := _polish(potential, q))) is None:
+        if (downhill := falling(potential, polished := polish(potential, q))) is None:
             return q, True, status
         escapes, q = escapes + 1, polished + _NUDGE * potential.pair.length * downhill
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
@@ -291,7 +291,7 @@ def _root(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArra
     return d * result.x.reshape(q.shape), converged, reason
 
 
-def _polish(potential: Potential, q: FloatArray) -> FloatArray:
+def polish(potential: Potential, q: FloatArray) -> FloatArray:
     """Refine by Newton's method with the law's stiffness; a small shift keeps soft modes finite."""
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.equilibria.curvature import EPS, Landscape, least_curvature
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.measures.frame import moving_frame
 from flockana.measures.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.measures.nets import link_lengths, links

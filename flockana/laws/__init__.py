@@ -1,1 +1,5 @@
 """Laws of motion: the base class in `law.py`, and one file for each family."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

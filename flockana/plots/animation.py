@@ -1,7 +1,6 @@
 """Films of runs: frames at equal spacing in time, in a fixed view."""
 
 import os
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,11 +15,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import atomic_write, ensure_path, ensure_target
+from flockana.base.files import atomic_write, ensure_folder_of, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.plots.gif import GifWriter
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import limit, style
@@ -150,12 +149,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
     ensure_target(target)
     if target.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
         raise FileError(f"cannot write {target}: MP4 needs the program ffmpeg; install it, or write a .gif")
-    try:
-        with tempfile.TemporaryFile(dir=target.parent):
-            pass
-    except OSError as error:
-        raise FileError(f"cannot write to {target.parent}: {error.strerror or error}; choose another folder") from error
-    return target
+    return ensure_folder_of(target)
 
 
 def frame_count(seconds: float, fps: float) -> int:

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import DeadZoneInteraction
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws import LedDeadZoneFlocking
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
 from flockana.plots.snapshot import configuration, draw_sample, in_view
 from flockana.plots.style import ensure_axes, finish, frame_space, in_plane, mark, over_time, star, write_title

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.laws import HeadingAveraging
 from flockana.plots.palette import INK
 from flockana.plots.snapshot import configuration, draw_sample
 from flockana.plots.style import line_width_and_opacity, over_time

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.minimal import MinimalFlocking
+from flockana.laws import MinimalFlocking
 from flockana.plots.snapshot import configuration, draw_sample, drawn_law, snapshot
 
 

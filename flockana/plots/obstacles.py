@@ -15,7 +15,7 @@ from matplotlib.patches import Polygon
 
 from flockana.base.checks import FloatArray
 from flockana.base.kinds import check_kinds
-from flockana.environment.obstacles import Obstacle
+from flockana.environment import Obstacle
 from flockana.plots.palette import FAINT, MUTED
 from flockana.plots.style import ensure_axes, finish
 

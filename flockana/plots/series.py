@@ -10,7 +10,7 @@ from flockana.base.errors import UnknownNameError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION

@@ -25,8 +25,7 @@ from flockana.base.checks import (
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.beta import ObstacleField
-from flockana.environment.obstacles import Obstacle
+from flockana.environment import Obstacle, ObstacleField
 from flockana.interactions import BetaInteraction
 from flockana.measures.nets import components, link_lengths, links
 from flockana.plots.obstacles import bounds

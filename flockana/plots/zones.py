@@ -14,9 +14,8 @@ from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_world import ZoneWorld
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.environment import Sphere, ZoneWorld
+from flockana.laws import ZoneFlocking
 from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles

@@ -5,7 +5,7 @@ import os
 import platform
 import tempfile
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -28,7 +28,7 @@ from flockana.report.figures import Picture
 from flockana.report.front import front_findings
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
-from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
+from flockana.report.pages import FixedPage, Page, ScenarioPage
 from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
@@ -80,7 +80,7 @@ def _facts(folder: Path) -> dict[str, Any] | None:
 
 
 def write_report(
-    results: Iterable[ScenarioResult | FixedResult | Page],
+    pages: Sequence[Page],
     directory: str | os.PathLike[str],
     *,
     seed: int = 0,
@@ -100,7 +100,6 @@ def write_report(
         folder = ensure_directory(folder / of)
     if not complete and (_facts(folder) or {}).get("complete"):
         folder = ensure_directory(folder / UNFINISHED)
-    pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete) | {"of": of}
     html = _html(pages, run, flocks, statistics=statistics, comparison=comparison)
     texts = {JSON: _json(pages, run, statistics), HTML: html}
@@ -123,7 +122,7 @@ def verdicts_json(
     return _json(list(pages), _run_facts(seed, seconds, complete), statistics)
 
 
-def _json(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
+def _json(pages: Sequence[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
     data = run | {"surprises": [text for page in pages for text in page.surprises]}
     data["verdicts"] = [finding.to_dict() for page in pages for finding in page.findings]
     data["statistics"] = None if statistics is None else statistics.to_dict()
@@ -158,7 +157,7 @@ def page_environment() -> Environment:
     return environment
 
 
-def _html(pages: list[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
+def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
     shown = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in shown)
     verdicts, whole = [finding.verdict for _, finding, _ in shown], run["of"] is None
@@ -191,7 +190,7 @@ def _html(pages: list[Page], run: dict[str, Any], flocks: LinearisedFlocks, **se
     )
 
 
-def _unexpected(pages: list[Page]) -> list[tuple[str, str]]:
+def _unexpected(pages: Sequence[Page]) -> list[tuple[str, str]]:
     """Return (anchor in the page, text) of each difference from the expected statuses."""
     found = []
     for each in pages:

@@ -10,7 +10,8 @@ from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg
 from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
-from flockana.theorems.theorem import Verdict, unmet
+from flockana.theorems import Verdict
+from flockana.theorems.theorem import unmet
 
 _COLUMNS = 5
 _SIZE = 3.1  # inches of a panel

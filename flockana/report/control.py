@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws import Algorithm1
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture
 from flockana.report.image import plots, svg

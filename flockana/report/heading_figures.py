@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.laws import HeadingAveraging
 from flockana.measures.windows import windows_of
 from flockana.report.charts import Chart, panels
 from flockana.report.figures import Picture, measured, spread

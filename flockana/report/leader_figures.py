@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.laws import LedDeadZoneFlocking
 from flockana.report.figures import Picture, flock_pictures
 
 LAWS = (LedDeadZoneFlocking,)

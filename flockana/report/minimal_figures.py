@@ -1,7 +1,7 @@
 """Figures of a run of the minimal model: the common ones, and the profiles of Jond's Fig. 10."""
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
+from flockana.laws import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.report.charts import Chart, panels
 from flockana.report.figures import Picture, flock_pictures, measured, speeds
 from flockana.report.zone_figures import profile_curves

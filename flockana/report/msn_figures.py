@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.msn import MSNDiscretisation
+from flockana.laws import MSNDiscretisation
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, flock_pictures

@@ -6,7 +6,7 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
@@ -16,28 +16,10 @@ from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
-from flockana.theorems import Theorem, Verdict, theorem
-from flockana.theorems.theorem import Status
+from flockana.theorems import Status, Theorem, Verdict, theorem
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight lines; so many it gets then
-
-
-@dataclass(frozen=True)
-class ScenarioResult:
-    """A scenario that was run and verified."""
-
-    scenario: Scenario  # what was run
-    trajectory: Trajectory
-    verdicts: tuple[Verdict, ...]  # what `Scenario.verify` found
-
-
-@dataclass(frozen=True)
-class FixedResult:
-    """A theorem or erratum that was checked by itself."""
-
-    theorem: Theorem  # what was checked
-    verdict: Verdict
 
 
 @dataclass(frozen=True)
@@ -117,22 +99,27 @@ class FixedPage:
 Page = ScenarioPage | FixedPage
 
 
-def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
-    """Return a result as plain data, with its figures drawn."""
-    if isinstance(result, FixedResult):
-        return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
-    scenario, run = result.scenario, result.trajectory
+def fixed_page(verdict: Verdict) -> FixedPage:
+    """Return the verdict on a theorem or erratum by itself as plain data."""
+    item = theorem(verdict.theorem)
+    return FixedPage(_finding(verdict, item, item.expected))
+
+
+def scenario_page(
+    scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...], *, figures: bool = True
+) -> ScenarioPage:
+    """Return a scenario's run with the verdicts of `Scenario.verify` as plain data, with its figures drawn."""
     early_end = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
     return ScenarioPage(
         scenario.name,
         scenario.title,
         scenario.source,
         _facts(scenario, run),
-        tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
+        tuple(_scenario_finding(scenario, verdict) for verdict in verdicts),
         pictures(run, scenario.instants) if figures else (),
         early_end,
         tuple(scenario.references),
-        _play(scenario, run, result.verdicts) if figures else "",
+        _play(scenario, run, verdicts) if figures else "",
         still(run, float(run.t[-1])) if figures else "",
     )
 

@@ -4,15 +4,15 @@ from collections import namedtuple
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.environment.targets import CircleTarget, SineTarget, StaticTarget
+from flockana.environment import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg
@@ -158,13 +158,6 @@ def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
     return drawn(text, (6.5, 3.0), plots().step_margins, steps)
 
 
-class _Response(NamedTuple):
-    """Frequency response of a known formula, drawn without python-control."""
-
-    omega: npt.NDArray[np.float64]
-    complex: npt.NDArray[np.complex128]
-
-
 def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
     """Draw the response to the project's γ-agent with its printed and true p_r, and measured gains."""
     points, centres, words = {}, {}, []
@@ -184,9 +177,8 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
             words.append(f"{name}, p_r {label}: {measured:.4f} measured, {predicted:.4f} predicted")
     if not points:
         return None
-    omegas = np.geomspace(0.3, 30.0, 200)
-
-    responses = {name: _Response(omegas, centre.response(omegas)) for name, centre in centres.items()}
+    omegas = np.geomspace(0.3, 30.0, 200)  # drawn by the formula, without python-control
+    responses = {name: SimpleNamespace(omega=omegas, complex=x.response(omegas)) for name, x in centres.items()}
 
     def draw(figure: Any) -> None:
         axes = plots().bode(responses, ax=figure.subplots(2, 1, sharex=True))

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
+from flockana.environment import Obstacle, Sphere, Wall
 from flockana.measures.nets import link_lengths, links
 from flockana.player.scene import World, outlines, world
 

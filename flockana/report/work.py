@@ -10,8 +10,8 @@ from flockana.base.errors import ArgumentError, FlockanaError, SolverError, Unkn
 from flockana.base.interrupts import restore_interrupts
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import worker_pool
-from flockana.laws.discrete import DiscreteLaw
-from flockana.report.pages import FixedResult, Page, ScenarioResult, page
+from flockana.laws import DiscreteLaw
+from flockana.report.pages import Page, fixed_page, scenario_page
 from flockana.report.section import MANY_LAWS, Section
 from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
@@ -75,13 +75,13 @@ def check(task: Work) -> Done:
             if isinstance(task, Section):
                 return _section(task)
             if task.fixed:
-                return page(FixedResult(theorem(task.name), verify(task.name)))
+                return fixed_page(verify(task.name))
             item = scenario(task.name, task.seed)
             run = item.run()
             if run.status == "interrupted":
                 raise KeyboardInterrupt
             verdicts = tuple(item.verdict(name, run) for name in task.only) or item.verify(run)
-            return page(ScenarioResult(item, run, verdicts), figures=task.figures)
+            return scenario_page(item, run, verdicts, figures=task.figures)
     except FlockanaError as error:
         # one plain kind: errors with constructors of their own do not survive the way between processes
         raise FlockanaError(f"{task.name}: {error}") from None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws import ZoneFlocking
 from flockana.measures.profiles import pair_distance_profile
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, effort, measured, speeds

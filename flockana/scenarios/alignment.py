@@ -1,52 +1,43 @@
 """Scenarios of the Cucker-Smale law: flocking by velocity consensus, and pairs at the critical speed."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from flockana.interactions.weights import RationalWeight
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems.theorem import Status
+from flockana.laws import CuckerSmale
+from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
 
 _REFERENCES = ("cucker-smale-2007", "ha-liu-2009", "flockana")
 _N = 12
 
 
-def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Builder:
     """Return twelve agents in the plane, with random velocities scaled to a given spread."""
+    title = f"Twelve agents that match velocities alone, β = {beta:g}"
+    source = (
+        f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
+        f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}²."
+    )
+    law = CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True)
 
-    def build(seed: int = 0) -> Scenario:
+    def draw(seed: int) -> Start:
         generator = np.random.default_rng(seed)
         q, p = generator.uniform(-0.4, 0.4, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
         p -= p.mean(axis=0)
-        p = p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5)
-        title = f"Twelve agents that match velocities alone, β = {beta:g}"
-        source = (
-            f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
-            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}²."
-        )
-        law = CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True)
-        return Scenario(name, title, source, law, q, p, (0.0, 4.0), seed, expected, references=_REFERENCES)
+        return q, p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5)
 
-    return build
+    return entry(name, title, source, law, draw, 4.0, expected, references=_REFERENCES)
 
 
-def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
     """Return two agents on a line, 1 apart; π/4 is the critical relative speed."""
-
-    def build(seed: int = 0) -> Scenario:
-        title = f"Two agents that separate at {speed:g}; the critical speed is π/4"
-        source = (
-            "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
-            f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed."
-        )
-        law = CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True)
-        q, p = np.array([[0.0], [1.0]]), np.array([[0.0], [speed]])
-        return Scenario(name, title, source, law, q, p, (0.0, 20.0), seed, expected, references=_REFERENCES)
-
-    return build
+    title = f"Two agents that separate at {speed:g}; the critical speed is π/4"
+    source = (
+        "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
+        f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed."
+    )
+    law = CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True)
+    start = np.array([[0.0], [1.0]]), np.array([[0.0], [speed]])
+    return entry(name, title, source, law, lambda seed: start, 20.0, expected, references=_REFERENCES)
 
 
 _ALL = verified("ha-liu", "ha-liu-sharp")
@@ -54,7 +45,7 @@ _BELOW = vacuous("ha-liu") | verified("ha-liu-sharp", "cucker-smale-pair", "cuck
 _BELOW |= vacuous("cucker-smale-pair:parts")
 _ABOVE = vacuous("ha-liu", "ha-liu-sharp", "cucker-smale-pair:bounded")
 _ABOVE |= verified("cucker-smale-pair", "cucker-smale-pair:parts")
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS = {
     "cucker-smale": _flock("cucker-smale", 0.25, 8.0, verified("cucker-smale") | _ALL),
     "cucker-smale-steep": _flock("cucker-smale-steep", 1.0, 0.1, vacuous("cucker-smale") | _ALL),
     "cucker-smale-critical-below": _pair("cucker-smale-critical-below", 0.76, _BELOW),

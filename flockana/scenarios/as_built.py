@@ -4,19 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.environment.targets import StaticTarget
+from flockana.environment import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.delayed import Delayed
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.lossy import Lossy
-from flockana.laws.measured import Measured
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.sampled import Sampled
-from flockana.laws.saturated import Saturated
-from flockana.laws.stepped import Stepped
-from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.scenario import Scenario
+from flockana.laws import Algorithm2, Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Stepped
+from flockana.scenarios.entry import Scenario, vacuous, verified
 
 DT, LAG, PERIOD, LOSS, LIMIT, NOISE, WIND = 0.01, 0.01, 0.02, 0.05, 20.0, 0.002, 0.5
 

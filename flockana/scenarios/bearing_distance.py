@@ -16,19 +16,16 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.zone_obstacles import Box, SimplePolygon
-from flockana.environment.zone_world import Alien, ZoneWorld
+from flockana.environment import Alien, Box, SimplePolygon, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws import ZoneFlocking
 from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
-from flockana.scenarios.expected import refuted, verified
+from flockana.scenarios.entry import Builder, Report, Start, Status, entry, refuted, verified
 from flockana.scenarios.findings import component_counts, finding, in_source_units, report
-from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import zone_start
-from flockana.theorems.theorem import Status
 
 N, AREA, SPEED = 10, 10.0, 3.0
 SAFE, IN_ORDER = 1.5, 0.99  # m; what counts as C = 1
@@ -163,15 +160,14 @@ def _blocked(run: Trajectory, tolerances: Tolerances) -> Claim:
 OPEN = (distances, _coordination, _radius, keeps_speed, bounds)
 _CLOSED = (_fragments, _reunites, _range, distances, keeps_speed, bounds, contained)
 THROUGH = (_passes, bounds, contained)
-_BARRED = (_blocked, bounds, contained)
 
 
-def apart(seed: int) -> tuple[FloatArray, FloatArray]:
+def apart(seed: int) -> Start:
     """Return the printed start, redrawn until all agents are over 2 m apart and the net within a is connected."""
     return lazy_state((N, 2), lambda: _drawn_apart(seed))
 
 
-def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
+def _drawn_apart(seed: int, least: float = 2.0) -> Start:
     """Return the printed start, redrawn until agents are over `least` apart and the net is connected."""
     rng = np.random.default_rng(seed)
     while True:
@@ -183,7 +179,7 @@ def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]
             return q, rng.uniform(0.0, 1.0, (N, 2))
 
 
-def in_column(seed: int, n: int = 5) -> tuple[FloatArray, FloatArray]:
+def in_column(seed: int, n: int = 5) -> Start:
     """Return a column of agents heading up between the slab and the right wall."""
     rng = np.random.default_rng(seed)
     height = 1.5 + 2.1 * np.arange(n)[::-1] + rng.uniform(-0.1, 0.1, n)
@@ -214,49 +210,35 @@ _READINGS = {  # title, text, start, seeds, settings
 }
 
 
-def entry(
+def zone_entry(
     name: str,
     title: str,
     source: str,
     law: ZoneFlocking,
-    start: tuple[FloatArray, FloatArray],
+    draw: Callable[[int], Start],
     end: float,
-    seed: int,
-    reports: tuple[Report, ...],
     expected: dict[str, Status],
+    reports: tuple[Report, ...],
     *,
     as_it_is: tuple[Report, ...] = (),
     settings: str = "recommended settings",
     seeds: int = 25,
     **fields: Any,
-) -> Scenario:
-    """Return a scenario of the paper with its reports, those judged in the run's units first."""
+) -> Builder:
+    """Return the builder of a scenario of the paper with its reports, those judged in the run's units first."""
     title, source = f"Bearing-distance flocking: {title}", f"Jond, bearing-distance flocking: {source}"
     judged = as_it_is + in_source_units(lambda: law.scales, reports)
     fields |= {"references": ("jond-2025",), "settings": settings, "seeds": seeds if settings else 0}
-    return Scenario(name, title, source, law, *start, (0.0, end), seed, expected, judged, **fields)
+    return entry(name, title, source, law, draw, end, expected, judged, **fields)
 
 
-def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Builder:
     """Return the run of a section in a reading, both by its name."""
     where, place, end, reports, instants = _SECTIONS[name[5:7]]
-    how, text, start, seeds, settings = _READINGS[name[7:]]
+    how, text, draw, seeds, settings = _READINGS[name[7:]]
     title, source = f"{where}, {how}", f"{PRINTED}{parameters}. {text}{place}"
     more: dict[str, Any] = {"seeds": seeds, "settings": settings, "instants": instants}
-
-    def build(seed: int = 0) -> Scenario:
-        return entry(name, title, source, law, start(seed), end, seed, reports, expected, **more)
-
-    return build
-
-
-def _gap(
-    name: str, title: str, source: str, law: ZoneFlocking, reports: tuple[Report, ...]
-) -> Callable[[int], Scenario]:
-    def build(seed: int = 0) -> Scenario:
-        return entry(name, title, source, law, in_column(seed), 30.0, seed, reports, verified("source"), seeds=200)
-
-    return build
+    return zone_entry(name, title, source, law, draw, end, expected, reports, **more)
 
 
 _UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
@@ -295,19 +277,27 @@ _CASES: dict[str, tuple[str, ZoneFlocking, dict[str, Status]]] = {
         refuted("source", "source:range") | verified("source:bounds"),
     ),
 }
-SCENARIOS: dict[str, Callable[..., Scenario]] = {name: _read(name, *case) for name, case in _CASES.items()} | {
-    "zone-gap": _gap(
+SCENARIOS: dict[str, Builder] = {name: _read(name, *case) for name, case in _CASES.items()} | {
+    "zone-gap": zone_entry(
         "zone-gap",
         "a gap of 4.5 m, directed obstacle zones",
         "Section 5.2's claim in a place of our own: 5 agents as in zone-52, a slab beside the wall.",
         ZoneFlocking(FREE, STRONG, GAP, u_max=10.0),
+        in_column,
+        30.0,
+        verified("source"),
         THROUGH,
+        seeds=200,
     ),
-    "zone-gap-buffer": _gap(
+    "zone-gap-buffer": zone_entry(
         "zone-gap-buffer",
         "the same gap, circular buffer zones",
         "The method that section 5.2 compares with: zone-gap, with the slab in its smallest disc.",
         ZoneFlocking(FREE, STRONG, GAP, u_max=10.0, obstacle_zone="buffer"),
-        _BARRED,
+        in_column,
+        30.0,
+        verified("source"),
+        (_blocked, bounds, contained),
+        seeds=200,
     ),
 }

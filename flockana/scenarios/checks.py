@@ -15,10 +15,9 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError
-from flockana.laws.discrete import ensure_law
-from flockana.scenarios.start import is_lazy
-from flockana.theorems import theorems
-from flockana.theorems.theorem import Status
+from flockana.laws import ensure_law
+from flockana.scenarios.start import LazyArray
+from flockana.theorems import Status, theorems
 
 SOURCE = "source"  # the id under which a source's own report is judged
 _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
@@ -31,7 +30,9 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
     ensure_law(parts["law"])
     ensure_time_span(parts["t_span"])
     ensure_seed(parts["seed"])
-    shapes = {key: v.shape if is_lazy(v := parts[key]) else ensure_points(key, v).shape for key in ("q0", "p0")}
+    shapes = {
+        key: v.shape if isinstance(v := parts[key], LazyArray) else ensure_points(key, v).shape for key in ("q0", "p0")
+    }
     if shapes["q0"] != shapes["p0"]:
         raise ArgumentError(
             f"q0 has shape {shapes['q0']} but p0 has shape {shapes['p0']}: expected equal shapes (n, m)"

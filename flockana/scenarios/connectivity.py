@@ -1,12 +1,9 @@
 """Scenarios of links kept by tension: a chain thrown apart, and two unlinked pairs."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from flockana.laws.link_keeping import LinkKeeping
-from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.scenario import Scenario
+from flockana.laws import LinkKeeping
+from flockana.scenarios.entry import Builder, Scenario, vacuous, verified
 
 _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
 
@@ -39,4 +36,4 @@ def _pairs(seed: int = 0) -> Scenario:
     return Scenario("links-parted", title, source, law, q, p, (0.0, 4.0), seed, expected, references=_REFERENCES)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {"links-kept": _chain, "links-parted": _pairs}
+SCENARIOS: dict[str, Builder] = {"links-kept": _chain, "links-parted": _pairs}

@@ -6,21 +6,14 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_positive
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.scenarios.expected import inconclusive, refuted, verified
-from flockana.scenarios.findings import finding, report
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.laws import DeadZoneFlocking, DiscreteLaw, LedDeadZoneFlocking, SemiImplicitEuler
+from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
 from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
 from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Status
 
 _PRINTED = "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more."
 DT = 0.01

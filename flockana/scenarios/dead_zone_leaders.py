@@ -3,15 +3,11 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import LinearTarget
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.environment import LinearTarget
+from flockana.laws import LedDeadZoneFlocking, SemiImplicitEuler
 from flockana.scenarios.dead_zone import DT, describe_choices
-from flockana.scenarios.expected import refuted, verified
-from flockana.scenarios.findings import component_count, finding, report
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.scenarios.entry import Scenario, refuted, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_count, finding, report
 
 _N, _PINNED, _BOX, _SPEED, _END = 30, 10, 25.0, 1.0, 60.0
 

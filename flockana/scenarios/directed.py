@@ -4,15 +4,11 @@ from math import pi
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws.directed import DirectedNet
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import finding, report
-from flockana.scenarios.scenario import OURS, Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.laws import Algorithm1, DirectedNet
+from flockana.scenarios.entry import OURS, Scenario, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
 
 _N = 12
 _WORTH = 1e-3  # of what there is at the start: a change that counts, far above the error of the run

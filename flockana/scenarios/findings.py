@@ -11,13 +11,15 @@ from flockana.base.errors import UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
+from flockana.dynamics.trajectory import Trajectory as Trajectory
+from flockana.measures.metrics import giant_share
 from flockana.measures.nets import components, links
 from flockana.scenarios.scenario import Report
+from flockana.theorems import Claim as Claim
+from flockana.theorems import Tolerances as Tolerances
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.theorem import Claim, Tolerances
 
 Check = Callable[[Trajectory, Tolerances], Claim]
 ROUNDING = 1e-12  # relative, of what a report measures
@@ -85,6 +87,14 @@ def connected(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the net is connected at the end of a run."""
     count = component_count(run)
     return finding(1.5 - count, f"{count} component(s) at t = {run.t[-1]:g}", computed=count, stated=1)
+
+
+def fragmented(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that the net falls into several components by the end of a run."""
+    count, pair = component_count(run), run.law.pair
+    share = giant_share(run.q[-1], pair.range)
+    detail = f"{count} component(s) at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
+    return finding(count - 1.5, detail, computed=count, stated="more than 1")
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:

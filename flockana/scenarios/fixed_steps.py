@@ -1,28 +1,27 @@
 """Scenarios of explicit Euler with the paper's steps of 0.01 to 0.03."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import LinearTarget
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.taylor_step import TaylorStep
+from flockana.environment import LinearTarget
+from flockana.laws import Algorithm2, TaylorStep
 from flockana.measures.metrics import velocity_mismatch
-from flockana.scenarios.expected import refuted, verified
-from flockana.scenarios.findings import component_count, finding, report, rerun
+from flockana.scenarios.entry import Builder, Start, entry, refuted, verified
+from flockana.scenarios.findings import (
+    Claim,
+    Tolerances,
+    Trajectory,
+    connected,
+    finding,
+    report,
+    rerun,
+)
 from flockana.scenarios.olfati_saber import random_start
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems import Claim, Tolerances
 
 _N, _END = 40, 40.0
 _SETTLED = 1e-6  # of K̃ at the start
 
 
-@report("connected", "the net ends connected")
-def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components = component_count(run)
-    return finding(1.5 - components, f"{components} component(s)", computed=components, stated=1)
+_one_flock = report("connected", "the net ends connected")(connected)
 
 
 @report("settles", "velocities match")
@@ -36,25 +35,24 @@ def _settles(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(_SETTLED - end / start, detail, computed=end / start, stated=f"K̃ <= {_SETTLED:g} K̃(0)")
 
 
-def _stepped(name: str, dt: float, *, settles: bool) -> Callable[[int], Scenario]:
+def _start(seed: int) -> Start:
+    return random_start(seed, _N, 2)
+
+
+def _stepped(name: str, dt: float, *, settles: bool) -> Builder:
     law = TaylorStep(Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0))), dt)
     statuses = verified("source:connected") | (verified if settles else refuted)("source:settles")
-
-    def build(seed: int = 0) -> Scenario:
-        title = f"{_N} agents of Algorithm 2 by steps of {dt:g}, as printed"
-        source = (
-            "Olfati-Saber 2006 prints a step of 0.01 to 0.03 s and no scheme. Here q + p dt + ½ u dt², p + u dt, all "
-            f"agents at once, dt = {dt:g}; parameters, start and γ-agent of Fig. 10 with n = {_N}; the gains, on "
-            "which the largest stable step depends, are ours. The other scenarios of the paper integrate the flow."
-        )
-        span = (0.0, dt * np.ceil(_END / dt))
-        reports = (_one_flock, _settles)
-        return Scenario(name, title, source, law, *random_start(seed, _N, 2), span, seed, {}, reports, shipped=statuses)
-
-    return build
+    title = f"{_N} agents of Algorithm 2 by steps of {dt:g}, as printed"
+    source = (
+        "Olfati-Saber 2006 prints a step of 0.01 to 0.03 s and no scheme. Here q + p dt + ½ u dt², p + u dt, all "
+        f"agents at once, dt = {dt:g}; parameters, start and γ-agent of Fig. 10 with n = {_N}; the gains, on "
+        "which the largest stable step depends, are ours. The other scenarios of the paper integrate the flow."
+    )
+    end = dt * np.ceil(_END / dt)
+    return entry(name, title, source, law, _start, end, {}, (_one_flock, _settles), shipped=statuses)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS = {
     "paper-step-0.01": _stepped("paper-step-0.01", 0.01, settles=True),
     "paper-step-0.03": _stepped("paper-step-0.03", 0.03, settles=False),
 }

@@ -8,7 +8,7 @@ from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_t
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import ensure_law
+from flockana.laws import ensure_law
 from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario

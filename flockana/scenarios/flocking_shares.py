@@ -1,19 +1,15 @@
 """Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import LinearTarget
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.environment import LinearTarget
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.metrics import velocity_mismatch
-from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import ROUNDING, component_count, finding, report
+from flockana.scenarios.entry import Builder, Report, entry, verified
+from flockana.scenarios.findings import ROUNDING, Claim, Tolerances, Trajectory, component_count, finding, report
 from flockana.scenarios.olfati_saber import random_start
-from flockana.scenarios.scenario import Report, Scenario
-from flockana.theorems import Claim, Tolerances
 
 _N, _SEEDS = 40, 200  # a tenth of a second each
 
@@ -39,9 +35,7 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated, error=flock.error)
 
 
-def _share(
-    name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report
-) -> Callable[[int], Scenario]:
+def _share(name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report) -> Builder:
     title = f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?"
     source = (
         f"Olfati-Saber 2006 says that {claim}; nothing is printed of how often. The start is that of Fig. 12 (n = "
@@ -49,17 +43,12 @@ def _share(
     )
     more: dict[str, Any] = {"seeds": _SEEDS, "settings": "printed parameters of Fig. 12, gains ours"}
     more |= {"options": {"t_eval": np.array([0.0, end])}, "shipped": verified(f"source:{report.name}")}
-
-    def build(seed: int = 0) -> Scenario:
-        start, span = random_start(seed, _N, 2), (0.0, end)
-        return Scenario(name, title, source, law, *start, span, seed, {}, (report,), **more)
-
-    return build
+    return entry(name, title, source, law, lambda seed: random_start(seed, _N, 2), end, {}, (report,), **more)
 
 
 _FOLLOWING = Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0)))
 _RARELY = "Algorithm 1 rarely flocks and often fragments"
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS = {
     "algorithm1-flocks": _share("algorithm1-flocks", Algorithm1(), _RARELY, end=15.0, report=_fragments),
     "algorithm2-flocks": _share("algorithm2-flocks", _FOLLOWING, "Algorithm 2 flocks", end=40.0, report=_flocks),
 }

@@ -4,11 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.environment.targets import LinearTarget
+from flockana.environment import LinearTarget
 from flockana.interactions import FormulaInteraction, Gains, pair_law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.scenario import OURS, Scenario
+from flockana.laws import Algorithm1, Algorithm2
+from flockana.scenarios.entry import OURS, Scenario, vacuous, verified
 
 _CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
 _VERIFIED = verified("any-potential") | verified(*(f"any-potential:{claim}" for claim in _CLAIMS))

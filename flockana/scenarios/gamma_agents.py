@@ -1,21 +1,14 @@
 """Scenarios of γ-agents with dynamics: one leader, and peers that each follow a copy."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.copies import Copies
-from flockana.environment.spring import Spring
-from flockana.environment.system import SystemTarget
+from flockana.environment import Copies, Spring, SystemTarget
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.peer_to_peer import PeerToPeer
-from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import ROUNDING, component_count, connected, finding, report
-from flockana.scenarios.scenario import OURS, Scenario
+from flockana.laws import Algorithm2, PeerToPeer
+from flockana.scenarios.entry import OURS, Builder, Start, entry, verified
+from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, report
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
@@ -50,13 +43,6 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d", error=ROUNDING)
 
 
-@report("apart", "the flock falls into two halves")
-def _two_halves(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components = component_count(run)
-    detail = f"{components} component(s) at t = {run.t[-1]:g}"
-    return finding(components - 1.5, detail, computed=components, stated="more than 1")
-
-
 @report("centre", "the centre of mass follows the mean of the copies")
 def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the centre of mass follows the mean of the copies as a critically damped system."""
@@ -81,14 +67,17 @@ def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:
     return balance(Observed.alone(run), [], tolerances)
 
 
-def _start(seed: int) -> tuple[FloatArray, FloatArray]:
+_TWO_HALVES = report("apart", "the flock falls into two halves")(fragmented)
+
+
+def _start(seed: int) -> Start:
     """Return eight agents near a lattice patch, almost at rest, sorted by y."""
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
     q = hexagonal_spiral(_N, d) + generator.uniform(-0.2, 0.2, (_N, 2))
     return q[np.argsort(q[:, 1])], generator.uniform(-0.3, 0.3, (_N, 2))
 
 
-def _system(seed: int = 0) -> Scenario:
+def _system() -> Builder:
     law = Algorithm2(target=SystemTarget((30.0, 0.0), (0.0, 6.0), Spring((0.0, 0.0), 1.0, reach=8.0)))
     title = "A γ-agent that is a system of its own leads eight agents round"
     source = (
@@ -96,12 +85,11 @@ def _system(seed: int = 0) -> Scenario:
         "bounded, from (30, 0) at (0, 6); Algorithm 2 with the default gains, eight agents near a lattice about the "
         "origin, each coordinate displaced by up to 0.2, velocities up to 0.3."
     )
-    expected, reports = verified("energy", "os-3:i", "source"), (_velocity_is_true,)
-    span = (0.0, 30.0)
-    return Scenario("gamma-system", title, source, law, *_start(seed), span, seed, expected, reports, references=OURS)
+    expected = verified("energy", "os-3:i", "source")
+    return entry("gamma-system", title, source, law, _start, 30.0, expected, (_velocity_is_true,), references=OURS)
 
 
-def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenario]:
+def _peers(name: str, title: str, *, coupling: float) -> Builder:
     """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
     damping = 2.0 * np.sqrt(coupling)
     coupled = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
@@ -111,21 +99,16 @@ def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenari
         "-4 across the way in one half of the flock and +4 in the other; default gains. "
         + (coupled if coupling else "The copies are not coupled, and part.")
     )
-    end = report("together", "the flock stays one")(connected) if coupling else _two_halves
-    expected, reports = verified("source"), (_copies_as_predicted, end, _centre_follows, _balanced)
+    end = report("together", "the flock stays one")(connected) if coupling else _TWO_HALVES
+    reports = (_copies_as_predicted, end, _centre_follows, _balanced)
     place, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
     couplings = {"position_coupling": coupling, "velocity_coupling": damping}
     law = PeerToPeer(Copies(place, speed, Spring((0.0, 0.0), 0.0), **couplings))
-
-    def build(seed: int = 0) -> Scenario:
-        start, span = _start(seed), (0.0, 25.0)
-        return Scenario(name, title, source, law, *start, span, seed, expected, reports, references=OURS)
-
-    return build
+    return entry(name, title, source, law, _start, 25.0, verified("source"), reports, references=OURS)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
-    "gamma-system": _system,
+SCENARIOS: dict[str, Builder] = {
+    "gamma-system": _system(),
     "gamma-copies-apart": _peers("gamma-copies-apart", "Copies of the γ-agent that part tear the flock", coupling=0.0),
     "gamma-copies-coupled": _peers(
         "gamma-copies-coupled", "Coupled copies of the γ-agent keep the flock", coupling=1.0

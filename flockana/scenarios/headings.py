@@ -1,18 +1,12 @@
 """Scenarios of Jadbabaie, Lin and Morse: two groups that meet and agree, and two that part."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.vicsek import HeadingAveraging
-from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.findings import finding, limit_report, report
-from flockana.scenarios.scenario import Report, Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.laws import HeadingAveraging
+from flockana.scenarios.entry import Builder, Report, Start, Status, entry, vacuous, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, limit_report, report
 from flockana.theorems.classics.averaging import permanently_connected, permanently_separated
-from flockana.theorems.theorem import Status
 
 _REFERENCES = ("jadbabaie-lin-morse-2003", "flockana")
 _SIZE = 0.7  # spacing of a group's agents over r
@@ -24,13 +18,6 @@ def _group(centre: float, heading: float, generator: np.random.Generator) -> tup
     grid = _SIZE * np.array([[x, y] for x in (-0.5, 0.5) for y in (-1.0, 0.0, 1.0)]) + (centre, 0.0)
     shaken = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
     return grid + shaken[:, :2], heading + shaken[:, 2]
-
-
-def _two_groups(heading: float, seed: int) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
-    """Return a group on the left with a heading, and one on the right with the mirrored heading."""
-    generator, law = np.random.default_rng(seed), HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
-    left, right = _group(-1.5, heading, generator), _group(1.5, np.pi - heading, generator)
-    return law, np.vstack([left[0], right[0]]), law.velocities(np.concatenate([left[1], right[1]]))
 
 
 def _last(run: Trajectory) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
@@ -58,19 +45,20 @@ def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     return limit_report(permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
 
 
-def _build(
-    name: str, title: str, heading: float, steps: int, expected: dict[str, Status], *reports: Report
-) -> Callable[..., Scenario]:
+def _build(name: str, title: str, heading: float, steps: int, expected: dict[str, Status], *reports: Report) -> Builder:
     source = (
         "Ours, on Jadbabaie, Lin and Morse's model: two groups of two by three agents, 0.7 r apart within a group, "
         "3 r between the centres, headings mirrored, each coordinate and heading shaken by up to 0.05."
     )
+    law = HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
 
-    def build(seed: int = 0) -> Scenario:
-        parts, span = _two_groups(heading, seed), (0.0, float(steps))
-        return Scenario(name, title, source, *parts, span, seed, expected, reports, references=_REFERENCES)
+    def two_groups(seed: int) -> Start:
+        """Return a group on the left with a heading, and one on the right with the mirrored heading."""
+        generator = np.random.default_rng(seed)
+        left, right = _group(-1.5, heading, generator), _group(1.5, np.pi - heading, generator)
+        return np.vstack([left[0], right[0]]), law.velocities(np.concatenate([left[1], right[1]]))
 
-    return build
+    return entry(name, title, source, law, two_groups, float(steps), expected, reports, references=_REFERENCES)
 
 
 _MEET, _PART = verified("jlm-headings"), verified("jlm-headings:hull")

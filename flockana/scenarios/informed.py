@@ -1,24 +1,19 @@
 """Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
-from collections.abc import Callable
+from functools import partial
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CircleTarget, LinearTarget
+from flockana.environment import CircleTarget, LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws.composition import compose
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws import Algorithm2, compose
 from flockana.measures.followers import following
-from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, finding, report
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.scenarios.entry import Builder, Scenario, Start, entry, inconclusive, refuted, vacuous, verified
+from flockana.scenarios.findings import ROUNDING, Claim, Tolerances, Trajectory, finding, report
 
 _C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler
 
@@ -30,7 +25,7 @@ _APART = 60.0  # distance of a group that nobody joins
 _BOX, _SPEED = 100.0, 1.0  # of the survey's start
 
 
-def _near_lattice(seed: int, n: int, noise: float) -> tuple[FloatArray, FloatArray]:
+def _near_lattice(seed: int, n: int, noise: float) -> Start:
     generator = np.random.default_rng(seed)
     q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-noise, noise, (n, 2))
     return q, generator.uniform(-0.3, 0.3, (n, 2))
@@ -97,7 +92,7 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
 
 
-def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Scenario]:
+def _varying(name: str, title: str, *, feedforward: bool) -> Builder:
     expected = verified("energy", "cohesion")
     law: Any = Algorithm2(target=_CIRCLE)
     told = "; its acceleration is not told."
@@ -112,13 +107,8 @@ def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Sce
         "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
         f"radius 20{told}"
     )
-    reports, span = () if feedforward else (_lag,), (0.0, 40.0)
-
-    def build(seed: int = 0) -> Scenario:
-        start = _near_lattice(seed, 12, 0.2)
-        return Scenario(name, title, source, law, *start, span, seed, expected, reports, references=_REFERENCES)
-
-    return build
+    draw, reports = partial(_near_lattice, n=12, noise=0.2), () if feedforward else (_lag,)
+    return entry(name, title, source, law, draw, 40.0, expected, reports, references=_REFERENCES)
 
 
 @report("informed-follow", "all informed agents adopt the leader's velocity")
@@ -162,7 +152,7 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
 
 _KNOWN = "A circling leader whose acceleration all agents know: the centre of mass converges to it"
 _UNKNOWN = "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind"
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS: dict[str, Builder] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
     "informed-through": _one_informed,

@@ -5,19 +5,16 @@ agree about it. The recommended settings have one spacing, equal for all, and ve
 averaged: then forces are mutual, momentum is kept, and H falls but where perception switches.
 """
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.minimal import MinimalFlocking
+from flockana.laws import MinimalFlocking
 from flockana.measures.metrics import coordination
 from flockana.measures.perception import both_ways, random_out_tree
-from flockana.scenarios.expected import refuted, vacuous, verified
-from flockana.scenarios.findings import finding, in_source_units, report
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems import Claim, Tolerances
+from flockana.scenarios.entry import Builder, Scenario, entry, refuted, vacuous, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, in_source_units, report
 from flockana.theorems.bearing_distance.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
 
 _SETTLED = 0.1  # largest relative change of a distance over the last tenth of the run that counts as at rest
@@ -60,10 +57,7 @@ def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(_SETTLED - change, detail, computed=change, stated=f"<= {_SETTLED:g}")
 
 
-_REPORTS = (_cohesive, _collision_free, _aligned, _stable)
-
-
-def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
+def _flock(m: int, *, printed: bool) -> Builder:
     law = MinimalFlocking() if printed else MinimalFlocking(**RECOMMENDED)
     duration = DURATION[m] if printed else LONGER
     how = (
@@ -87,13 +81,10 @@ def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
         f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {how}. "
         "Velocity first, then position, all agents at once; the seed is ours."
     )
-    reports, steps, span = in_source_units(lambda: law.scales, _REPORTS), law.discrete(DT), (0.0, duration)
+    reports = in_source_units(lambda: law.scales, (_cohesive, _collision_free, _aligned, _stable))
     more: dict[str, Any] = {"references": _REFERENCES, "seeds": 200, "settings": f"{kind} settings"}
-
-    def build(seed: int = 0) -> Scenario:
-        return Scenario(name, title, source, steps, *minimal_start(m, seed), span, seed, expected, reports, **more)
-
-    return build
+    draw = partial(minimal_start, m)
+    return entry(name, title, source, law.discrete(DT), draw, duration, expected, reports, **more)
 
 
 def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
@@ -127,7 +118,7 @@ def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
     return Scenario("zone-path", title, source, law, q, p, (0.0, 200.0), seed, expected, references=_REFERENCES)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS: dict[str, Builder] = {
     f"minimal-{m}d{'-printed' if printed else ''}": _flock(m, printed=printed)
     for m in DURATION
     for printed in (False, True)

@@ -11,17 +11,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_finite_scalar, ensure_positive
-from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
+from flockana.environment import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
+from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law, MSNDiscretisation
+from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import in_source_units
 from flockana.scenarios.msn_reports import CENTRE, DT, REPORTS, STATIC
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems.theorem import Status
 
 UPDATES = 539  # range(540), whose first iteration moves nobody
 CAPTURES = (0, 90, 180, 270, 360, 450)  # iterations: every 540/6

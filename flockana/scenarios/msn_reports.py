@@ -11,11 +11,11 @@ import numpy as np
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import Gains
-from flockana.laws.msn import MSNDiscretisation
-from flockana.measures.metrics import coincident_pairs, connectivity, giant_share
+from flockana.laws import MSNDiscretisation
+from flockana.measures.metrics import coincident_pairs, connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.scenarios.findings import component_count, finding, report, rerun, same_accuracy
-from flockana.scenarios.scenario import Report
+from flockana.scenarios.entry import Report
+from flockana.scenarios.findings import finding, fragmented, report, rerun, same_accuracy
 from flockana.theorems import Claim, Tolerances
 
 DT = 0.009  # of an iteration
@@ -29,13 +29,6 @@ _PERIOD = 40.0  # of the sine of case 3 in length: it swings once as it travels 
 
 def _rank(run: Trajectory, k: int = -1, *, typeset: bool = False) -> float:
     return printed_rank_connectivity(run.n, links(run.q[k], run.law.alpha.r), typeset=typeset)
-
-
-@report("fragments", "the net falls apart")
-def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components, share = component_count(run), giant_share(run.q[-1], run.law.alpha.r)
-    detail = f"{components} components at the end, the largest with {share:.0%} of the agents"
-    return finding(components - 1.5, detail, computed=components, stated="more than 1")
 
 
 def _agreement(measured: float, stated: float, scatter: float, text: str) -> Claim:
@@ -225,8 +218,9 @@ def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(pairs - 0.5, text, computed=pairs, stated="at least one pair coincides")
 
 
+_FRAGMENTS = report("fragments", "the net falls apart")(fragmented)
 REPORTS: dict[int, tuple[Report, ...]] = {
-    1: (_fragments, _final_rank, _final_rank_as_typeset, _unit_gains, _top_speed),
+    1: (_FRAGMENTS, _final_rank, _final_rank_as_typeset, _unit_gains, _top_speed),
     2: (_connected_from("connectivity is 1 throughout", -0.5, "never apart"), _full_rank, _swing, _fastest_at_target),
     3: (
         _less_connected,

@@ -8,14 +8,13 @@ import numpy as np
 
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
+from flockana.environment import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.notebook import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.taylor_step import TaylorStep
+from flockana.laws import Algorithm1, Algorithm2, PushedAlgorithm1, PushedAlgorithm2, TaylorStep
+from flockana.laws.notebook import MIN_DISTANCE
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
-from flockana.scenarios.expected import refuted, vacuous, verified
+from flockana.scenarios.entry import Report, Scenario, Status, refuted, vacuous, verified
 from flockana.scenarios.findings import (
     ROUNDING,
     component_count,
@@ -26,10 +25,8 @@ from flockana.scenarios.findings import (
     rerun,
     same_accuracy,
 )
-from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
-from flockana.theorems.theorem import Status
 
 _FOLLOWED = 0.01  # of d: how near to the flow steps are that follow it
 _RELAXED = 0.1  # of ‖u_α‖ at the start

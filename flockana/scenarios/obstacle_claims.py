@@ -8,7 +8,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Obstacle
+from flockana.environment import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
 from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report, report
 from flockana.theorems import Claim, Tolerances

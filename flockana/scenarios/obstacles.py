@@ -1,21 +1,17 @@
 """Scenarios of Olfati-Saber (2006), Figures 9 and 14 to 17, and more runs for Theorem 6."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Obstacle, Sphere
-from flockana.environment.target import Target
-from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.environment import Capsule, LinearTarget, Obstacle, Sphere, StaticTarget, Target
 from flockana.interactions import BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws import Algorithm3
 from flockana.scenarios.checks import SOURCE
-from flockana.scenarios.expected import inconclusive, vacuous, verified
+from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, vacuous, verified
 from flockana.scenarios.findings import in_source_units
 from flockana.scenarios.obstacle_claims import (
     constrained,
@@ -28,9 +24,7 @@ from flockana.scenarios.obstacle_claims import (
     touches,
     traps,
 )
-from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import lazy_state
-from flockana.theorems.theorem import Status
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
 # 2√1.1 that is 0.5: a flock of spread 50 would need some 300 time units to gather. With c1γ = 30 agents coincide.
@@ -57,7 +51,7 @@ _BALLS = [Sphere((60.0, 0.0, 0.0), 15.0), Sphere((70.0, 30.0, 10.0), 10.0), Sphe
 
 def free_start(
     seed: int, n: int, centre: Sequence[float], spread: float, obstacles: Sequence[Obstacle], *, room: float
-) -> tuple[FloatArray, FloatArray]:
+) -> Start:
     """Return the paper's random start, with agents too near an obstacle drawn again."""
     generator = np.random.default_rng(seed)
     m = len(centre)
@@ -94,21 +88,20 @@ def _entry(
     expected: Mapping[str, Status],
     reports: tuple[Report, ...],
     shipped: Mapping[str, Status] = MappingProxyType({}),
-) -> tuple[str, Callable[[int], Scenario]]:
+) -> tuple[str, Builder]:
     """Return the name and builder of a run with obstacles; the flock is n, its centre and its spread."""
     law, (n, centre, spread) = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles)), flock
+    room, text = BetaInteraction().d, f"{source} {_OURS}"
+    in_units = in_source_units(lambda: law.scales, (stays_clear, *reports))
+    more: dict[str, Any] = {"options": _large(end) if n > 100 else {}, "shipped": shipped}
 
-    def build(seed: int = 0) -> Scenario:
-        room = BetaInteraction().d
-        start = lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
-        text, span, options = f"{source} {_OURS}", (0.0, end), _large(end) if n > 100 else {}
-        in_units = in_source_units(lambda: law.scales, (stays_clear, *reports))
-        return Scenario(name, title, text, law, *start, span, seed, expected, in_units, options, shipped=shipped)
+    def draw(seed: int) -> Start:
+        return lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
 
-    return name, build
+    return name, entry(name, title, text, law, draw, end, dict(expected), in_units, **more)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
+SCENARIOS = dict(
     [
         _entry(
             "paper-split-rejoin",

@@ -1,28 +1,38 @@
 """Scenarios of Olfati-Saber (2006), Figures 10 to 13, and three more with the same parameters."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
 from types import MappingProxyType
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.environment import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_share
+from flockana.laws import Algorithm1, Algorithm2
+from flockana.measures.metrics import coincident_pairs, deviation_energy
 from flockana.measures.nets import components, link_lengths, links
-from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, component_count, connected, finding, limit_report, report
-from flockana.scenarios.scenario import OURS, Report, Scenario
+from flockana.scenarios.entry import (
+    OURS,
+    Builder,
+    Report,
+    Scenario,
+    Start,
+    Status,
+    entry,
+    inconclusive,
+    refuted,
+    vacuous,
+    verified,
+)
+from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, limit_report, report
 from flockana.scenarios.start import lazy_array
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.olfati_saber.gamma_agent import consistent
-from flockana.theorems.theorem import Status
 
 _OURS = (
     "The gains are not printed and are ours (c1α = 30, c2α = 2√30, c1γ = 1.1, c2γ = 2√1.1), as are the seed and the "
@@ -69,14 +79,6 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"are among the {len(nets[-1])} at the end"
     )
     return finding(changes - 0.5, detail, computed=changes, stated="> 0")
-
-
-@report("fragments", "the net ends in several components")
-def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components = component_count(run)
-    share = giant_share(run.q[-1], run.law.alpha.r)
-    detail = f"{components} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
-    return finding(components - 1.5, detail, computed=components, stated="more than 1")
 
 
 @report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)")
@@ -142,9 +144,10 @@ def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 _CONNECTED = report("connected", "the net ends connected (Fig. 18: C = 1)")(connected)
+_FRAGMENTS = report("fragments", "the net ends in several components")(fragmented)
 
 
-def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
+def random_start(seed: int, n: int, m: int) -> Start:
     """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m."""
     generator = np.random.default_rng(seed)
     return generator.normal(0.0, 50.0, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
@@ -154,26 +157,20 @@ def _following(
     name: str,
     title: str,
     source: str,
+    reports: tuple[Report, ...],
     *,
     n: int,
     end: float,
     m: int = 2,
-    reports: tuple[Report, ...],
     more: Mapping[str, Status] = MappingProxyType({}),
     shipped: tuple[str, ...] = (),
-) -> Callable[[int], Scenario]:
+) -> Builder:
     q_r, p_r = np.zeros(m), np.zeros(m)
     q_r[:2], p_r[0] = (200.0, 30.0), 5.0
-    law = Algorithm2(target=LinearTarget(q_r, p_r))
-
-    def build(seed: int = 0) -> Scenario:
-        start = random_start(seed, n, m)
-        statuses = {**_FLOCKS, **more}
-        here = {key: statuses.pop(key) for key in shipped}
-        text, span = f"{source} {_OURS}", (0.0, end)
-        return Scenario(name, title, text, law, *start, span, seed, statuses, reports, shipped=here)
-
-    return build
+    law, statuses = Algorithm2(target=LinearTarget(q_r, p_r)), {**_FLOCKS, **more}
+    here = {key: statuses.pop(key) for key in shipped}
+    text, draw = f"{source} {_OURS}", partial(random_start, n=n, m=m)
+    return entry(name, title, text, law, draw, end, statuses, reports, shipped=here)
 
 
 def _fragmentation(seed: int = 0) -> Scenario:
@@ -183,7 +180,7 @@ def _fragmentation(seed: int = 0) -> Scenario:
     expected = verified("energy") | vacuous("os-1")
     expected |= refuted("alpha-flocking", "alpha-flocking-strict", "alpha-flocking-strict:flock")
     expected |= verified("os-5-terminal:extension", "source:fragments")
-    reports = (_fragments, _stays_mismatched, _expands, _links_settle)
+    reports = (_FRAGMENTS, _stays_mismatched, _expands, _links_settle)
     law, start, span = Algorithm1(), random_start(seed, 40, 2), (0.0, 40.0)
     shipped = verified("source:expands", "source:links")
     return Scenario("paper-fragmentation", title, source, law, *start, span, seed, expected, reports, shipped=shipped)
@@ -249,18 +246,18 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         "Fig. 10: 150 agents gather and follow a γ-agent",
         "Olfati-Saber 2006, Fig. 10: n = 150, Algorithm 2, d = 7, r = 8.4, ε = 0.1, a = b = 5, h = 0.2, q normal with "
         "variance 2500, p uniform in [-2, -1]², γ-agent from (200, 30) at (5, 0).",
+        (_CONNECTED, _ends_as_lattice, _ends_matched),
         n=150,
         end=60.0,
-        reports=(_CONNECTED, _ends_as_lattice, _ends_matched),
         more=verified("linearised-decay-terminal"),
     ),
     "paper-dynamic-topology": _following(
         "paper-dynamic-topology",
         "Fig. 11: 100 agents whose net changes while they flock",
         "Olfati-Saber 2006, Fig. 11 and 18(a): n = 100, otherwise as Fig. 10.",
+        (_topology_changes, _CONNECTED, _ends_as_lattice, _ends_matched),
         n=100,
         end=50.0,
-        reports=(_topology_changes, _CONNECTED, _ends_as_lattice, _ends_matched),
         shipped=(*_RESTS, "source"),
     ),
     "paper-fragmentation": _fragmentation,
@@ -269,10 +266,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         "Fig. 13: 50 agents meet in space",
         "Olfati-Saber 2006, Fig. 13: n = 50, m = 3, Algorithm 2. The start (as Fig. 10, in three dimensions) and the "
         "γ-agent, from (200, 30, 0) at (5, 0, 0), are ours.",
+        (_centre_converges, _CONNECTED, _ends_as_lattice),
         n=50,
         m=3,
         end=60.0,
-        reports=(_centre_converges, _CONNECTED, _ends_as_lattice),
         shipped=_RESTS,
     ),
     "collapse": _collapse,

@@ -13,23 +13,26 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_known
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import LinearTarget
+from flockana.environment import LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.interactions.log_potential import LogPotential
 from flockana.interactions.weights import RationalWeight
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
-from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.laws import (
+    Algorithm1,
+    Algorithm2,
+    CuckerSmale,
+    DeadZoneFlocking,
+    DiscreteLaw,
+    FixedNetFlocking,
+    HeadingAveraging,
+    Law,
+    LinkKeeping,
+    ProximityFlocking,
+)
 from flockana.measures.metrics import diameter
 from flockana.measures.nets import components, links
-from flockana.theorems import Verdict, verify
-from flockana.theorems.theorem import Status
+from flockana.theorems import Status, Verdict, verify
 
 _N, _SPEED, _HEADING = 10, 1.0, np.pi / 4.0
 _SHAKEN, _TURNED = 0.1, 0.6  # of d, and radians: what chance adds to places and headings

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.environment.targets import StaticTarget
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.environment import StaticTarget
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.expected import refuted, vacuous, verified
-from flockana.scenarios.scenario import OURS, Scenario
+from flockana.scenarios.entry import OURS, Scenario, refuted, vacuous, verified
 
 _ALL_OF_OS_3 = verified(*(f"os-3:{name}" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")))
 

@@ -13,14 +13,12 @@ from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
+from flockana.laws import DiscreteLaw, Law
 from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.start import accepts_lazy
-from flockana.theorems import Claim, Tolerances, Verdict, verify
+from flockana.scenarios.start import LazyField
+from flockana.theorems import Claim, Status, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
-from flockana.theorems.theorem import Status
 
 OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own about the paper's laws
 
@@ -38,7 +36,6 @@ class Report:
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
-@accepts_lazy("q0", "p0")
 @dataclass(frozen=True)
 class Scenario:
     """Published simulation, ready to run.
@@ -170,6 +167,10 @@ class Scenario:
             Of this scenario.
         """
         return differences(verdict, self.expected)
+
+
+for _name in ("q0", "p0"):
+    setattr(Scenario, _name, LazyField(_name))
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:

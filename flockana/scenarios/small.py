@@ -1,44 +1,34 @@
 """Small scenarios at the edge of a claim, from which a search for counterexamples begins."""
 
-from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
+from flockana.environment import Sphere, StaticTarget
 from flockana.interactions import Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1, paper_pair
-from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.scenario import OURS, Scenario
+from flockana.laws import Algorithm1, Algorithm3, paper_pair
+from flockana.scenarios.entry import OURS, Builder, Scenario, Status, entry, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.start import lazy_array
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
-from flockana.theorems.theorem import Status
 
 
-def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Builder:
     """Return two approaching agents on a line, with a given share of c* as energy."""
-    statuses = verified("energy") | expected
+    law, q = Algorithm1(), np.array([[0.0], [apart]])
 
-    def build(seed: int = 0) -> Scenario:
-        law, q = Algorithm1(), np.array([[0.0], [apart]])
+    def velocities() -> FloatArray:
+        kinetic = share * law.gains.c1_alpha * paper_pair(law).c_star - law.energy(0.0, q, 0.0 * q)
+        speed = sqrt(kinetic)  # K = speed²
+        return np.array([[speed], [-speed]])
 
-        def velocities() -> FloatArray:
-            kinetic = share * law.gains.c1_alpha * paper_pair(law).c_star - law.energy(0.0, q, 0.0 * q)
-            speed = sqrt(kinetic)  # K = speed²
-            return np.array([[speed], [-speed]])
-
-        title = f"Two agents head on, with {share:g} c* of energy"
-        source = (
-            f"Ours: two agents on a line, {apart:g} apart, with equal and opposite velocities, H(0) = {share:g} c*, "
-            "Algorithm 1 with the default gains. The start is fixed."
-        )
-        p = lazy_array((2, 1), velocities)
-        return Scenario(name, title, source, law, q, p, (0.0, 3.0), seed, statuses, references=OURS)
-
-    return build
+    title = f"Two agents head on, with {share:g} c* of energy"
+    source = (
+        f"Ours: two agents on a line, {apart:g} apart, with equal and opposite velocities, H(0) = {share:g} c*, "
+        "Algorithm 1 with the default gains. The start is fixed."
+    )
+    start, statuses = (q, lazy_array((2, 1), velocities)), verified("energy") | expected
+    return entry(name, title, source, law, lambda seed: start, 3.0, statuses, references=OURS)
 
 
 def _five_agents(seed: int = 0) -> Scenario:
@@ -68,7 +58,7 @@ def _beside_a_sphere(seed: int = 0) -> Scenario:
     return Scenario("beside-a-sphere", title, source, law, q, p, (0.0, 1.0), seed, expected, references=OURS)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+SCENARIOS: dict[str, Builder] = {
     "head-on": _head_on("head-on", 7.0, 0.5, verified("collision-energy", "collision-energy:below")),
     "head-on-collision": _head_on(
         "head-on-collision", 1.0, 1.2, vacuous("collision-energy:below") | refuted("collision-energy:twice")

@@ -3,15 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 from flockana.base.checks import FloatArray
 
-T = TypeVar("T")
-
 
 @dataclass(frozen=True)
-class _LazyArray:
+class LazyArray:
     """Array of known shape with a function that computes it."""
 
     shape: tuple[int, int]
@@ -20,7 +18,7 @@ class _LazyArray:
 
 def lazy_array(shape: tuple[int, int], compute: Callable[[], FloatArray]) -> FloatArray:
     """Return positions or velocities for a `Scenario` that are computed on first access."""
-    return cast("FloatArray", _LazyArray(shape, compute))  # an array to whoever asks the scenario
+    return cast("FloatArray", LazyArray(shape, compute))  # an array to whoever asks the scenario
 
 
 def lazy_state(
@@ -31,13 +29,8 @@ def lazy_state(
     return lazy_array(shape, lambda: drawn()[0]), lazy_array(shape, lambda: drawn()[1])
 
 
-def is_lazy(start: Any) -> bool:
-    """Return whether positions or velocities are lazy."""
-    return isinstance(start, _LazyArray)
-
-
-class _LazyArrayField:
-    """Dataclass field that reads as an array, computed on first access."""
+class LazyField:
+    """Field of a dataclass that reads as an array, computed on first access."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -46,20 +39,9 @@ class _LazyArrayField:
         if item is None:
             return self
         value = vars(item)[self.name]
-        if isinstance(value, _LazyArray):
+        if isinstance(value, LazyArray):
             value = vars(item)[self.name] = value.compute()
         return value
 
-    def __set__(self, item: Any, value: Any) -> None:
+    def __set__(self, item: Any, value: FloatArray) -> None:
         vars(item)[self.name] = value
-
-
-def accepts_lazy(*names: str) -> Callable[[type[T]], type[T]]:
-    """Decorate a dataclass so that fields may be given by `lazy_array`."""
-
-    def prepared(cls: type[T]) -> type[T]:
-        for name in names:
-            setattr(cls, name, _LazyArrayField(name))
-        return cls
-
-    return prepared

@@ -7,10 +7,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.interactions.log_potential import LogPotential
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.scenarios.expected import inconclusive, vacuous, verified
-from flockana.scenarios.scenario import Scenario
-from flockana.theorems.theorem import Status
+from flockana.laws import FixedNetFlocking, ProximityFlocking
+from flockana.scenarios.entry import Scenario, Status, inconclusive, vacuous, verified
 
 
 def _scenario(

@@ -3,18 +3,16 @@
 None of these is simulated in the paper. Starts and settings are those of its section 5.1 or ours; each text says so.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.checks import ensure_count
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.zone_world import Alien, ZoneWorld
+from flockana.environment import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.laws import ZoneFlocking
 from flockana.scenarios.bearing_distance import (
     BOX,
     FREE,
@@ -26,15 +24,13 @@ from flockana.scenarios.bearing_distance import (
     apart,
     bounds,
     distances,
-    entry,
     in_column,
     keeps_speed,
+    zone_entry,
 )
-from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import component_counts, finding, report, rerun
-from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.entry import Builder, Scenario, Start, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_counts, finding, report, rerun
 from flockana.scenarios.start import lazy_state
-from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import crowd_start, zone_start
 
 _UNBOUNDED = 1e6  # an input bound that never acts
@@ -108,13 +104,7 @@ def _unpredictable(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(moved - _MOVED, text, computed=moved, stated="less predictable motions")
 
 
-_INFORMED_REPORTS = (keeps_speed, _together, bounds)
-_BOX_REPORTS = (_reunites, bounds, _walled)
-_INDIVIDUAL = (_distance_from_alien, _right_of_way)
-_NOISY = (_unpredictable, *OPEN)
-
-
-def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
+def _two_fragments(seed: int) -> Start:
     """Return five agents on the left and five on the right of the box, moving apart."""
     rng = np.random.default_rng(seed)
     side = np.repeat([-1.0, 1.0], N // 2)
@@ -123,7 +113,7 @@ def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
     return q, np.column_stack([_SPEED * side, np.zeros(N)]) + rng.uniform(-0.2, 0.2, (N, 2))
 
 
-def _head_on() -> tuple[FloatArray, FloatArray]:
+def _head_on(seed: int) -> Start:
     """Return three agents heading for the origin, and far away two pairs heading for each other."""
     directions = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     pairs = [(x, y) for y in _LANES for x in (-10.0, 10.0)]
@@ -158,45 +148,8 @@ def _informed(seed: int = 0, informed: int = _INFORMED) -> Scenario:
         "section 2.1 says that neighbours adjust and a new global speed results; start and settings as zone-51, "
         "w^ga = 0 for those that are not informed, 60 s (J14)."
     )
-    law = ZoneFlocking(FREE, weights)
-    expected = verified("source:bounds")
-    return entry("zone-51-informed", title, source, law, apart(seed), 60.0, seed, _INFORMED_REPORTS, expected)
-
-
-def _box(seed: int = 0) -> Scenario:
-    title = "two fragments in a box"
-    source = (
-        "Remark 2 says that in a box fragments eventually reunite. Ours: the box of section 5.2, the settings of "
-        "zone-52, two fragments of five that run apart, 300 s (J16: some never do)."
-    )
-    law = ZoneFlocking(FREE, STRONG, ZoneWorld(box=BOX), u_max=10.0)
-    expected = verified("source:bounds", "source:contained")
-    return entry("zone-box", title, source, law, _two_fragments(seed), 300.0, seed, _BOX_REPORTS, expected)
-
-
-def _growing(seed: int = 0) -> Scenario:
-    title = "section 5.1 with Remark 2: radii of attraction grow until a flockmate is found"
-    source = (
-        "Remark 2, without its box: parameters and start of section 5.1, charitably read, and a_i that grows by 10 m/s "
-        "(ours) while nobody is in the zones of conflict and attraction; 60 s (J16: fragments of two do not grow)."
-    )
-    law = ZoneFlocking(FREE, ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0), growth=10.0)
-    start = zone_start(seed)
-    reports = (_together, keeps_speed, bounds)
-    expected = verified("source:speed", "source:bounds")
-    settings = "printed settings, charitably read"
-    return entry("zone-51-growing", title, source, law, start, 60.0, seed, reports, expected, settings=settings)
-
-
-def _by_speed(seed: int = 0) -> Scenario:
-    title = "the narrow gap, obstacle zones that depend on speed"
-    source = (
-        "section 2.2 says that the zone may extend to a at speed and contract to r when slow. Place and settings of "
-        "zone-gap, altitude from r at rest to a at v^max, force measured from its end (J13)."
-    )
-    law = ZoneFlocking(FREE, STRONG, GAP, u_max=10.0, zone_length="speed", obstacle_force="reaching")
-    expected = verified("source")
-    return entry("zone-gap-speed", title, source, law, in_column(seed), 30.0, seed, THROUGH, expected, settings="")
+    law, expected, reports = ZoneFlocking(FREE, weights), verified("source:bounds"), (keeps_speed, _together, bounds)
+    return zone_entry("zone-51-informed", title, source, law, apart, 60.0, expected, reports)(seed)
 
 
 def _scaled(seed: int = 0, n: int = 500) -> Scenario:
@@ -205,23 +158,13 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
         "the abstract calls the flocking scalable. Settings of zone-51; n agents, 500 if not given, as dense as the "
         "ten of section 5.1 and more than 2 m apart, velocities in (0, 1) (J18)."
     )
-    law = ZoneFlocking(FREE)
-    start = lazy_state((size, 2), lambda: crowd_start(seed, size))
-    reports = (*OPEN[1:], distances, _together)
-    expected = verified("source:speed", "source:bounds")
-    return entry("zone-scaled", f"{size} agents", source, law, start, 20.0, seed, reports, expected, settings="")
+    expected, reports = verified("source:speed", "source:bounds"), (*OPEN[1:], distances, _together)
 
+    def draw(seed: int) -> Start:
+        return lazy_state((size, 2), lambda: crowd_start(seed, size))
 
-def _individual(seed: int = 0) -> Scenario:
-    title = "individual weights for each neighbour and each hazard"
-    source = (
-        "the introduction names individual weights for neighbours and hazards. Ours: three agents with w^ss = 12, 15, "
-        "20 that run at an alien at rest, and two pairs that meet head on with w^ls = 2 and 20; s = 6, w^ga = 10, "
-        "v^d = 3, neither cohesion nor alignment. Nothing is random."
-    )
-    law = _own_weights()
-    expected = verified("source")
-    return entry("zone-individual", title, source, law, _head_on(), 20.0, seed, _INDIVIDUAL, expected, settings="")
+    title, law = f"{size} agents", ZoneFlocking(FREE)
+    return zone_entry("zone-scaled", title, source, law, draw, 20.0, expected, reports, settings="")(seed)
 
 
 def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scenario:
@@ -232,16 +175,63 @@ def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scen
         f"{velocities:g} m/s (standard deviation), both ours; the scenario's seed is that of the noise too."
     )
     law = ZoneFlocking(FREE, noise=ZoneNoise(weights=weights, velocities=velocities, seed=seed))
+    reports, as_it_is = (_unpredictable, *OPEN), (_repeats,)
     expected = verified("source:repeats", "source:unpredictable", "source:speed", "source:bounds")
-    return entry("zone-51-noisy", title, source, law, apart(seed), 20.0, seed, _NOISY, expected, as_it_is=(_repeats,))
+    build = zone_entry("zone-51-noisy", title, source, law, apart, 20.0, expected, reports, as_it_is=as_it_is)
+    return build(seed)
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {
+_UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
+SCENARIOS: dict[str, Builder] = {
     "zone-51-informed": _informed,
-    "zone-51-growing": _growing,
+    "zone-51-growing": zone_entry(
+        "zone-51-growing",
+        "section 5.1 with Remark 2: radii of attraction grow until a flockmate is found",
+        "Remark 2, without its box: parameters and start of section 5.1, charitably read, and a_i that grows by 10 m/s "
+        "(ours) while nobody is in the zones of conflict and attraction; 60 s (J16: fragments of two do not grow).",
+        ZoneFlocking(FREE, _UNITS, growth=10.0),
+        zone_start,
+        60.0,
+        verified("source:speed", "source:bounds"),
+        (_together, keeps_speed, bounds),
+        settings="printed settings, charitably read",
+    ),
     "zone-51-noisy": _noisy,
-    "zone-box": _box,
-    "zone-gap-speed": _by_speed,
-    "zone-individual": _individual,
+    "zone-box": zone_entry(
+        "zone-box",
+        "two fragments in a box",
+        "Remark 2 says that in a box fragments eventually reunite. Ours: the box of section 5.2, the settings of "
+        "zone-52, two fragments of five that run apart, 300 s (J16: some never do).",
+        ZoneFlocking(FREE, STRONG, ZoneWorld(box=BOX), u_max=10.0),
+        _two_fragments,
+        300.0,
+        verified("source:bounds", "source:contained"),
+        (_reunites, bounds, _walled),
+    ),
+    "zone-gap-speed": zone_entry(
+        "zone-gap-speed",
+        "the narrow gap, obstacle zones that depend on speed",
+        "section 2.2 says that the zone may extend to a at speed and contract to r when slow. Place and settings of "
+        "zone-gap, altitude from r at rest to a at v^max, force measured from its end (J13).",
+        ZoneFlocking(FREE, STRONG, GAP, u_max=10.0, zone_length="speed", obstacle_force="reaching"),
+        in_column,
+        30.0,
+        verified("source"),
+        THROUGH,
+        settings="",
+    ),
+    "zone-individual": zone_entry(
+        "zone-individual",
+        "individual weights for each neighbour and each hazard",
+        "the introduction names individual weights for neighbours and hazards. Ours: three agents with w^ss = 12, 15, "
+        "20 that run at an alien at rest, and two pairs that meet head on with w^ls = 2 and 20; s = 6, w^ga = 10, "
+        "v^d = 3, neither cohesion nor alignment. Nothing is random.",
+        _own_weights(),
+        _head_on,
+        20.0,
+        verified("source"),
+        (_distance_from_alien, _right_of_way),
+        settings="",
+    ),
     "zone-scaled": _scaled,
 }

@@ -13,8 +13,7 @@ from flockana.base.kinds import check_kinds
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
 from flockana.equilibria.terminal import rigid_motions
-from flockana.laws.terms.navigation import Navigation
-from flockana.laws.terms.pairs import PairTerm
+from flockana.laws import Navigation, PairTerm
 from flockana.stability.linearise import linearise
 
 NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral

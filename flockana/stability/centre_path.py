@@ -7,10 +7,9 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
-from flockana.environment.target import Target
-from flockana.environment.targets import RescaledVelocity
+from flockana.environment import RescaledVelocity, Target
 from flockana.interactions import Gains
-from flockana.laws.olfati_saber import ensure_one_gain
+from flockana.laws import ensure_one_gain
 from flockana.stability.translational import CentreOfMass
 
 _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
@@ -98,11 +97,21 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     lag, swing = steady_motion(gains, moving)
     turn = np.exp(1j * moving.omega * times)[:, None]
     steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
-    rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
-    return steady + transient(gains, times - times[0], start - steady[0], speed - rate)
+    return steady + transient(gains, moving, times, float(times[0]), start, speed)
 
 
-def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
+def transient(
+    gains: Gains, moving: Motion, t: FloatArray, start: float, q_c: FloatArray, p_c: FloatArray
+) -> FloatArray:
+    """Return what is left at times t of the offset and slip with which the centre begins, shape (T, m)."""
+    lag, swing = steady_motion(gains, moving)
+    turn = np.exp(1j * moving.omega * start)
+    steady = moving.start + moving.velocity * start - lag + (swing * turn).real
+    rate = moving.velocity + (1j * moving.omega * swing * turn).real
+    return _decayed(gains, t - start, q_c - steady, p_c - rate)
+
+
+def _decayed(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
     """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
     since = since[:, None]
     decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant

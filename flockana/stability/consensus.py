@@ -44,14 +44,10 @@ def consensus_system(laplacian: Any) -> DelaySystem:
 
 def _closed_groups(matrix: FloatArray) -> int:
     """Strongly connected groups of agents that hear nobody outside."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
+    import networkx
 
-    heard = np.abs(matrix - np.diag(np.diag(matrix))) > 0.0
-    count, group = connected_components(csr_array(heard.astype(float)), directed=True, connection="strong")
-    listener, speaker = np.nonzero(heard)
-    open_groups = np.unique(group[listener][group[listener] != group[speaker]])
-    return int(count) - len(open_groups)
+    heard = networkx.from_numpy_array(matrix - np.diag(np.diag(matrix)), create_using=networkx.DiGraph)
+    return int(networkx.number_attracting_components(heard))
 
 
 def consensus_root(eigenvalue: float, delay: float) -> complex:

@@ -24,7 +24,7 @@ from flockana.base.checks import (
 )
 from flockana.base.progress import progress_bar
 from flockana.equilibria.curvature import EPS
-from flockana.laws.law import Law
+from flockana.laws import Law
 from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
 from flockana.stability.linearise import linearise

@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_points
-from flockana.environment.targets import StaticTarget
+from flockana.environment import StaticTarget
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws import Algorithm2
 from flockana.stability.blocks import complement, reduced
 
 FORMS = ("full", "simplified")

@@ -11,7 +11,7 @@ import numpy as np
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.tables import facts_html, facts_text
-from flockana.laws.law import Law
+from flockana.laws import Law
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray
 from flockana.stability.modes import Mode, SecondOrder

@@ -18,8 +18,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
-from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.laws.law import Law
+from flockana.laws import DiscreteLaw, Law, ensure_law
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
 from flockana.stability.linearisation import Linearisation
@@ -114,18 +113,14 @@ def linearise(
         return _linearised_map(law, equilibrium, p, how)
     if isinstance(equilibrium, Equilibrium):
         ensure_unedited_equilibrium("equilibrium", equilibrium)
-    q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
-    law.check_dimension(q.shape[1])
-    t = ensure_finite_scalar("t", t)
-    target = law.target
+    q, t = _positions(law, equilibrium), ensure_finite_scalar("t", t)
     if p is None:
-        p = np.zeros_like(q) if target is None else np.tile(target.rate(t), (len(q), 1))
+        p = np.zeros_like(q) if law.target is None else np.tile(law.target.rate(t), (len(q), 1))
     q, p = ensure_state(q, p)
     ensure_flag("allow_residual", allow_residual)
     tolerance = ensure_positive("force_tolerance", force_tolerance)
-    zero = None if zero is None else ensure_positive("zero", zero)
     matrix = _finite_jacobian(law, t, q, p)
-    zero = _softest(equilibrium, matrix) if zero is None else zero
+    zero = _softest(equilibrium, matrix) if zero is None else ensure_positive("zero", zero)
     residual = _residual(law, t, q, p, matrix)
     if not residual <= tolerance and not allow_residual:
         raise ArgumentError(
@@ -147,13 +142,18 @@ def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, A
     """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
     if law.continuous is not None and law.position_factor is not None:
         return linearise_map(law, linearise(law.continuous, equilibrium, p, **how))
-    q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
-    law.check_dimension(q.shape[1])
+    q = _positions(law, equilibrium)
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
     law.check_start(q, p)
     by_headings = q.shape[1] == 2 and law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is not None
     ways = linearise_headings if by_headings else linearise_steps
     return ways(law, q, p, ensure_finite_scalar("t", how["t"]))
+
+
+def _positions(law: Any, equilibrium: Any) -> FloatArray:
+    q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
+    law.check_dimension(q.shape[1])
+    return q
 
 
 def _softest(equilibrium: Any, matrix: csr_array) -> float:
@@ -190,16 +190,14 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
     force = law.flow(t, q, p)[0]
     if law.centre_decouples:
         force = moving_frame(force)
-    length = _length(q) if law.scales is None else law.scales.length
-    scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
+    if law.scales is not None:
+        length, scale = law.scales.length, law.scales.force
+    else:  # the size of the flock; of one agent its distance from the origin
+        length = float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
+        scale = float(abs(matrix[q.size :, : q.size]).max()) * length
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
     with np.errstate(divide="ignore", invalid="ignore"):  # without a scale, infinite unless nothing is left
         return float(np.nan_to_num(np.divide((strongest, fastest), (scale, sqrt(scale * length))), posinf=inf).max())
-
-
-def _length(q: FloatArray) -> float:
-    """Return the size of a flock; for one agent its distance from the origin."""
-    return float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
 
 
 def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:

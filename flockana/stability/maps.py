@@ -20,7 +20,7 @@ import numpy.typing as npt
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.stability.mode_names import translations
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import eigen

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.equilibria.terminal import rigid_motions
+from flockana.equilibria.terminal import generators, rigid_motions
 
 _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in
 
@@ -28,13 +28,9 @@ def normalised(vector: Any, *, real: bool) -> Any:
 def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
     """Return infinitesimal rotations about the centre, by axis, not normalised."""
     x, m = q - q.mean(axis=0), q.shape[1]
-    turns = []
-    for name, (a, b) in {"rotation x": (1, 2), "rotation y": (2, 0), "rotation z": (0, 1)}.items():
-        if max(a, b) < m:
-            turn = np.zeros_like(x)
-            turn[:, a], turn[:, b] = -x[:, b], x[:, a]
-            turns.append(("rotation" if m == 2 else name, turn.ravel()))
-    return turns
+    names = ("rotation",) if m == 2 else ("rotation z", "rotation y", "rotation x")  # as `generators` has the planes
+    turns = [(name, (x @ turn.T).ravel()) for name, turn in zip(names, generators(m), strict=False)]
+    return turns[::-1]
 
 
 def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:

@@ -15,7 +15,7 @@ from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.stability.blocks import Blocks, complement, ensure_pairs_and_pull, law_blocks
 from flockana.stability.rounding import eigen
 

@@ -16,7 +16,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.laws.law import Law
+from flockana.laws import Law
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 
@@ -167,29 +167,20 @@ def _margins(flock: Linearisation, agent: int, axis: int, omega: FloatArray) -> 
     import control
 
     loop = open_loop(flock, agent, axis)
-    gains, phases, *_, crossings = _crossovers(loop)
-    response = np.ravel(loop(1j * omega))
-    sensitivity = _peak(loop, omega, 1.0 / np.abs(1.0 + response))
-    disk = float(np.asarray(control.disk_margins(loop, np.sort(np.append(omega, crossings)))[0]))
+    gains, phases, _, *crossings, _ = map(np.ravel, control.stability_margins(loop, returnall=True))
+    there = np.concatenate(crossings)
+    grid = np.sort(np.concatenate([omega, there[np.isfinite(there) & (there > 0.0)]]))
+    disk = float(np.asarray(control.disk_margins(loop, grid)[0]))
     low = max([0.0, *gains[(gains < 1.0) & (gains > _NOTHING)]])  # at 0 what is neutral touches the axis
-    high = min([inf, *gains[gains > 1.0]])
-    phase = min([inf, *(abs(x) for x in phases)])
-    return LoopMargins(agent, axis, (float(low), float(high)), float(phase), disk, sensitivity)
+    high, phase = min([inf, *gains[gains > 1.0]]), min([inf, *np.abs(phases)])
+    return LoopMargins(agent, axis, (float(low), float(high)), float(phase), disk, _peak(loop, omega))
 
 
-def _crossovers(loop: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(gain margins, phase margins in degrees, crossover frequencies) of a loop, all of them."""
-    import control
-
-    gains, phases, _, at_phase, at_gain, _ = control.stability_margins(loop, returnall=True)
-    there = np.concatenate([np.ravel(at_phase), np.ravel(at_gain)])
-    return np.ravel(gains), np.ravel(phases), there[np.isfinite(there) & (there > 0.0)]
-
-
-def _peak(loop: Any, omega: FloatArray, sizes: FloatArray) -> float:
+def _peak(loop: Any, omega: FloatArray) -> float:
     """Largest sensitivity, refined about the best of a grid."""
     from scipy.optimize import minimize_scalar
 
+    sizes = 1.0 / np.abs(1.0 + np.ravel(loop(1j * omega)))
     k = int(np.argmax(sizes))
     low, high = omega[max(0, k - 1)], omega[min(len(omega) - 1, k + 1)]
     found = minimize_scalar(lambda w: abs(1.0 + complex(loop(1j * w))), bounds=(low, high), method="bounded")

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray, ensure_fits, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws import DiscreteLaw
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.stability.maps import stepped_equation

@@ -12,7 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
-from flockana.laws.terms.navigation import Navigation
+from flockana.laws import Navigation
 from flockana.stability.mode_names import translations
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws import Algorithm2
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.linearise import linearise

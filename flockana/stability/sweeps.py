@@ -12,7 +12,7 @@ from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_
 from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.translational import CentreOfMass

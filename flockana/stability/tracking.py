@@ -12,18 +12,9 @@ from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CircleTarget, SineTarget
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.centre_path import (
-    Motion,
-    centre_path,
-    motion,
-    path_and_factor,
-    steady_error,
-    steady_motion,
-    transient,
-)
+from flockana.environment import CircleTarget, SineTarget
+from flockana.laws import Algorithm2, MSNDiscretisation
+from flockana.stability.centre_path import Motion, centre_path, motion, path_and_factor, steady_error, transient
 from flockana.stability.translational import CentreOfMass, map_gain
 
 _SAMPLES, _APART = 8, 1e-2  # least number of samples of a fit of four unknowns, and least ratio of its singular values
@@ -69,14 +60,10 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
     start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
-    turn = np.exp(1j * moving.omega * start)
     if gains.c1_gamma > 0.0:
-        lag, swing = steady_motion(gains, moving)
-        steady = moving.start + moving.velocity * start - lag + (swing * turn).real
-        slip = speed - moving.velocity - (1j * moving.omega * swing * turn).real
-        return transient(gains, t - start, place - steady, slip)
+        return transient(gains, moving, t, start, place, speed)
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
-    slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
+    slip = speed - moving.drift - (1j * moving.omega * swing * np.exp(1j * moving.omega * start)).real
     since, drag = (t - start)[:, None], gains.c2_gamma
     return -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
 
@@ -216,38 +203,22 @@ def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quanti
 
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
     """Return turning points along the line from the start to the target, and the time between two."""
-    target = run.law.target.position(0.0)
+    from scipy.interpolate import BPoly, PPoly
+
     t, *states, _ = run.path  # its own steps too: samples of one's own choice may miss a turn
     x, v, a = (series.mean(axis=1) for series in states)
-    x = x - target
+    x = x - run.law.target.position(0.0)
     axis = x[0] / (float(np.linalg.norm(x[0])) or 1.0)
-    place, speed, slope = x @ axis, v @ axis, a @ axis
-    at_rest = [float(t[0])] if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()) else []
-    turns, places = list(at_rest), [float(place[0])] * len(at_rest)
-    ahead = speed > 0.0
-    for k in np.flatnonzero(ahead[:-1] != ahead[1:]):
-        if k == 0 and at_rest:
-            continue
-        time, where = _rest(t[k : k + 2], place[k : k + 2], speed[k : k + 2], slope[k : k + 2])
-        turns.append(time)
-        places.append(where)
-    if len(turns) < 2:
+    speed = v @ axis
+    place = PPoly.from_bernstein_basis(BPoly.from_derivatives(t, np.column_stack([x @ axis, speed, a @ axis])))
+    turns = place.derivative().roots(extrapolate=False)
+    if abs(speed[0]) <= 1e-12 * float(np.abs(speed).max()):  # at rest at the start: a root, found or not by rounding
+        turns = np.append(t[0], turns[turns > t[0] + 0.5 * (t[1] - t[0])])
+    if turns.size < 2 or not np.isfinite(turns).all():
         return []
-    period = 2.0 * float(np.mean(np.diff(turns)))
-    damping = 0.5 * centre.gains.c2_gamma
-    farthest = -places[0] * float(np.exp(-damping * 0.5 * centre.period))
+    period, damping = 2.0 * float(np.mean(np.diff(turns))), 0.5 * centre.gains.c2_gamma
+    farthest = -float(place(turns[0])) * float(np.exp(-damping * 0.5 * centre.period))
     return [
         Quantity("period (time)", centre.period, period),
-        Quantity("first turning point beyond the target (length)", farthest, places[1]),
+        Quantity("first turning point beyond the target (length)", farthest, float(place(turns[1]))),
     ]
-
-
-def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[float, float]:
-    """Return time and place between two steps at which the velocity vanishes, on the quintic path."""
-    from scipy.interpolate import BPoly
-    from scipy.optimize import brentq
-
-    place = BPoly.from_derivatives(t, np.column_stack([x, v, a]))
-    velocity = place.derivative()
-    time = float(brentq(lambda s: float(velocity(s)), t[0], t[1], xtol=1e-14 * float(t[1] - t[0])))
-    return time, float(place(time))

@@ -18,8 +18,7 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_series
 from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import ensure_one_gain
+from flockana.laws import MSNDiscretisation, ensure_one_gain
 
 if TYPE_CHECKING:
     from control import FrequencyResponseData, StateSpace, TimeResponseData, TransferFunction

@@ -1,6 +1,6 @@
 """Theorems and errata: all that the files of this package define are in the catalogue."""
 
 from flockana.theorems.catalogue import theorem, theorems, verify
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, Verdict
 
-__all__ = ["Claim", "Hypothesis", "Theorem", "Tolerances", "Verdict", "theorem", "theorems", "verify"]
+__all__ = ["Claim", "Hypothesis", "Status", "Theorem", "Tolerances", "Verdict", "theorem", "theorems", "verify"]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.errors import ArgumentError, FileError
+from flockana.base.errors import FileError
 from flockana.base.seals import with_digest
 from flockana.certified.check import RejectedError, check_data
 from tests.bad_input.test_fuzz import flipped, shortened
@@ -60,14 +60,3 @@ def test_one_that_was_sealed_again_is_rejected(certificate):
         except RejectedError:
             continue
         pytest.fail(f"{path}: {inner[path[-1]]!r} is believed")
-
-
-@pytest.mark.parametrize(
-    "other", [None, 3, "x", [[0.0], [7.0]], fl.Algorithm1()], ids=lambda other: type(other).__name__
-)
-def test_what_is_no_basin_and_no_tube_has_no_certificate(tmp_path, other):
-    with pytest.raises(ArgumentError, match="expected a basin, as certify"):
-        fl.write_certificate(other, tmp_path / "it.json")
-    with pytest.raises(ArgumentError, match="expected a tube, as enclose"):
-        fl.write_tube_certificate(other, tmp_path / "it.json")
-    assert list(tmp_path.iterdir()) == []

@@ -9,7 +9,7 @@ NOT_SEEDS = ("None", "1,0", "-1", "1.5", "x", "", "nan")
 NOT_POSITIVE = ("1,5", "True", "0", "-1", "x", "", "nan", "inf", "1j")
 SOURCES = """no-such square square: square:4 square:4x square:0x3 square:1x2x3 square:-1x2 line:x line:1e3
 line:999999999 line:99999999999999999999 hexagonal-patch:99999 none.nc none.csv none.json
-torn.nc torn.csv torn.json folder pipe.csv text.csv wide.csv"""
+torn.nc torn.csv torn.json folder pipe.csv pipe.json text.csv wide.csv"""
 PICTURES = "it it.txt it.gif . folder torn.csv/it.png pipe.png"
 NOT_SOURCES = (*SOURCES.split(), "n" * 300, "n" * 300 + ".nc", "")
 NOT_PICTURES = (*PICTURES.split(), "none\0.png", "n" * 300 + ".png")

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Scenario, Trajectory, animate, simulate
-from flockana.cli import streams
-from flockana.cli.streams import in_output_encoding
 from tests.programs import full_disk, posix
 
 
@@ -123,18 +121,6 @@ def test_ctrl_c_in_a_film_is_ctrl_c(tmp_path, monkeypatch, frame):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("verify", "os-1", "--on", "run.nc", "--seed", "3"), "--seed 3: a saved run has its start"),
-        (("equilibrium", "line:3", "--seed", "3"), "--seed 3: line:3 is no scenario"),
-        (("stability", "line:3", "--start", "start"), "--start start: line:3 is no scenario"),
-    ],
-)
-def test_a_seed_that_would_do_nothing_is_refused(refused, arguments, message):
-    refused(message, *arguments)
-
-
 def command(*arguments, module="flockana", stdout=subprocess.PIPE, folder=None, **environment):
     known = os.pathsep.join(filter(None, [os.getcwd(), os.environ.get("PYTHONPATH", "")]))
     return subprocess.run(
@@ -163,18 +149,6 @@ def test_an_encoding_without_greek_is_no_error(encoding):
     told = json.loads(done.stdout.decode(encoding))
     same = json.loads(command("verify", "E8", "--no-report", "--json", PYTHONIOENCODING="utf-8").stdout.decode("utf-8"))
     assert told["verdicts"] == same["verdicts"]
-
-
-def test_json_is_escaped_only_where_it_must_be(monkeypatch):
-    class Narrow:
-        encoding = "cp1252"
-
-    text = '{"κ": "é"}'
-    assert in_output_encoding(text) == text
-    monkeypatch.setattr(streams.sys, "stdout", Narrow())
-    assert in_output_encoding('{"é": 1}') == '{"é": 1}'
-    assert json.loads(in_output_encoding(text)) == {"κ": "é"}
-    in_output_encoding(text).encode("ascii")
 
 
 @pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no full device")

@@ -1,5 +1,4 @@
 import json
-import os
 import re
 import sys
 
@@ -147,20 +146,6 @@ def test_an_equilibrium_is_that_which_was_written(tmp_path, pair):
     path.write_text(json.dumps(moved))
     with pytest.raises(FileError, match="its digest is not that of its contents"):
         read_equilibrium(path)
-
-
-@pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium, read_csv])
-def test_what_is_no_file_is_not_read(tmp_path, read):
-    os.mkfifo(tmp_path / "pipe")
-    for path, message in (
-        (tmp_path / "pipe", "no regular file"),
-        (tmp_path, "folder|Is a directory"),
-        (tmp_path / "none", "No such file"),
-        ("a\0b", "null byte"),
-        (None, "it is no path"),
-    ):
-        with pytest.raises(FileError, match=message):
-            read(path)
 
 
 def test_positions_from_a_damaged_csv_are_finite_or_refused(tmp_path):

@@ -74,16 +74,6 @@ def test_crossings_are_counted_up_to_what_the_theorems_check_lists(call, found, 
     assert "crossings at least 200; each decided" in " ".join(call("square:6x6", "--r", 20)[1].split())
 
 
-def test_a_seven_fold_defect_is_counted(call, tmp_path):
-    angle = np.arange(7) * 2.0 * np.pi / 7.0
-    ring = np.column_stack([np.cos(angle), np.sin(angle)]) * 7.5
-    np.savetxt(tmp_path / "seven.csv", np.vstack([[0.0, 0.0], ring]), delimiter=",", header="x,y")
-    code, out, _ = call("seven.csv")
-    assert code == 0
-    assert "1 of 1 interior agents without six neighbours, charge -1" in " ".join(out.split())
-    assert "3: 7, 7: 1" in out
-
-
 def test_a_run_gives_scale_range_and_the_sample_asked_for(found, saved):
     last = found("run.nc")
     assert (last["d"], last["r"], last["time"], last["links"], last["least distance"]) == (5.0, 7.0, 2.0, 0, 8.0)

@@ -237,17 +237,6 @@ def test_what_was_done_before_an_error_is_reported(call, catalogue, monkeypatch)
     assert len(verdicts("report")["verdicts"]) == 1
 
 
-def test_lists_fit_in_80_columns(call):
-    for name in ("scenarios", "theorems"):
-        code, out, err = call(name, "--long")
-        assert (code, err) == (0, "")
-        assert max(map(len, out.splitlines())) <= 80
-        assert "\x1b" not in out
-        assert "…" not in out
-    assert "paper-flocking" in call("scenarios")[1]
-    assert "E13" in call("theorems")[1]
-
-
 @pytest.mark.parametrize("width", [60, 80])
 def test_no_name_is_cut_and_what_was_expected_is_seen_at_any_width(call, offer, monkeypatch, width):
     run = replace(tiny("tiny", "verified")(), expected={"alpha-flocking-strict": "refuted"})
@@ -289,16 +278,6 @@ def test_errata_come_as_pairs_of_printed_and_right(call, monkeypatch):
     _, out, _ = call("verify", "errata", "--no-report", "--jobs", 1)
     assert "✗ MSN project: rank(A)/n is 1 on a connected net" in out
     assert "✓ right: rank(L)/(n - 1) is 1, as the slides print it" in out
-
-
-@pytest.mark.parametrize(
-    ("given", "near"), [("OS-3", "os-3"), ("e1", "E1"), ("paper-flock", "paper-flocking"), ("zzz", "")]
-)
-def test_an_unknown_name_gets_the_three_nearest_in_any_case(refused, call, given, near):
-    _, _, err = call("verify", given, "--no-report")
-    assert len(err) < 200
-    assert err.count(",") == 2
-    assert near == "" or f"did you mean {near!r}?" in err
 
 
 def test_version_and_help(call):

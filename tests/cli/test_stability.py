@@ -1,11 +1,7 @@
-import os
 from math import sqrt
 
 import pytest
 
-from flockana.base.errors import SolverError
-from flockana.cli.stability import stability_command
-from flockana.cli.status import UNEXPECTED
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -64,12 +60,8 @@ def test_what_is_printed(call):
     assert "spectral abscissa -1.04881 per time unit" in text
     assert "all terms delayed: 0.012783, then a swing at 22.01 rad" in text
     assert "H2 0.041828 time^(3/2)" in text
+    assert "mode decay rate (1/time) frequency (rad/time) damping ratio" in text
     assert "breathing 3.0563 21.358 0.1417" in text
-
-
-def test_rates_have_their_units(call):
-    _, out, _ = call("hexagonal-patch:1", "--modes", 1)
-    assert "decay rate (1/time)   frequency (rad/time)   damping ratio" in out
 
 
 def test_a_large_flock_is_not_made_dense(found, monkeypatch):
@@ -136,17 +128,3 @@ def test_a_law_without_a_potential_is_linearised_about_a_state_of_rest(found, ca
     code, _, err = call("zone-51-printed")
     assert (code, err.count("\n")) == (2, 1)
     assert "ZoneFlocking is a map from step to step: expected a continuous law" in err
-
-
-def test_it_starts_one_thread_for_matrices(monkeypatch):
-    seen = []
-
-    def search(law, q):
-        seen.append(os.environ.get("OPENBLAS_NUM_THREADS"))
-        raise SolverError("no equilibrium")
-
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr("flockana.equilibria.find_equilibrium", search)
-    assert stability_command("hexagonal-patch:1") == UNEXPECTED
-    assert seen == ["1"]

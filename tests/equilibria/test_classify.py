@@ -6,7 +6,6 @@ import pytest
 from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.equilibria.classify import spectrum
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.terminal import rigid_motions
 
 
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))])
@@ -21,10 +20,3 @@ def test_it_is_the_spectrum_on_the_complement_even_where_rotations_are_no_null_v
     expected = np.linalg.eigvalsh(free.T @ hessian @ free)
     values = spectrum(potential, q)[0]
     np.testing.assert_allclose(values, expected, atol=1e-10 * np.abs(expected).max())
-
-
-def test_the_symmetries_of_algorithm_1_are_all_rigid_motions():
-    q = np.random.default_rng(6).uniform(0.0, 14.0, (5, 3))
-    ours, theirs = Potential(Algorithm1()).symmetries(q), rigid_motions(q)
-    assert ours.shape == theirs.shape == (15, 6)
-    np.testing.assert_allclose(ours @ ours.T, theirs @ theirs.T, atol=1e-10)

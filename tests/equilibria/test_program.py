@@ -9,7 +9,7 @@ from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
-from flockana.equilibria.solve import all_pairs, find_equilibrium
+from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -44,11 +44,3 @@ def test_gradient_and_hessian_are_differences_of_value_and_gradient(law, m):
         assert slope == pytest.approx(float(free[k] @ np.array(gradient).ravel()), rel=1e-6, abs=1e-7)
         ahead, behind = (np.array(program.derivatives(x + way * nudge)[0]).ravel() for way in (1.0, -1.0))
         np.testing.assert_allclose((ahead - behind) / (2.0 * step), free @ full @ free[k], rtol=1e-5, atol=1e-5)
-
-
-def test_a_flock_rests_beside_a_capsule():
-    law = Algorithm3(target=StaticTarget((2.0, 2.0)), obstacles=(Capsule((-3.0, 0.0), (0.0, 4.0), 1.0),))
-    found = find_equilibrium(law, [[1.0, 0.5], [6.0, 1.5], [1.0, 5.0], [5.5, -4.0]])
-    assert found.kind == "minimum"
-    assert found.residual < 1e-12
-    assert 0.0 < law.obstacles[0].clearance(found.q).min() < law.beta.d

@@ -42,13 +42,6 @@ def test_a_search_reaches_harborths_count_and_finds_each_minimum_once():
     assert [one.count for one in again.found] == [one.count for one in found.found]
 
 
-def test_copies_of_one_minimum_are_one_and_mirror_images_too():
-    hexagon = find_equilibrium(LAW, hexagonal_spiral(8, 7.0))
-    mirrored = find_equilibrium(LAW, hexagonal_spiral(8, 7.0)[::-1] * [-1.0, 1.0] + 40.0)
-    groups = distinct([hexagon, mirrored])
-    assert [one.count for one in groups] == [2]
-
-
 def test_saddles_have_an_index():
     found = search(LAW, random_starts(4, 2, 7.0, 12, density=4.0), method="root")
     saddles = [one.equilibrium for one in found.found if one.equilibrium.kind == "saddle"]

@@ -6,7 +6,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from flockana import Algorithm1, AlphaInteraction, Law, plots, simulate
-from flockana.base.errors import UnknownNameError
 from tests.plots.artists import Halving, a_run, axes
 
 
@@ -70,11 +69,6 @@ def test_the_panel_draws_four_measures_and_what_spans_decades_is_logarithmic():
     assert [ax.get_yscale() for ax in drawn] == ["linear", "linear", "log", "log"]
 
 
-def test_an_unknown_measure_is_refused():
-    with pytest.raises(UnknownNameError, match="unknown metric 'cohesion'; did you mean 'cohesion_radius'"):
-        plots.measure(a_run(), "cohesion", ax=axes())
-
-
 @pytest.mark.parametrize("law", [Drag(), Halving()])
 def test_laws_without_range_energy_or_target_draw_what_there_is(law):
     run = simulate(law, [[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], (0.0, 2.0))
@@ -95,14 +89,6 @@ def test_pair_curves_pass_through_their_known_points():
     assert np.all(phi[x < 7.0 - 0.02] < 0.0)
     assert np.all(phi[(x > 7.02) & (x < 8.38)] > 0.0)
     assert np.all(phi[x > 8.4] == 0.0)
-
-
-def test_without_axes_new_ones_are_made_for_the_dimension():
-    assert plots.trajectories(a_run(3)).name == "3d"
-    assert plots.trajectories(a_run(2)).name == "rectilinear"
-    run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 0.1))
-    assert plots.energy(run).get_ylabel() == "$H$, energy"
-    assert plots.panel(run).shape == (4,)
 
 
 def test_a_backend_that_turns_interactive_mode_on_inside_the_style_keeps_it():

@@ -57,16 +57,6 @@ def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
     assert not of(plots.snapshot(hunted, ax=axes(), velocities=False), Quiver)
 
 
-def test_the_film_of_a_zone_run_holds_box_and_alien(hunted):
-    film = plots.animation(hunted, seconds=0.2, fps=10)
-    ax = frame(film, 1)
-    assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
-    (low_x, high_x), (low_y, high_y) = ax.get_xlim(), ax.get_ylim()
-    assert low_x < 0.0 < 50.0 < high_x
-    assert low_y < 0.0 < 50.0 < high_y
-    np.testing.assert_allclose(ax.collections[-1].get_offsets(), hunted.extra["alien"][-1])
-
-
 def test_in_view_are_all_places_of_an_alien():
     """Of a flock that stays at the origin, without obstacles or box, only the alien is far away."""
     law = ZoneFlocking(world=ZoneWorld(aliens=(Alien((40.0, -30.0)),)))

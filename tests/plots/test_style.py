@@ -10,8 +10,6 @@ from flockana.plots.style import (
     colour_bar,
     finish,
     finish_over_time,
-    line_width_and_opacity,
-    lines,
     write_title,
 )
 from tests.plots.artists import a_run
@@ -36,14 +34,6 @@ def test_a_drawing_over_time_goes_from_the_first_time_to_the_last(ax):
     assert (ax.get_xlim(), ax.get_xlabel(), ax.get_ylabel()) == ((2.0, 7.0), "$t$ (time)", "$H$, energy")
     before = ax.get_xlim()
     assert finish_over_time(ax, np.array([5.0]), "").get_xlim() == before  # one instant has no extent
-
-
-@pytest.mark.parametrize("m", [2, 3])
-def test_lines_are_of_their_space_even_if_there_are_none(m):
-    ax = Figure().add_subplot(projection="3d" if m == 3 else None)
-    for count in (0, 2):
-        ax.add_collection(lines(np.zeros((count, 2, m)), colors="k"))
-    assert [type(c).__name__ for c in ax.collections] == ["Line3DCollection" if m == 3 else "LineCollection"] * 2
 
 
 def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style():
@@ -115,8 +105,3 @@ def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_wher
 def test_a_grid_has_rows_and_columns(grid, message):
     with pytest.raises(ArgumentError, match=message):
         plots.subplots(*grid)
-
-
-def test_lines_are_fainter_the_more_there_are():
-    assert line_width_and_opacity(3) == (1.2, 0.9)
-    assert line_width_and_opacity(150) == (0.4, 0.4)

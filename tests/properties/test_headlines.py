@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from flockana import scenario, theorem, verify
+from flockana import scenario, verify
 from flockana.report.build import verdicts_json
-from flockana.report.pages import FixedResult, ScenarioResult, page
+from flockana.report.pages import fixed_page, scenario_page
 
 ORDER = ("refuted", "inconclusive", "verified", "vacuous")
 
@@ -14,11 +14,11 @@ ORDER = ("refuted", "inconclusive", "verified", "vacuous")
 @pytest.fixture(scope="module")
 def verdicts():
     """Of a run that ends in no α-lattice, of one that does, and of an erratum."""
-    pages = [page(FixedResult(theorem("E1"), verify("E1")), figures=False)]
+    pages = [fixed_page(verify("E1"))]
     for name in ("three-agents-1d", "hexagon"):
         entry = scenario(name)
         run = entry.run()
-        pages.append(page(ScenarioResult(entry, run, entry.verify(run)), figures=False))
+        pages.append(scenario_page(entry, run, entry.verify(run), figures=False))
     return json.loads(verdicts_json(pages))["verdicts"]
 
 

@@ -13,10 +13,10 @@ from flockana.player.codec import decode
 from flockana.report.build import report_folder, verdicts_json, write_report
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import scenario_id, verdict_id
-from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
+from flockana.report.pages import ScenarioPage, fixed_page, scenario_page
 from flockana.report.text import deciding_claim, parameters, show, tolerance_rows
 from flockana.scenarios import Report, Scenario, scenario, scenarios
-from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorems, verify
 
 NASTY = "<script>alert('no')</script>"
 VOID = {"link", "meta", "br", "input"}
@@ -54,7 +54,12 @@ def result():
         "os-1", (Hypothesis("h", "unmet", -2.0, "why", 0.125),), (good, bad), Tolerances(quasi=0.3), item.name
     )
     source = Verdict("source", (), (item.reports[0].check(run, Tolerances()),), Tolerances(), item.name)
-    return ScenarioResult(item, run, (verdict, source))
+    return item, run, (verdict, source)
+
+
+@pytest.fixture(scope="module")
+def shown(result):
+    return scenario_page(*result)
 
 
 class Checker(HTMLParser):
@@ -90,10 +95,8 @@ def read(path):
     return checker
 
 
-def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
-    written = write_report(
-        [result, FixedResult(theorem("E8"), verify("E8"))], tmp_path / "new" / "folder", seed=5, seconds=1.5
-    )
+def test_the_page_is_whole_self_contained_and_escaped(shown, tmp_path):
+    written = write_report([shown, fixed_page(verify("E8"))], tmp_path / "new" / "folder", seed=5, seconds=1.5)
     text, found = written.read_text(encoding="utf-8"), read(written)
     assert written == tmp_path / "new" / "folder" / "index.html"
     assert found.scripts == ["text/plain", None]  # the run, and what plays it
@@ -124,7 +127,7 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
 
 
 def test_the_coverage_is_in_reports_on_the_whole_catalogue_and_links_what_they_show(tmp_path):
-    results = [FixedResult(theorem("E8"), verify("E8"))]
+    results = [fixed_page(verify("E8"))]
     whole = write_report(results, tmp_path / "whole").read_text(encoding="utf-8")
     section = whole[whole.index('id="coverage"') : whole.index('id="tolerances"')]
     assert 'erratum <a href="#fixed-E8">E8</a>' in section
@@ -158,29 +161,30 @@ def test_a_whole_report_stays_even_if_its_verdicts_are_damaged(tmp_path, monkeyp
     assert (folder / "index.html").read_text(encoding="utf-8") != "whole"
 
 
-def test_a_scenarios_own_instants_come_first(result):
-    assert "instants" not in page(result).pictures[0].caption
-    shown = page(replace(result, scenario=replace(result.scenario, instants=(0.0, 0.2, 0.5, 1.0)))).pictures
-    assert len(shown) == 1 + len(page(result).pictures)
-    assert "The 4 instants that the source shows" in shown[0].caption
+def test_a_scenarios_own_instants_come_first(result, shown):
+    item, *others = result
+    assert "instants" not in shown.pictures[0].caption
+    pictures = scenario_page(replace(item, instants=(0.0, 0.2, 0.5, 1.0)), *others).pictures
+    assert len(pictures) == 1 + len(shown.pictures)
+    assert "The 4 instants that the source shows" in pictures[0].caption
 
 
-def test_the_run_in_the_page_is_the_run(result):
-    header, arrays = decode(base64.b64decode(page(result).play))
-    run = result.trajectory
+def test_the_run_in_the_page_is_the_run(result, shown):
+    header, arrays = decode(base64.b64decode(shown.play))
+    item, run, verdicts = result
     assert (header["n"], header["m"], header["marks"]) == (2, 2, [])
     span = np.ptp(run.q)
     np.testing.assert_allclose(arrays["q"], run.q, atol=span / 8192.0)
-    fast = replace(result, trajectory=replace(run, p=run.p + 1e60))  # too large for the player's numbers
-    assert page(result, figures=False).play == page(fast).play == ""
+    fast = replace(run, p=run.p + 1e60)  # too large for the player's numbers
+    assert scenario_page(*result, figures=False).play == scenario_page(item, fast, verdicts).play == ""
 
 
 def test_instants_of_source_and_witnesses_are_marked_once_each(result):
     seen = Claim("iii", "verified", witness={"time": 0.5})
     late = Claim("iv", "verified", witness={"time": 99.0})  # not in this run
     verdict = Verdict("os-1", (), (seen, late), Tolerances(), "pair")
-    marked = replace(result, scenario=replace(result.scenario, instants=(0.2, 0.5)), verdicts=(verdict,))
-    header, _ = decode(base64.b64decode(page(marked).play))
+    marked = scenario_page(replace(result[0], instants=(0.2, 0.5)), result[1], (verdict,))
+    header, _ = decode(base64.b64decode(marked.play))
     assert header["marks"] == [
         {"t": 0.2, "label": "as in the source"},
         {"t": 0.5, "label": "as in the source, os-1 iii"},
@@ -198,7 +202,7 @@ def test_no_two_places_of_the_whole_catalogue_have_one_id():
 
 
 def test_json_holds_every_verdict_and_is_strict(result):
-    pages = [page(result, figures=False), page(FixedResult(theorem("E8"), verify("E8")))]
+    pages = [scenario_page(*result, figures=False), fixed_page(verify("E8"))]
 
     def refuse(constant):
         raise AssertionError(constant)
@@ -215,8 +219,8 @@ def test_json_holds_every_verdict_and_is_strict(result):
 
 def test_a_verdict_without_claims_and_one_that_nothing_was_expected_of(tmp_path):
     item = a_scenario(expected={}, reports=())
-    bare = ScenarioResult(item, item.run(), (Verdict("os-1", (), (), Tolerances(), "pair"),))
-    made = page(bare, figures=False)
+    verdict = Verdict("os-1", (), (), Tolerances(), "pair")
+    made = scenario_page(item, item.run(), (verdict,), figures=False)
     assert made.findings[0].as_expected is None
     assert "no claim applies" in write_report([made], tmp_path).read_text(encoding="utf-8")
 
@@ -228,8 +232,8 @@ def test_an_empty_report_and_an_incomplete_one(tmp_path):
 
 
 def test_a_run_that_ended_early_is_a_surprise(result):
-    failed = replace(result, trajectory=replace(result.trajectory, status="failed", message="it blew up"))
-    made = page(failed, figures=False)
+    item, run, verdicts = result
+    made = scenario_page(item, replace(run, status="failed", message="it blew up"), verdicts, figures=False)
     assert isinstance(made, ScenarioPage)
     assert made.surprises[0] == "the run of pair failed: it blew up"
 
@@ -239,7 +243,7 @@ def test_an_old_report_survives_a_failed_write(tmp_path, result, monkeypatch):
     before = (tmp_path / "index.html").read_text()
     monkeypatch.setattr("os.replace", lambda *paths: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(FileError, match="No space left on device; choose another folder"):
-        write_report([page(result, figures=False)], tmp_path)
+        write_report([scenario_page(*result, figures=False)], tmp_path)
     assert (tmp_path / "index.html").read_text() == before
     assert not list(tmp_path.glob(".*partial"))
 

@@ -4,7 +4,7 @@ import pytest
 
 from flockana import scenario, theorem
 from flockana.report.front import FINDINGS, front_findings
-from flockana.report.pages import ScenarioResult, page
+from flockana.report.pages import scenario_page
 
 
 @pytest.mark.parametrize(("name", "id_"), [(name, id_) for name, id_, _ in FINDINGS])
@@ -16,7 +16,7 @@ def test_what_stands_first_is_in_the_catalogue_and_expected(name, id_):
 def test_a_finding_has_its_verdict_its_place_and_a_picture():
     item = scenario("hexagon")
     run = item.run()
-    made = page(ScenarioResult(item, run, (item.verdict("os-1", run),)), figures=True)
+    made = scenario_page(item, run, (item.verdict("os-1", run),))
     (found,) = front_findings([made])
     assert (found.status, found.address) == ("verified", "scenario-hexagon--os-1")
     assert found.thumbnail.startswith("<svg ")

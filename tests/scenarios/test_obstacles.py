@@ -141,16 +141,6 @@ def test_a_single_agent_rests_before_the_bar_where_the_pull_and_the_push_balance
     assert verify("os-6", run).status == "verified"
 
 
-def test_the_told_velocity_decides_condition_76():
-    """From behind the flock goes the way of p_d, slower than p_d in the end: (76) is broken to the end."""
-    ahead, behind = (scenario(f"declared-velocity-{side}") for side in ("ahead", "behind"))
-    for entry in (ahead, behind):
-        assert entry.law.target.rate(0.0).tolist() == [0.0, 0.0]
-        assert entry.law.target.state(0.0)[1].tolist() == [5.0, 0.0]
-    assert ahead.expected["os-6"] == "verified"
-    assert behind.expected["os-6"] == "vacuous"
-
-
 def test_the_short_start_of_a_large_run_is_sampled_evenly_and_balanced():
     entry = scenario("paper-squeezing")
     times = entry.options["t_eval"]
@@ -158,13 +148,6 @@ def test_the_short_start_of_a_large_run_is_sampled_evenly_and_balanced():
     run = simulate(entry.law, entry.q0, entry.p0, (0.0, 1.0), **(dict(entry.options) | {"t_eval": times[:21]}))
     # 1e-6 is the tolerance of the verdict; the whole run stays within 2e-7
     assert np.abs(run.energy_residual).max() < 2e-7 * np.abs(run.energy()).max()
-
-
-def test_a_static_target_beyond_free_space_is_reached():
-    """The same law without obstacles: nothing is trapped."""
-    law = Algorithm3(gains=GAINS, target=StaticTarget((30.0, 0.0)), obstacles=())
-    run = simulate(law, [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 30.0))
-    np.testing.assert_allclose(run.q[-1], [[30.0, 0.0]], atol=1e-6)
 
 
 def test_rest_is_judged_at_the_calmest_of_the_last_instants():

@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from flockana import Algorithm1, Scenario
 from flockana.base.errors import ArgumentError
-from flockana.scenarios.start import accepts_lazy, is_lazy, lazy_array, lazy_state
+from flockana.scenarios.start import lazy_array, lazy_state
 
 
 def item(q, p):
@@ -43,15 +43,3 @@ def test_errors_of_a_draw_are_raised_where_it_is_asked_for():
     pair = item(lazy_array((2, 1), draw), lazy_array((2, 1), draw))
     with pytest.raises(ArgumentError, match="no room"):
         _ = pair.q0
-
-
-def test_a_lazy_field_is_computed_once():
-    @accepts_lazy("q")
-    @dataclass(frozen=True)
-    class Flock:
-        q: np.ndarray
-
-    flock = Flock(lazy_array((2, 1), lambda: np.array([[0.0], [7.0]])))
-    assert is_lazy(lazy_array((2, 1), lambda: None))
-    assert flock.q.ravel().tolist() == [0.0, 7.0]
-    assert flock.q is flock.q

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import components, links, rescale
+from flockana import rescale
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import scenario
 from flockana.scenarios.zone_prose import SCENARIOS
@@ -39,15 +39,6 @@ def test_settings_and_options():
     assert (speed.zone_length, speed.obstacle_force) == ("speed", "reaching")
     with pytest.raises(ArgumentError, match="zone-box has no option n"):
         scenario("zone-box", n=3)
-
-
-def test_two_fragments_run_apart():
-    for seed in range(5):
-        entry = scenario("zone-box", seed=seed)
-        label = components(10, links(entry.q0, 5.0))
-        assert not set(label[:5]) & set(label[5:])
-        assert (entry.p0[:5, 0] < 0.0).all()
-        assert (entry.p0[5:, 0] > 0.0).all()
 
 
 def test_own_weights_are_heard():

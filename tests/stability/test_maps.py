@@ -3,7 +3,6 @@
 import control
 import numpy as np
 import pytest
-from scipy.sparse import csr_array
 
 from flockana import ExplicitEuler, MinimalFlocking, StaticTarget, TaylorStep, ZoneFlocking, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
@@ -13,7 +12,6 @@ from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.stability.maps import stepped_equation
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_patch(1, 7.0)).q
@@ -157,8 +155,3 @@ def alignment_slope(law):
 def test_what_cannot_be_linearised_is_refused(law, q, p, message):
     with pytest.raises(ArgumentError, match=message):
         linearise(law, q, p)
-
-
-def test_the_equation_of_steps_of_one_degree_of_freedom():
-    one = csr_array(np.array([[2.0]]))
-    assert [part.toarray().tolist() for part in stepped_equation(one, one, 0.5, 1.0, 1)] == [[[2.0]], [[3.0]]]

@@ -114,13 +114,13 @@ def test_modes_rates_margins_and_norms_in_every_unit(law, length, time):
 
 
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN)])
-@pytest.mark.parametrize("n", [2, 3])
-def test_a_closed_bracket_holds_its_norm(law, n):
+@pytest.mark.parametrize("n", [2, 3, 12])
+def test_a_bracket_holds_its_norm_even_where_it_is_closed(law, n):
     """Of a bond and of a triangle D is a multiple of 1 on shapes: both bounds are the norm itself."""
     flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(n, 7.0)).q)
     low, high = h2_bounds(flock)
     assert low <= h2_norm(disturbance_system(flock)) <= high
-    if isinstance(law, Algorithm1):
+    if isinstance(law, Algorithm1) and n <= 3:
         assert high / low - 1.0 < 1e-10
 
 

@@ -76,13 +76,6 @@ def test_margins_over_a_gain():
     assert prompt.margins[0] == np.inf  # alone, it hears nobody
 
 
-def test_the_margin_of_the_sweep_is_that_of_the_state():
-    law = Algorithm2(target=ORIGIN)
-    q = find_equilibrium(law, hexagonal_spiral(3, 7.0)).q
-    swept = margin_sweep(law, q, "c1_gamma", [1.1]).margins[0]
-    assert swept == pytest.approx(delay_margin(delay_system(law, q)).delay, rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [

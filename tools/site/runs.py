@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from flockana.player.page import page as player_page
-from flockana.report.pages import ScenarioResult, page
+from flockana.report.pages import scenario_page
 from flockana.report.stills import stills
 from flockana.scenarios import scenario
 from tools.site.cache import kept
@@ -28,7 +28,7 @@ def ran(name: str) -> dict[str, Any]:
 def _ran(name: str) -> dict[str, Any]:
     case = scenario(name)
     run = case.run()
-    told = page(ScenarioResult(case, run, ()))
+    told = scenario_page(case, run, ())
     drawn = next((STILL.findall(p.source) for p in told.pictures if STILL.search(p.source)), None)
     drawn = drawn or STILL.findall(stills(run, [run.t[0], run.t[-1]]))
     play = player_page(base64.b64decode(told.play), title=f"{name}: {case.title}") if told.play else ""
