@@ -14,7 +14,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
 from flockana.theorems.headline import does_not_hold, overall
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances, statement_of
+from flockana.theorems.theorem import About, Check, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
 
 
 def judged(name: str, margin: Enclosure, needs: Needs = (), *, about: About = "run", **fields: Any) -> Claim:
@@ -274,6 +274,41 @@ def undecided(name: str, detail: str, needs: Needs = (), **fields: Any) -> Claim
 
 
 _EXPECTED: Mapping[Status, str] = {"refuted": "printed", "verified": "corrected"}
+
+
+def statement_of(check: Callable[..., Any]) -> str:
+    """Return the statement of a theorem: the docstring of the function that checks it, as one paragraph.
+
+    Parameters
+    ----------
+    check : callable
+        The function.
+    """
+    return " ".join((check.__doc__ or "").split())
+
+
+def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
+    """Return a decorator that makes a theorem about runs of the function that checks it.
+
+    Parameters
+    ----------
+    name : str
+        Id of the theorem; its statement is the function's docstring.
+    **fields
+        Further fields of `Theorem`.
+
+    Examples
+    --------
+    >>> @run_theorem("still", title="Nothing moves", source="a toy")
+    ... def theorem(seen, tolerances):
+    ...     "All agents stay where they are."
+    ...     return [], []
+    >>> theorem.statement
+    'All agents stay where they are.'
+    """
+    return lambda check: Theorem(
+        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **fields}
+    )
 
 
 def erratum(

@@ -9,8 +9,8 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
-from flockana.theorems.claims import conclude
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Tolerances, run_theorem
+from flockana.theorems.claims import conclude, run_theorem
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Tolerances
 from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, condition
 
 _CLAIMS, _PROOF = ("stays", "ultimate"), "disturbed-basins"

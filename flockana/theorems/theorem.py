@@ -380,41 +380,6 @@ class Theorem:
         return tuple(hypotheses), tuple(replace(claim, by=by) for claim, by in zip(claims, owners, strict=True))
 
 
-def statement_of(check: Callable[..., Any]) -> str:
-    """Return the statement of a theorem: the docstring of the function that checks it, as one paragraph.
-
-    Parameters
-    ----------
-    check : callable
-        The function.
-    """
-    return " ".join((check.__doc__ or "").split())
-
-
-def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
-    """Return a decorator that makes a theorem about runs of the function that checks it.
-
-    Parameters
-    ----------
-    name : str
-        Id of the theorem; its statement is the function's docstring.
-    **fields
-        Further fields of `Theorem`.
-
-    Examples
-    --------
-    >>> @run_theorem("still", title="Nothing moves", source="a toy")
-    ... def theorem(seen, tolerances):
-    ...     "All agents stay where they are."
-    ...     return [], []
-    >>> theorem.statement
-    'All agents stay where they are.'
-    """
-    return lambda check: Theorem(
-        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **fields}
-    )
-
-
 def unmet(hypotheses: Needs) -> Hypothesis | None:
     """Return the first unmet hypothesis; None if no hypothesis is unmet.
 

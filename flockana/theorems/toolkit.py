@@ -14,6 +14,7 @@ from flockana.theorems.claims import (
     judged,
     of_map,
     of_state,
+    run_theorem,
     spectral,
     undecided,
     vacuous,
@@ -24,4 +25,4 @@ from flockana.theorems.limits import Certificate, evidence, limit_claim
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.rounding import EPS
 from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet

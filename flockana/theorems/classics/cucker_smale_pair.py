@@ -3,9 +3,9 @@
 import numpy as np
 
 from flockana.laws.cucker_smale import CuckerSmale
-from flockana.theorems.claims import judged, vacuous
+from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 

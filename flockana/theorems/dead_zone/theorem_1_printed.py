@@ -2,11 +2,12 @@
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
+from flockana.theorems.claims import run_theorem
 from flockana.theorems.dead_zone import case
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.dead_zone.range_limits import first_entry
 from flockana.theorems.rounding import frame_error
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, Certificate, Enclosure, Observed, counted, limit_claim
 
 

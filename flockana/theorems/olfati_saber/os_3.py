@@ -4,12 +4,13 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.claims import run_theorem
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.olfati_saber import any_potential, collisions
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.gamma_agent import consistent
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)

@@ -15,8 +15,9 @@ from flockana.lattice import classify, crossings, harborth, is_planar, kuratowsk
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
+from flockana.theorems.claims import run_theorem
 from flockana.theorems.hypotheses import has_lattice
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Theorem, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Theorem, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, FloatArray, Observed, by_count, condition, counted, of_state, vacuous
 
 _OURS = ("ii-sharp", "extension", "extension-lengths", "extension-links", "extension-quantitative")

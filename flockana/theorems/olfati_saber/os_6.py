@@ -3,11 +3,12 @@
 import numpy as np
 
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.theorems.claims import run_theorem
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
-from flockana.theorems.theorem import Checked, Hypothesis, Tolerances, run_theorem
+from flockana.theorems.theorem import Checked, Hypothesis, Tolerances
 from flockana.theorems.toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths
 
 

@@ -15,10 +15,10 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
-from flockana.theorems.claims import judged, undecided
+from flockana.theorems.claims import judged, run_theorem, undecided
 from flockana.theorems.errata import printed
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
