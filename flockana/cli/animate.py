@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import ensure_target
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AsJson, Seed, output
 from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
@@ -34,7 +33,6 @@ def animate_command(
     if (name is None) == (on is None):
         raise ArgumentError("expected a scenario, or --on with a saved run (.nc), and not both")
     item = None if file is not None else scenario(str(name), seed)
-    ensure_target(film)
     ensure_film(film, seconds=seconds, fps=fps)
     run = Trajectory.load(file) if item is None else item.run(progress=sys.stdout.isatty())  # type: ignore[arg-type]
     if item is not None and run.status == "interrupted":
