@@ -27,9 +27,9 @@ def _ends(x, k):
 
 @kernel
 def _closed_up(q, width, most):
-    """Return a flock whose gaps along each coordinate are closed up to two cells: the same agents are near each other.
+    """Return a flock whose gaps along each coordinate are closed up: whoever is within range stays so.
 
-    Gaps are those of a row of `most` bins: as fine as cells once the widest gaps are closed.
+    Gaps are empty ones of a row of `most` bins, which are as fine as cells once the widest gaps are closed.
     """
     x, full, gone = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
     for k in range(q.shape[1]):
@@ -44,7 +44,7 @@ def _closed_up(q, width, most):
                 full[_place(x[i, k], low, wide, most - 1.0)] = True
             gone[0] = 0.0
             for b in range(1, full.size):
-                gone[b] = gone[b - 1] + (0.0 if full[b] or full[b - 1] else wide)
+                gone[b] = gone[b - 1] + (0.0 if full[b] else wide)
             for i in range(len(x)):
                 x[i, k] -= gone[_place(x[i, k], low, wide, most - 1.0)]
     return x
