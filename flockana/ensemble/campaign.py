@@ -134,10 +134,11 @@ def ensemble(
         raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
     ensure_kind("tolerances", tolerances, (Tolerances, NoneType), "flockana.Tolerances(...)")
     given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
-    if isinstance(given, Flock):
-        name, checked, flock = given.name, _ensure_flock(given, grid, theorems), given
+    flock = given if isinstance(given, Flock) else None
+    if flock is None:
+        name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
     else:
-        name, checked, flock = _ensure_scenario(given, grid), _ensure_theorems(theorems), None
+        name, checked = flock.name, _ensure_flock(flock, grid, theorems)
     request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
     all_jobs = grid.jobs()
     with ExitStack() as stack:

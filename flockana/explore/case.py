@@ -88,9 +88,10 @@ class Case:
             span = ensure_time_span((span[0], span[0] + float(self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
-        parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
-        changed_ = {"recorded": None, "source": None} if self.changes or self.moved or self.duration else {}
-        return replace(start, **parts, **changed_)
+        parts: dict[str, Any] = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
+        if self.changes or self.moved or self.duration:
+            parts |= {"recorded": None, "source": None}
+        return replace(start, **parts)
 
 
 def program(parts: Start) -> str:
