@@ -43,7 +43,7 @@ class Fit:
         Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
     freedom : float
         Degrees of freedom of the intervals.
-    untold : tuple of str
+    unidentifiable : tuple of str
         What the data cannot tell, in words.
     message : str
         How the search ended.
