@@ -91,9 +91,8 @@ def read_recording(
     try:
         given = {name: value for name, value in accuracy.items() if value is not None}
         contents = _contents(path, columns, dt, clock, m)
-        kept = {} if given else {name: contents[name] for name in _ACCURACY if name in contents}
-        data = {name: value for name, value in contents.items() if name not in _ACCURACY}
-        return Recording(**({"source": path.name} | data | kept | given))
+        kept = {name: value for name, value in contents.items() if not given or name not in _ACCURACY}
+        return Recording(**({"source": path.name} | kept | given))
     except FileError:
         raise
     except ArgumentError as error:
