@@ -79,8 +79,8 @@ def read_lammps(
                 raise
             raise ArgumentError(f"{error}; {path} has z; a planar run is read with m=2") from None
 
-    dump = read_dump(ensure_path(path), step, m, start=start, needed="p", ensure_fits=ensure_fits)
-    t, q, p = dump["t"], dump["q"], dump["p"]
+    dump = read_dump(ensure_path(path), step, m, "p", ensure_fits)
+    t, q, p = start + dump["t"], dump["q"], dump["p"]
     law.check_agents(q.shape[1])
     flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
     own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])

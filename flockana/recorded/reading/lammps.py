@@ -67,13 +67,7 @@ class Snapshot:
 
 
 def read_dump(
-    path: Path,
-    dt: float | None,
-    m: int | None,
-    *,
-    start: float = 0.0,
-    needed: str = "",
-    ensure_fits: Callable[[int], None] = lambda dimension: None,
+    path: Path, dt: float | None, m: int | None, needed: str = "", ensure_fits: Callable[[int], object] = lambda m: None
 ) -> dict[str, Any]:
     """Return t, ids, q, and p and u where the dump has them or `needed` names them, and the steps.
 
@@ -83,7 +77,7 @@ def read_dump(
     columns = found[0].columns
     if dt is None and any(each.time is None for each in found):
         raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
-    t = np.array([start + (each.step * (dt or 0.0) if each.time is None else each.time) for each in found])
+    t = np.array([each.step * (dt or 0.0) if each.time is None else each.time for each in found])
     if not (np.diff(t) > 0.0).all():
         k = int(np.argmin(np.diff(t)))
         raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")

@@ -7,6 +7,8 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError, format_value
 
+Columns = Mapping[str, Any] | Sequence[str] | None  # names that a user gives
+
 AXES = "xyz"
 TIMES = ("t", "time", "times", "timestamp", "seconds", "tau")
 FRAMES = ("frame", "frames", "step", "sample")
