@@ -21,7 +21,7 @@ KINDS = {
     "p": ("v{}", "p{}", "v_{}", "p_{}", "vel_{}"),
     "u": ("u{}", "a{}", "u_{}", "a_{}", "acc_{}"),
 }
-_COORDINATES = {
+COORDINATES = {
     form.format(letter): (kind, axis)
     for kind, forms in KINDS.items()
     for axis, letter in enumerate(AXES)
@@ -58,7 +58,7 @@ def _agent_and_coordinate(name: str) -> tuple[str, str, int] | None:
         ways.append((match[2], match[1].rstrip("_")))
     if match := _AGENT_FIRST.match(name):
         ways.append((match[1], match[2]))
-    return next(((agent, *_COORDINATES[each]) for agent, each in ways if each in _COORDINATES), None)
+    return next(((agent, *COORDINATES[each]) for agent, each in ways if each in COORDINATES), None)
 
 
 def layout_of(names: Sequence[Any], where: str) -> Layout:
