@@ -30,15 +30,8 @@ def test_ctrl_c_within_a_kernel_ends_the_run_and_not_the_process():
                     timer.start()
             print(fl.simulate(law, q, 0.0 * q, (0.0, 1e5), watch=watch).status, flush=True)
     """
-    root = str(Path(fl.__file__).resolve().parents[1])
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(code)],
-        cwd=root,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    command, root = [sys.executable, "-c", textwrap.dedent(code)], Path(fl.__file__).resolve().parents[1]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, (signal.Signals(-done.returncode) if done.returncode < 0 else "", done.stderr)
     assert done.stdout.split() == 4 * ["interrupted"]
 

@@ -42,10 +42,7 @@ def test_verify_without_a_theorem_gives_one_table_of_those_about_the_law():
     for call, message in (
         (lambda: fl.verify(law=LAW), r"expected a Trajectory, or law=..., q0=..."),
         (lambda: fl.verify(law=LAW, q0=start), r"a function of a seed: expected Flock\(law, q0, p0, t_span\).verify"),
-        (
-            lambda: fl.verify(None, fl.Flock(LAW, start)),
-            r"trajectory is a Flock: expected flock.run\(seed\), or flock.verify",
-        ),
+        (lambda: fl.verify(None, fl.Flock(LAW, start)), r"is a Flock: expected flock.run\(seed\), or flock.verify"),
     ):
         with pytest.raises(ArgumentError, match=message):
             call()

@@ -179,10 +179,9 @@ def _positions_by_header(
     path: Path, header: list[str], lines: list[tuple[int, list[str]]]
 ) -> list[tuple[int, list[str]]]:
     """Return the position columns that a header names; all columns where no name is known."""
-    from flockana.recorded.reading.names import AGENTS, TIMES, coordinate, layout_of, plain
+    from flockana.recorded.reading.names import AGENTS, COORDINATES, TIMES, layout_of, plain
 
-    names = [plain(cell) for cell in header]
-    if not any(coordinate(name) is not None or name in (*AGENTS, *TIMES) for name in names):
+    if not {plain(cell) for cell in header} & {*COORDINATES, *AGENTS, *TIMES}:
         return lines
     layout = layout_of(header, str(path))
     if layout.time is not None or "q" not in layout.long:

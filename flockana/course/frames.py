@@ -13,6 +13,7 @@ from typing import Any
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.player.page import framed
 
 _DPI = 90
 _COLOURS = 64  # of a picture: enough for lines and a colour bar, and a third of the bytes
@@ -73,9 +74,7 @@ class Frames:
         )
 
     def _repr_html_(self) -> str:
-        look = f"width:100%;height:{self.size[1] + 40}px;border:0"
-        page = escape(self.html())
-        return f'<iframe title="{escape(self.title)}" sandbox="allow-scripts" style="{look}" srcdoc="{page}"></iframe>'
+        return framed(self.title, self.html(), self.size[1] + 40)
 
 
 def _as_script(value: Any) -> str:

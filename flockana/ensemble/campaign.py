@@ -11,11 +11,12 @@ from itertools import islice
 from math import prod
 from pathlib import Path
 from pkgutil import resolve_name
+from types import NoneType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_known
+from flockana.base.checks import ensure_kind, ensure_known
 from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
@@ -131,13 +132,13 @@ def ensemble(
     names = Counter((*RESERVED, *grid.axes, *grid.fixed, *map(metric_name, chosen)))
     for name in (name for name, count in names.items() if count > 1):
         raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
-    if tolerances is not None and not isinstance(tolerances, Tolerances):
-        raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
+    ensure_kind("tolerances", tolerances, (Tolerances, NoneType), "flockana.Tolerances(...)")
     given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
-    if isinstance(given, Flock):
-        name, checked, flock = given.name, _ensure_flock(given, grid, theorems), given
+    flock = given if isinstance(given, Flock) else None
+    if flock is None:
+        name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
     else:
-        name, checked, flock = _ensure_scenario(given, grid), _ensure_theorems(theorems), None
+        name, checked = flock.name, _ensure_flock(flock, grid, theorems)
     request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
     all_jobs = grid.jobs()
     with ExitStack() as stack:

@@ -4,9 +4,10 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from dataclasses import dataclass
+from types import NoneType
 from typing import Any
 
-from flockana.base.checks import ensure_count
+from flockana.base.checks import ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError
 from flockana.ensemble.processes import ProcessPool, cores
 
@@ -69,8 +70,7 @@ def worker_pool(
 
 def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
     """Raise on bad executor options before anything is started."""
-    if executor is not None and not isinstance(executor, Executor):
-        raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
+    ensure_kind("executor", executor, (Executor, NoneType), "a concurrent.futures.Executor")
     if executor is not None and (cluster is not None or jobs is not None):
         raise ArgumentError("executor, and cluster or jobs: expected one of them; an executor has its own size")
     if cluster is not None and not (isinstance(cluster, str) and cluster):

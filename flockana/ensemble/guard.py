@@ -8,15 +8,13 @@ from pathlib import Path
 from traceback import walk_stack
 from typing import Any
 
-GUARD = 'if __name__ == "__main__":'
-
 
 def can_start_processes(request: Any) -> bool:
     """Return whether processes can make the runs; warn and return False if this process must."""
     # A started process imports the script that called. Without a guard that would run it again.
     reason = ""
     if (line := unguarded_line()) is not None:
-        reason = f"line {line} of the script is not under `{GUARD}`"
+        reason = f'line {line} of the script is not under `if __name__ == "__main__":`'
     try:
         pickle.dumps(request)
     except Exception as error:  # pickle raises errors of many kinds

@@ -46,21 +46,18 @@ class Request:
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
         """Return plain data, for the key of a run; raise on a flock without a written form if `strict`."""
-        flock = None if self.flock is None else _plain(self.flock, strict=strict)
-        return {**asdict(replace(self, flock=None)), "flock": flock}
-
-
-def _plain(flock: Flock, *, strict: bool) -> Any:
-    """Return a flock as plain data; functions as their names, which tell two versions of one apart no more."""
-    parts = flock.law, flock.q0, flock.p0, flock.t_span
-    try:
-        return [*map(to_data, parts), to_data_mapping(flock.options)]
-    except ArgumentError as error:
-        if strict:
-            raise ArgumentError(
-                f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
-            ) from None
-        return repr((*parts, flock.options))
+        plain: Any = None
+        if (flock := self.flock) is not None:
+            parts = flock.law, flock.q0, flock.p0, flock.t_span
+            try:
+                plain = [*map(to_data, parts), to_data_mapping(flock.options)]
+            except ArgumentError as error:
+                if strict:
+                    raise ArgumentError(
+                        f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
+                    ) from None
+                plain = repr((*parts, flock.options))  # functions as their names, which tell no versions apart
+        return {**asdict(replace(self, flock=None)), "flock": plain}
 
 
 @dataclass(frozen=True)

@@ -126,17 +126,14 @@ def poles(run: Trajectory) -> dict[str, Any]:
         "abscissa": linear.spectral_abscissa if modes else None,
         "q": linear.q.tolist(),
         "links": np.asarray(linear.links).tolist(),
-        "modes": [
-            {
-                "name": mode.name,
-                "value": [mode.eigenvalue.real, mode.eigenvalue.imag],
-                "damping": mode.damping_ratio,
-                "real": np.round(mode.shape.real, 6).tolist(),
-                "imag": np.round(np.imag(mode.shape), 6).tolist(),
-            }
-            for mode in modes
-        ],
+        "modes": [_shown_mode(mode) for mode in modes],
     }
+
+
+def _shown_mode(mode: Any) -> dict[str, Any]:
+    shape = {name: np.round(part(mode.shape), 6).tolist() for name, part in (("real", np.real), ("imag", np.imag))}
+    value = [mode.eigenvalue.real, mode.eigenvalue.imag]
+    return {"name": mode.name, "value": value, "damping": mode.damping_ratio, **shape}
 
 
 def _collapses_by_ratio(law: Any) -> bool:

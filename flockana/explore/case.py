@@ -6,7 +6,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
-from flockana.base.checks import ensure_choice, ensure_positive, ensure_seed, ensure_time_span, ensure_vector
+from flockana.base.checks import (
+    ensure_choice,
+    ensure_kind,
+    ensure_positive,
+    ensure_seed,
+    ensure_time_span,
+    ensure_vector,
+)
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
@@ -39,13 +46,11 @@ class Case:
 
     def __post_init__(self) -> None:
         ensure_choice("kind", self.kind, KINDS)
-        if not isinstance(self.name, str):
-            raise ArgumentError(f"name = {self.name!r}: expected a text")
+        ensure_kind("name", self.name, str, "a text")
         ensure_seed(self.seed)  # n and m are checked where a law gets its flock
         if self.duration is not None:
             ensure_positive("duration", self.duration)
-        if not isinstance(self.changes, Mapping):
-            raise ArgumentError(f"changes = {self.changes!r}: expected values by name")
+        ensure_kind("changes", self.changes, Mapping, "values by name")
 
     @classmethod
     def of(cls, asked: Any) -> Self:
@@ -83,9 +88,10 @@ class Case:
             span = ensure_time_span((span[0], span[0] + float(self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
-        parts = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
-        changed_ = {"recorded": None, "source": None} if self.changes or self.moved or self.duration else {}
-        return replace(start, **parts, **changed_)
+        parts: dict[str, Any] = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
+        if self.changes or self.moved or self.duration:
+            parts |= {"recorded": None, "source": None}
+        return replace(start, **parts)
 
 
 def program(parts: Start) -> str:

@@ -53,8 +53,13 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
             started, due = now, now + pause
             return
         done, gone = sample.t - samples[1].t, now - started
-        if gone > limit or (gone > _TRIED and done > 0.0 and gone * span / done > _FAR * limit):
-            failure = TooLargeError(_cost(parts, gone, done, span, limit))
+        whole = gone * span / done if done > 0.0 else float("inf")
+        if gone > limit or (gone > _TRIED and _FAR * limit < whole < float("inf")):
+            failure = TooLargeError(
+                f"this run takes about {whole / 60.0:.2g} minutes here ({len(parts.q0)} agents, {span:.4g} time units, "
+                f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents "
+                "or softer gains, or run the lines of Python below"
+            )
             raise KeyboardInterrupt
         if now >= due:
             show(scene(_thin(samples, parts.law)))
@@ -69,15 +74,6 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
     if len(run.t) > _SAMPLES and pause == _FIRST:  # nothing was shown yet, and the whole takes longer
         show(scene(_thin(samples, parts.law)))
     return shown(run, show)
-
-
-def _cost(parts: Start, gone: float, done: float, span: float, limit: float) -> str:
-    whole = gone * span / done if done > 0.0 else float("inf")
-    return (
-        f"this run takes about {whole / 60.0:.2g} minutes here ({len(parts.q0)} agents, {span:.4g} time units, "
-        f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents or softer "
-        "gains, or run the lines of Python below"
-    )
 
 
 def _thin(samples: list[Sample], law: Any) -> Trajectory:

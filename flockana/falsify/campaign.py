@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import replace
+from types import NoneType
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_seed
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
@@ -157,12 +158,10 @@ def falsify(
 
 
 def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
-    if not isinstance(theorem, Theorem):
-        raise ArgumentError(f"theorem = {theorem!r}: expected a name of the catalogue or a Theorem")
+    ensure_kind("theorem", theorem, Theorem, "a name of the catalogue or a Theorem")
     if theorem.kind != "trajectory":
         raise ArgumentError(f"{theorem.id} is not about a run: expected a theorem about motion, such as os-1")
-    if tolerances is not None and not isinstance(tolerances, Tolerances):
-        raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
+    ensure_kind("tolerances", tolerances, (Tolerances, NoneType), "flockana.Tolerances(...)")
     if surrogate is not None and not callable(surrogate):
         raise ArgumentError(f"surrogate = {surrogate!r}: expected a function of a trajectory and a claim")
 

@@ -153,12 +153,12 @@ class Counterexample:
                 f"wrote it ({data.get('flockana_version')}), or search again"
             )
         try:
-            names = [_text(data[name]) for name in (*_TEXTS, "flockana_version")]
+            theorem, claim, scenario, version = (_text(data[name]) for name in (*_TEXTS, "flockana_version"))
             numbers = [math.nan if data[name] is None else float(data[name]) for name in _NUMBERS]
             law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
             state = ensure_state(data["q0"], data["p0"])
             start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
-            found = cls(*names[:3], law, *start, tolerances, *numbers, names[3])
+            found = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
             without_digest(data, keys=_KEYS)
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error

@@ -70,9 +70,17 @@ def read_lammps(
         )
     start = ensure_finite_scalar("start", start)
     step = None if dt is None else ensure_positive("dt", dt)
-    dump = read_dump(ensure_path(path), step, m, start=start, needed="p")
-    t, q, p = dump["t"], dump["q"], dump["p"]
-    _ensure_for(law, q.shape[2], m, path)
+
+    def ensure_fits(dimension: int) -> None:
+        try:
+            law.check_dimension(dimension)
+        except ArgumentError as error:
+            if m is not None or dimension < 3:
+                raise
+            raise ArgumentError(f"{error}; {path} has z; a planar run is read with m=2") from None
+
+    dump = read_dump(ensure_path(path), step, m, "p", ensure_fits)
+    t, q, p = start + dump["t"], dump["q"], dump["p"]
     law.check_agents(q.shape[1])
     flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
     own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
@@ -86,12 +94,3 @@ def read_lammps(
         extra["work"] = work(t) - work(t[0])
     stats = {"method": "LAMMPS", "steps": dump["steps"], "evaluations": dump["steps"]}
     return Trajectory(t, q, p, u, law, extra, "complete", f"read from {Path(path).name}", stats)
-
-
-def _ensure_for(law: Any, dimension: int, m: int | None, path: object) -> None:
-    try:
-        law.check_dimension(dimension)
-    except ArgumentError as error:
-        if m is not None or dimension < 3:
-            raise
-        raise ArgumentError(f"{error}; {path} has z; a planar run is read with m=2") from None

@@ -56,7 +56,9 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
             else:
                 result.fixes += commands
                 result.exact.append("pull to the γ-agent: fix addforce and fix viscous")
-        elif getattr(term, "field", None) is None or term.field.obstacles:  # else obstacles of which there are none
+        elif (
+            field_ := getattr(term, "field", None)
+        ) is None or field_.obstacles:  # else obstacles of which there are none
             result.missing.append(f"{type(term).__name__}: no style of LAMMPS is this force")
     return result
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player.marks import marks_of
-from flockana.player.page import page, script, style
+from flockana.player.page import framed, page, script, style
 from flockana.player.scene import scene
 from flockana.theorems import Verdict
 
@@ -47,8 +46,7 @@ class Player:
         return write_atomic(path, self.html())
 
     def _repr_html_(self) -> str:
-        look = f"width:100%;height:{self.height}px;border:0"
-        return f'<iframe title="A run" sandbox="allow-scripts" style="{look}" srcdoc="{escape(self.html())}"></iframe>'
+        return framed("A run", self.html(), self.height)
 
     def widget(self) -> Any:
         """Return a widget whose ``time`` can be read and set; needs flockana[notebook].

@@ -44,6 +44,12 @@ def played(data: bytes) -> str:
     return f"{run}<script>(() => {{\n{script()}{start}\n}})();</script>"
 
 
+def framed(title: str, html: str, height: int) -> str:
+    """Return an element that holds a page with scripts, for a notebook."""
+    look = f"width:100%;height:{height}px;border:0"
+    return f'<iframe title="{escape(title)}" sandbox="allow-scripts" style="{look}" srcdoc="{escape(html)}"></iframe>'
+
+
 def page(data: bytes, *, title: str = "A run") -> str:
     """Return a self-contained page with the player and one run."""
     return (

@@ -43,7 +43,7 @@ class Fit:
         Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
     freedom : float
         Degrees of freedom of the intervals.
-    untold : tuple of str
+    unidentifiable : tuple of str
         What the data cannot tell, in words.
     message : str
         How the search ended.
@@ -130,8 +130,7 @@ def _matched(rec: Recording, parameters: FreeParameters, window: float | None) -
     variance = found.variance
     stated = rec.sd is not None and not rec.estimated
     covariance = found.covariance * (max(variance, 1.0) if stated else variance)
-    misfit = sqrt(variance) if stated else np.nan
-    return _result(parameters, found.values, covariance, found.identifiable, misfit, found.freedom, found.message)
+    return _result(parameters, found._replace(covariance=covariance), sqrt(variance) if stated else np.nan)
 
 
 def _lengthened(rec: Recording, parameters: FreeParameters) -> MatchResult:
@@ -179,22 +178,16 @@ def _stepped(rec: Recording, parameters: FreeParameters) -> Fit:
     covariance = covariance * np.outer(unit, unit)
     misfit = float(np.sqrt(np.mean(left**2))) if stated else np.nan
     told = np.abs(found.jac).max(axis=0) > 0.0
-    return _result(parameters, found.x * unit, covariance, told, misfit, freedom, str(found.message))
+    best = MatchResult(found.x * unit, covariance, told, [], [found.fun], freedom, str(found.message))
+    return _result(parameters, best, misfit)
 
 
-def _result(
-    parameters: FreeParameters,
-    values: FloatArray,
-    covariance: FloatArray,
-    identifiable: Any,
-    misfit: float,
-    freedom: float,
-    message: str,
-) -> Fit:
-    names, errors = parameters.names, np.sqrt(np.maximum(np.diag(covariance), 0.0))
+def _result(parameters: FreeParameters, found: MatchResult, misfit: float) -> Fit:
+    names, values = parameters.names, found.values
+    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
     scale = np.where(errors > 0.0, errors, 1.0)
-    errors = np.where(identifiable, errors, inf)
-    correlation = covariance / np.outer(scale, scale)
+    errors = np.where(found.identifiable, errors, inf)
+    correlation = found.covariance / np.outer(scale, scale)
     given, known = (dict(zip(names, x.tolist(), strict=True)) for x in (values, errors))
     untold = [
         f"the data do not tell {name}: {value:.3g} ± {2.0 * error:.2g}"
@@ -206,4 +199,4 @@ def _result(
         for i, j in np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
     ]
     law = parameters.with_values(values)
-    return Fit(law, given, known, correlation, misfit, freedom, tuple(untold), message)
+    return Fit(law, given, known, correlation, misfit, found.freedom, tuple(untold), found.message)

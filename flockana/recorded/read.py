@@ -1,7 +1,7 @@
 """`read_recording`: files, arrays and tables of many kinds as a `Recording`."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
 from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
 from flockana.recorded.reading.lammps import read_dump
+from flockana.recorded.reading.names import Columns
 from flockana.recorded.reading.table import table_arrays
 from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
@@ -23,7 +24,7 @@ _ITEM = b"ITEM:"
 def read_recording(
     source: Any,
     *,
-    columns: Mapping[str, Any] | Sequence[str] | None = None,
+    columns: Columns = None,
     dt: float | None = None,
     clock: float | None = None,
     m: int | None = None,
@@ -80,7 +81,7 @@ def read_recording(
                     f"columns has {len(columns)} names: expected {len(source.columns)}, as the frame has"
                 )
             source = source.set_axis(list(columns), axis=1)
-        return Recording(**table_arrays(source, columns=columns, dt=dt, clock=clock), source="a frame", **accuracy)
+        return Recording(**table_arrays(source, columns, dt, clock), source="a frame", **accuracy)
     if not isinstance(source, str | os.PathLike):
         raise ArgumentError(
             f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, or arrays by name"
@@ -91,9 +92,8 @@ def read_recording(
     try:
         given = {name: value for name, value in accuracy.items() if value is not None}
         contents = _contents(path, columns, dt, clock, m)
-        kept = {} if given else {name: contents[name] for name in _ACCURACY if name in contents}
-        data = {name: value for name, value in contents.items() if name not in _ACCURACY}
-        return Recording(**({"source": path.name} | data | kept | given))
+        kept = {name: value for name, value in contents.items() if not given or name not in _ACCURACY}
+        return Recording(**({"source": path.name} | kept | given))
     except FileError:
         raise
     except ArgumentError as error:
@@ -101,9 +101,7 @@ def read_recording(
         raise error if str(path) in text else ArgumentError(f"{path}: {text}") from None
 
 
-def _contents(
-    path: Path, columns: Mapping[str, Any] | Sequence[str] | None, dt: float | None, clock: float | None, m: int | None
-) -> dict[str, Any]:
+def _contents(path: Path, columns: Columns, dt: float | None, clock: float | None, m: int | None) -> dict[str, Any]:
     suffix = path.suffix.lower()
     if suffix in _ARRAYS:
         by_name, arrays = columns if isinstance(columns, Mapping) else None, _ARRAYS[suffix](path)
@@ -112,7 +110,7 @@ def _contents(
         dump = read_dump(path, dt, m)
         return {name: dump[name] for name in "tqpu" if name in dump} | {"ids": [f"{i:g}" for i in dump["ids"]]}
     names = None if columns is None or isinstance(columns, Mapping) else list(columns)
-    return table_arrays(read_text(path, names), columns=columns, dt=dt, clock=clock)
+    return table_arrays(read_text(path, names), columns, dt, clock)
 
 
 def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:

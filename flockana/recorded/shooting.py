@@ -46,7 +46,7 @@ class MatchResult(NamedTuple):
     identifiable: npt.NDArray[np.bool_]  # parameters that the residuals feel
     starts: list[FloatArray]
     residuals: list[FloatArray]
-    freedom: int
+    freedom: float
     message: str
 
     @property

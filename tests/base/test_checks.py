@@ -70,10 +70,7 @@ def test_counts_beyond_every_float_are_refused():
     ("made", "text"),
     [
         (lambda value: fl.ZoneFlocking(form=value), "form = array([1., 2.]): expected one of "),
-        (
-            lambda value: fl.HeadingAveraging(average=value),
-            "average = array([1., 2.]): expected one of headings, vectors",
-        ),
+        (lambda value: fl.HeadingAveraging(average=value), "average = array([1., 2.]): expected one of headings, "),
         (lambda value: ensure_choice("kind", value, ("a", "b")), "kind = array([1., 2.]): expected one of a, b"),
         (lambda value: fl.SineTarget((0.0, 0.0), (1.0, 0.0), 1.0, 0.1, axis=value), "axis = array([1., 2.]): expected"),
         (ensure_dimension, "m = array([1., 2.]): expected a dimension"),

@@ -79,10 +79,7 @@ def test_functions_cannot_be_written():
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (
-            {"type": "elsewhere.laws:Swarm"},
-            "the file needs elsewhere.laws:Swarm, which is not part of flockana: import",
-        ),
+        ({"type": "elsewhere.laws:Swarm"}, "needs elsewhere.laws:Swarm, which is not part of flockana: import"),
         ({"d": 7.0}, "the file needs None, which is not part of flockana"),
         ({"type": "flockana.nowhere:Law"}, "cannot rebuild flockana.nowhere:Law from the file"),
         ({"type": "flockana.interactions:Delta"}, "cannot rebuild flockana.interactions:Delta"),

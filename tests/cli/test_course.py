@@ -10,11 +10,11 @@ COMMAND = ("course",)
 def few(monkeypatch):
     """Five lectures: tests/course builds each of them."""
     pytest.importorskip("jupytext")
-    from flockana.course import build, export, slides
+    from flockana.course import build, slides
 
     chosen = [one for one in build.sources() if one.stem[:2] in ("01", "02", "03", "11", "A1")]
     assert len(chosen) == 5
-    for module in (build, export, slides):
+    for module in (build, slides):
         monkeypatch.setattr(module, "sources", lambda: chosen)
 
 

@@ -28,10 +28,8 @@ def test_the_order_and_the_form(pair):
     (form,) = pair["form"]
     assert (form["n"], form["m"], form["duration"], form["ratio"]) == (2, 1, 30.0, False)
     by_path = {each["path"]: each for each in form["numbers"]}
-    assert (by_path["gains.c2_alpha"]["value"], by_path["gains.c2_alpha"]["usual"]) == (
-        3.0,
-        fl.scenario("head-on").law.gains.c2_alpha,
-    )
+    damping = by_path["gains.c2_alpha"]
+    assert (damping["value"], damping["usual"]) == (3.0, fl.scenario("head-on").law.gains.c2_alpha)
     assert not {"gains.c1_gamma", "gains.c1_beta"} & set(by_path)  # Algorithm 1 has neither term
     assert "c2_alpha=3.0" in form["python"]
 

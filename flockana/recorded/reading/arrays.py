@@ -43,7 +43,7 @@ def named_arrays(
         )
     if "t" not in found and dt is None:
         raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
-    t = found["t"].reshape(-1) if "t" in found else dt * np.arange(len(q))  # MATLAB has no vectors
+    t = found["t"].reshape(-1) if "t" in found else (dt or 0.0) * np.arange(len(q))  # MATLAB has no vectors
     if len(t) != len(q):
         turned = [k for k in range(3) if q.shape[k] == len(t)]
         hint = f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0)" if turned else ""

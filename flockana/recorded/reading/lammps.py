@@ -1,8 +1,8 @@
 """Text dumps of LAMMPS: snapshots with their boxes, places unwrapped."""
 
-import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
+from io import TextIOWrapper
 from itertools import islice, pairwise, takewhile
 from pathlib import Path
 from typing import Any, Self, TextIO
@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FileError
+from flockana.recorded.reading import opened
 
 AXES = "xyz"
 _WORDS = ("element", "typelabel")  # columns of words
@@ -65,17 +66,23 @@ class Snapshot:
     columns: dict[str, FloatArray]
 
 
-def read_dump(path: Path, dt: float | None, m: int | None, *, start: float = 0.0, needed: str = "") -> dict[str, Any]:
-    """Return t, ids, q, and p and u where the dump has velocities and forces or `needed` names them, and the steps."""
+def read_dump(
+    path: Path, dt: float | None, m: int | None, needed: str = "", ensure_fits: Callable[[int], object] = lambda m: None
+) -> dict[str, Any]:
+    """Return t, ids, q, and p and u where the dump has them or `needed` names them, and the steps.
+
+    The dimension is passed to `ensure_fits` before places are unwrapped.
+    """
     found = _snapshots(path)
     columns = found[0].columns
     if dt is None and any(each.time is None for each in found):
         raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
-    t = np.array([start + (each.step * (dt or 0.0) if each.time is None else each.time) for each in found])
+    t = np.array([each.step * (dt or 0.0) if each.time is None else each.time for each in found])
     if not (np.diff(t) > 0.0).all():
         k = int(np.argmin(np.diff(t)))
         raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
     size = _dimension(columns, m, path)
+    ensure_fits(size)
     arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path) for each in found])}
     for kind, name in (("p", "v"), ("u", "f")):
         if f"{name}x" in columns or kind in needed:
@@ -126,16 +133,8 @@ def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
 
 def _snapshots(path: Path) -> list[Snapshot]:
     """Return the snapshots of a dump, all of the same agents."""
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise FileError(f"cannot read {str(path)!r}: it is no regular file; expected a text dump of LAMMPS")
-    try:
-        with path.open(encoding="utf-8") as file:
-            found = list(_parsed(file, path))
-    except (OSError, UnicodeDecodeError) as error:
-        if isinstance(error, FileError):
-            raise
-        reason = getattr(error, "strerror", None) or error
-        raise FileError(f"cannot read {str(path)!r}: {reason}; expected a text dump of LAMMPS") from error
+    with opened(path, "a text dump of LAMMPS") as file:
+        found = list(_parsed(TextIOWrapper(file, "utf-8"), path))
     if not found:
         raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
     ids = found[0].columns["id"]

@@ -7,6 +7,8 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError, format_value
 
+Columns = Mapping[str, Any] | Sequence[str] | None  # names that a user gives
+
 AXES = "xyz"
 TIMES = ("t", "time", "times", "timestamp", "seconds", "tau")
 FRAMES = ("frame", "frames", "step", "sample")
@@ -18,6 +20,12 @@ KINDS = {
     "q": ("{}", "q{}", "q_{}", "pos_{}", "position_{}"),
     "p": ("v{}", "p{}", "v_{}", "p_{}", "vel_{}"),
     "u": ("u{}", "a{}", "u_{}", "a_{}", "acc_{}"),
+}
+COORDINATES = {
+    form.format(letter): (kind, axis)
+    for kind, forms in KINDS.items()
+    for axis, letter in enumerate(AXES)
+    for form in forms
 }
 _UNIT = re.compile(r"\s*[\[(].*[\])]\s*$")  # x [m], t (s)
 _NUMBERED = re.compile(r"^([a-z]+_?)[_ .-]?(\d+)$")  # x1, vx_2
@@ -43,21 +51,14 @@ def plain(name: Any) -> str:
     return _UNIT.sub("", str(name).lstrip("# ")).strip().lower()
 
 
-def coordinate(name: str) -> tuple[str, int] | None:
-    """Return the kind and the axis that a plain name stands for, None for anything else."""
-    for kind, forms in KINDS.items():
-        for axis, letter in enumerate(AXES):
-            if name in {form.format(letter) for form in forms}:
-                return kind, axis
-    return None
-
-
 def _agent_and_coordinate(name: str) -> tuple[str, str, int] | None:
     """Return agent, kind and axis that a plain name stands for; the agent is empty in a long table."""
-    numbered, first = _NUMBERED.match(name), _AGENT_FIRST.match(name)
-    ways = [("", name), *([(numbered[2], numbered[1].rstrip("_"))] if numbered else [])]
-    ways += [(first[1], first[2])] if first else []
-    return next(((agent, *found) for agent, each in ways if (found := coordinate(each)) is not None), None)
+    ways = [("", name)]
+    if match := _NUMBERED.match(name):
+        ways.append((match[2], match[1].rstrip("_")))
+    if match := _AGENT_FIRST.match(name):
+        ways.append((match[1], match[2]))
+    return next(((agent, *COORDINATES[each]) for agent, each in ways if each in COORDINATES), None)
 
 
 def layout_of(names: Sequence[Any], where: str) -> Layout:

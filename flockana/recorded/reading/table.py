@@ -7,19 +7,13 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.names import Layout, given_layout, layout_of
+from flockana.recorded.reading.names import Columns, Layout, given_layout, layout_of
 from flockana.recorded.reading.text import numbers, row_name
 
 _SPARSE = 20  # positions for each row of a table, beyond which agents were sampled at different times
 
 
-def table_arrays(
-    frame: Any,
-    *,
-    columns: Mapping[str, Any] | Sequence[str] | None = None,
-    dt: float | None = None,
-    clock: float | None = None,
-) -> dict[str, Any]:
+def table_arrays(frame: Any, columns: Columns, dt: float | None, clock: float | None) -> dict[str, Any]:
     """Return t, q, p, u and ids of a table, as `Recording` takes them."""
     where = str(frame.attrs.get("where", "the frame"))
     if not len(frame):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import FileError
+from flockana.recorded.reading import opened
 
 _GAPS = ("", "nan", "NaN", "NA", "N/A", "null", "None", "-")
 _SHOWN = 40  # characters of a cell or a line that a message repeats
@@ -94,14 +95,8 @@ def _bad_cell(frame: Any, k: int, column: str) -> FileError:
 
 def _bytes(path: Path) -> bytes:
     """Contents of a text file, line ends as newlines; raise on what is no text."""
-    try:
-        if path.exists() and not path.is_file():
-            raise FileError(f"cannot read {path}: it is no regular file; expected a table")
-        data = path.read_bytes()
-    except FileError:
-        raise
-    except OSError as error:
-        raise FileError(f"cannot read {path}: {error.strerror or error}; expected a table") from error
+    with opened(path, "a table") as file:
+        data = file.read()
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise FileError(f"cannot read {path}: it is UTF-16; expected UTF-8; save it as such")
     data = data.removeprefix(b"\xef\xbb\xbf")
