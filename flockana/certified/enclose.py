@@ -101,12 +101,12 @@ def enclose(
     steps, started = ensure_count("steps", steps), time.perf_counter()
     with ctx.workprec(BITS):
         march = _March(flow_of(law, *q0.shape), law.alpha.d, order, **limits)
-        radius = [arb(r) for r in around for _ in range(q0.size)]
-        start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], radius)
-        times, sets, taken, *ending = _collected(march, start, span, steps, progress)
+        widths = [arb(r) for r in around for _ in range(q0.size)]
+        start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], widths)
+        times, sets, taken, status, message = _collected(march, start, span, steps, progress)
     stats = {"order": order, **limits, "radius": around, "steps": len(taken)}
     stats["seconds"] = time.perf_counter() - started
-    return sealed(Tube(law, q0, p0, times, sets, taken, *ending, stats))
+    return sealed(Tube(law, q0, p0, times, sets, taken, status, message, stats))
 
 
 def _collected(

@@ -189,12 +189,12 @@ def ensure_enclosable(law: Any) -> None:
 
 def flow_of(law: Any, n: int, m: int) -> Flow:
     """Return a law for n agents in m dimensions in balls, each number as its exact decimal."""
-    gains = law.gains
+    gains, alpha, target = law.gains, law.alpha, law.target
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
     if isinstance(law, _LED):
-        path = law.target.harmonic.terms
-        unit = arb(exact(law.alpha.unit)) if isinstance(law, Algorithm3) else None
+        path = target.harmonic.terms
+        unit = arb(exact(alpha.unit)) if isinstance(law, Algorithm3) else None
         start, velocity, offset = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
         declared = tuple(a + b for a, b in zip(velocity, offset, strict=True))  # p_r = dq_r/dt + offset
         terms = (Pull(start, velocity, declared, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)

@@ -202,7 +202,7 @@ class BondTable:
             curvatures[i] = -np.inf
             for slack in _SLACKS:
                 a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
-                b = [proposed_across(y, own[0], x[inside], *own[1:], eta) for y, own in zip(a, near, strict=True)]
+                b = [proposed_across(y, r, x[inside], k, t, eta) for y, (r, k, t) in zip(a, near, strict=True)]
                 matrix = fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1)
                 least = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
                 if least > curvatures[i]:

@@ -57,8 +57,8 @@ class Structure:
             ensure_one_gain(gains)
         if not (c1 := gains.c1_alpha) > 0.0:
             raise ArgumentError(f"c1_alpha = {c1:g}: expected more than 0, or no force holds the agents together")
-        pull = (gains.c1_gamma, gains.c2_gamma) if led else (0, 0)
-        return cls(AlphaParameters.of(law.alpha), *map(exact, (c1, gains.c2_alpha, *pull)), n, m)
+        pull = (exact(gains.c1_gamma), exact(gains.c2_gamma)) if led else (exact(0), exact(0))
+        return cls(AlphaParameters.of(law.alpha), exact(c1), exact(gains.c2_alpha), *pull, n, m)
 
     def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
         """Return (i, j, x_j − x_i, squared distance) of every pair."""

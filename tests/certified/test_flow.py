@@ -43,6 +43,7 @@ def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece
 @pytest.mark.parametrize("alpha", LAWS)
 def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
     law = PairNumbers.of_alpha(alpha)
+    assert law.switches[1] == pytest.approx(alpha.r, rel=1e-12)
     for z in (law.knee, law.cutoff):
         length2 = float(((1 + law.eps * z) ** 2 - 1) / law.eps)
         wide = arb(length2, 0.3)

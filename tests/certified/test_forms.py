@@ -78,7 +78,7 @@ def test_a_key_that_is_given_twice_is_refused_at_every_depth(name, tmp_path):
     text = json.dumps(DATA[name])
     keys = sorted({key for at in objects(DATA[name]) for key in leaf(DATA[name], at)})
     for key in keys:
-        (tmp_path / "twice.json").write_text(text.releaf(f'"{key}": ', f'"{key}": "0", "{key}": '))
+        (tmp_path / "twice.json").write_text(text.replace(f'"{key}": ', f'"{key}": "0", "{key}": '))
         with pytest.raises(FileError, match=f"the key '{key}' is given twice"):
             check_certificate(tmp_path / "twice.json")
 
@@ -125,7 +125,7 @@ def test_what_is_nested_without_end_is_refused(tmp_path):
     with pytest.raises(RejectedError):
         check_data(DATA["basin"] | {"curvatures": deep})
     for depth in (900, 100_000):
-        (tmp_path / "deep.json").write_text(json.dumps(DATA["basin"]).releaf('"box": ', '"box": ' + "[" * depth, 1))
+        (tmp_path / "deep.json").write_text(json.dumps(DATA["basin"]).replace('"box": ', '"box": ' + "[" * depth, 1))
         with pytest.raises(FileError):
             check_certificate(tmp_path / "deep.json")
     nested = json.loads("[" * 900 + "]" * 900)

@@ -18,6 +18,9 @@ from tests.certified.conftest import more, resealed, with_leaf
 LAW = Algorithm2(target=StaticTarget((0.0,)))
 
 
+WIDE = "the error may exceed"
+
+
 @pytest.fixture(scope="module")
 def tube():
     return enclose(LAW, [[-3.625], [3.625]], [[0.0], [0.0]], (0.0, 0.03125))
@@ -48,31 +51,20 @@ def bits(value):
 @pytest.mark.parametrize(
     ("at", "change", "message"),
     [
-        *(((where, 0, 0), bits, "the error may exceed") for where in ("q0", "p0")),
-        *((("paths", 2, 1, k), bits, "the error may exceed") for k in range(4)),
-        (("times", 3), bits, "the error may exceed"),
-        (("errors", 4), lambda e: repr(float(e) / 10.0), "the error may exceed what is stated"),
-        (
-            ("errors", 4),
-            lambda e: repr(float(e) / 2.05),
-            "the error may exceed what is stated",
-        ),  # it was twice the last
+        *((at, bits, WIDE) for at in (("q0", 0, 0), ("p0", 0, 0), ("times", 3))),
+        *((("paths", 2, 1, k), bits, WIDE) for k in range(4)),
+        (("errors", 4), lambda e: repr(float(e) / 10.0), f"{WIDE} what is stated"),
+        (("errors", 4), lambda e: repr(float(e) / 2.05), f"{WIDE} what is stated"),  # it was twice the last
         (("errors", 4), lambda e: repr(float(e) * 1e12), "is not the one proved|may exceed"),
-        *(
-            (("law", name), more, "the error may exceed")
-            for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma", "d", "r", "eps")
-        ),
-        *((("law", name), more, "the error may exceed") for name in ("h", "b")),
+        *((("law", name), more, WIDE) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma", *"drhb", "eps")),
+        *((("law", name, 0), more, WIDE) for name in ("start", "declared")),
         (("law", "a"), more, "expected 0 < d < r"),
-        (("law", "start", 0), more, "the error may exceed"),
-        (("law", "declared", 0), more, "the error may exceed"),
         (("distance",), more, "the least distance"),
         (("cohesion_radius",), more, "the largest radius"),
         (("energy",), more, "the energy at the start"),
         (("below_c_star",), lambda holds: not holds, "H\\(0\\) < c"),
         (("basin", "radius"), more, "."),
-        (("weight",), lambda w: f"-{w}", "the weight is not positive"),
-        (("weight",), lambda w: "0", "the weight is not positive"),
+        *((("weight",), lambda w, new=new: new, "the weight is not positive") for new in ("-10", "0")),
     ],
 )
 def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, change, message):

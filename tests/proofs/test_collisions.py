@@ -40,9 +40,6 @@ def digits():
         yield
 
 
-# at one instant
-
-
 @pytest.mark.parametrize(
     ("more", "gain", "holds"), [(1, collisions.C1, True), (2, collisions.C1, False), (1, 1, False)]
 )
@@ -57,9 +54,6 @@ def test_without_the_sign_of_the_other_pairs_nothing_follows(monkeypatch):
     monkeypatch.setattr(collisions, "STATE", unsigned)
     k = z3.Real("k")
     assert collisions.at_most(k, "x", budget=(k + 1) * collisions.C1 * collisions.C_STAR).holds is False
-
-
-# one pair after the other
 
 
 def test_the_crossings_of_the_erratum_are_enclosed():
@@ -162,9 +156,6 @@ def test_the_two_separate_into_their_difference_and_sum():
     assert [float(x) for x in (q, p, s, v)] == pytest.approx([7.0, 1100.0, -3.0, 100.0])
 
 
-# how large a flock below c* can be
-
-
 @pytest.mark.parametrize(("values", "sizes"), SETS.items(), ids=lambda value: "-".join(map(str, value)))
 def test_the_proved_sizes_are_the_numeric_ones(values, sizes):
     par, alpha = AlphaParameters(*values), AlphaInteraction(*map(float, values))
@@ -224,9 +215,6 @@ def test_the_energies_of_lattices_are_those_of_the_kernels():
     assert float(far_potential(par)) == pytest.approx(alpha.far_potential, rel=1e-14)
 
 
-# claims that name them
-
-
 def test_claims_name_these_proofs():
     case = scenario("three-agents-1d")
     run = simulate(case.law, case.q0, case.p0, (0.0, 0.03))
@@ -236,9 +224,6 @@ def test_claims_name_these_proofs():
     assert verify("E13", other).claim("printed").disproof is None
     names = {claim.name: claim.proof for claim in verify("os-3", run).claims}
     assert (names["iv-printed"], names["iv-instant"], names["iv-none"]) == (None, "collisions", "collisions")
-
-
-# the barrier of two coincident agents
 
 
 def test_the_induction_counts_what_the_library_counts(monkeypatch):

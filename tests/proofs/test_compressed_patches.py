@@ -34,9 +34,6 @@ def floats(matrix):
     return np.array([[float(x) for x in row] for row in matrix.tolist()])
 
 
-# Algorithm 1
-
-
 @pytest.mark.parametrize("rings", [1, 2, 3])
 def test_the_sites_in_whole_numbers_are_the_patch(rings):
     sites = unstressed_patches.patch(rings)
@@ -78,9 +75,6 @@ def test_a_range_that_reaches_second_neighbours_is_refused():
     z, edge = unstressed_patches.d_alpha(AlphaParameters()), AlphaParameters(h="0.77734")  # d_α/r_α = 0.7773401
     assert unstressed_patches.off_the_edges(z, edge)
     assert not unstressed_patches.off_the_edges(z + arb(0, "1e-4"), edge)
-
-
-# Algorithm 2
 
 
 def test_gradient_and_hessian_are_those_of_the_kernels(seven):
@@ -152,9 +146,6 @@ def test_pairs_at_the_edge_of_the_range_are_not_called_smooth(seven):
 def test_the_proof_is_of_the_default_law():
     assert AlphaInteraction() == LAW.alpha
     assert (LAW.gains.c1_alpha, LAW.gains.c1_gamma) == (30.0, 1.1)
-
-
-# Algorithm 1, strict minima that are no lattice
 
 
 def test_two_agents_on_a_corner_need_their_common_neighbours():

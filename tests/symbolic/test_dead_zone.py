@@ -26,12 +26,6 @@ def test_the_saturated_energy_falls_by_the_velocity_consensus_alone(m):
     assert dead.saturated_energy_identity(m).residuals == (0,)
 
 
-def test_at_eta_zero_the_force_is_the_plain_one():
-    # -(2k_r/rho^2 + k_delta) rho
-    near = dead.force().subs({dead.ETA: 0, dead.RHO: 2, dead.D_1: 3, dead.D_2: 5, dead.R: 7, dead.K_1: 0})
-    assert sp.simplify(near + (2 * dead.K_R / 4 + dead.K_DELTA) * 2) == 0
-
-
 @pytest.mark.parametrize("ramp", [0.0, 0.25])
 @pytest.mark.parametrize("eta", [0.0, 1.0])
 def test_the_kernel_computes_this_force(ramp, eta):

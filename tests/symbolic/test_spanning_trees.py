@@ -6,20 +6,7 @@ import sympy as sp
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import incidence, random_out_tree, receivers
-from flockana.symbolic.spanning_trees import (
-    MU,
-    RHO,
-    S,
-    edge_matrices,
-    frozen_eigenvalues,
-    incidence_matrix,
-    receiver_matrix,
-    separation_forms,
-    spacing_spectrum,
-    stacked_form,
-    symmetric_part,
-    tree_characteristic,
-)
+from flockana.symbolic import spanning_trees as trees
 from flockana.theorems.bearing_distance.tree_case import tree_case
 
 CHAIN, STAR, MIXED = ((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -28,18 +15,18 @@ CHAIN, STAR, MIXED = ((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1)
 @pytest.mark.parametrize("edges", [CHAIN, STAR, MIXED])
 def test_matrices_are_those_of_the_numeric_side(edges):
     n = len(edges) + 1
-    np.testing.assert_array_equal(np.array(incidence_matrix(edges), float), incidence(n, edges))
-    np.testing.assert_array_equal(np.array(receiver_matrix(edges), float), receivers(n, edges))
+    np.testing.assert_array_equal(np.array(trees.incidence_matrix(edges), float), incidence(n, edges))
+    np.testing.assert_array_equal(np.array(trees.receiver_matrix(edges), float), receivers(n, edges))
 
 
 @pytest.mark.parametrize("edges", [CHAIN, STAR, MIXED, ((0, 1), (1, 2), (2, 0)), ((0, 1), (1, 0))])
 def test_the_stacked_form_holds_on_any_graph(edges):
-    assert stacked_form(edges).holds
+    assert trees.stacked_form(edges).holds
 
 
 @pytest.mark.parametrize("edges", [CHAIN, MIXED, ((0, 1), (1, 2), (2, 0))])
 def test_two_signs_are_wrong_and_cancel(edges):
-    forms = separation_forms(edges)
+    forms = trees.separation_forms(edges)
     assert {name: form.holds for name, form in forms.items()} == {
         "28": False,
         "28-corrected": True,
@@ -51,29 +38,29 @@ def test_two_signs_are_wrong_and_cancel(edges):
 
 @pytest.mark.parametrize("edges", [CHAIN, STAR, MIXED])
 def test_the_determinant_factors_on_trees(edges):
-    found = tree_characteristic(edges)
+    found = trees.tree_characteristic(edges)
     assert found.holds
-    weights = {symbol: value for value, symbol in enumerate(sorted(found.result.free_symbols - {S}, key=str), 2)}
-    assert sp.degree(found.result.subs(weights), S) == 2 * len(edges)
+    weights = {symbol: value for value, symbol in enumerate(sorted(found.result.free_symbols - {trees.S}, key=str), 2)}
+    assert sp.degree(found.result.subs(weights), trees.S) == 2 * len(edges)
 
 
 def test_it_does_not_factor_off_trees():
     """An agent that perceives two others: (W^a is not I then, and the pencil not triangular)."""
-    assert not tree_characteristic(((0, 1), (0, 2), (1, 2))).holds
+    assert not trees.tree_characteristic(((0, 1), (0, 2), (1, 2))).holds
 
 
 def test_eigenvalues_at_half_once_and_twice_the_spacing():
-    half, once, twice = (frozen_eigenvalues(ratio) for ratio in (sp.Rational(1, 2), 1, 2))
+    half, once, twice = (trees.frozen_eigenvalues(ratio) for ratio in (sp.Rational(1, 2), 1, 2))
     assert sp.simplify(half[0] - (sp.sqrt(5) - 1) / 2) == 0
     assert once == (0, -1)
     assert [sp.re(value) for value in twice] == [-sp.Rational(1, 2)] * 2
     # stronger springs make it worse inside: s² + s − 6
-    assert frozen_eigenvalues(sp.Rational(1, 2), mu=6)[0] == 2
+    assert trees.frozen_eigenvalues(sp.Rational(1, 2), mu=6)[0] == 2
 
 
 @pytest.mark.parametrize("k", range(1, 8))
 def test_the_edge_laplacian_of_k_children(k):
-    found = symmetric_part(k)
+    found = trees.symmetric_part(k)
     assert found.holds
     edges = ((0, 1), *((1, 2 + c) for c in range(k)))
     loop = incidence(k + 2, edges).T @ receivers(k + 2, edges)
@@ -83,10 +70,10 @@ def test_the_edge_laplacian_of_k_children(k):
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_the_spectrum_at_the_spacing(m):
-    found = spacing_spectrum(m)
+    found = trees.spacing_spectrum(m)
     assert found.holds
-    assert RHO not in found.result.free_symbols
-    roots = sp.roots(found.result.subs(MU, 6), S)
+    assert trees.RHO not in found.result.free_symbols
+    roots = sp.roots(found.result.subs(trees.MU, 6), trees.S)
     assert roots.get(0, 0) == m - 1
     assert roots.get(-1, 0) == m - 1
 
@@ -101,7 +88,7 @@ def test_edge_matrices_are_those_of_the_law():
     J = law.jacobian(0.0, q, 0.0 * q)[8:]
     stiffness, damping = (-T @ J[:, part] @ np.linalg.pinv(T) for part in (slice(0, 8), slice(8, 16)))
     w = {f"w_{j}{i}": mu * (1.0 - rho / length) for (j, i), length in zip(CHAIN, lengths, strict=True)}
-    expected_s, expected_a = (np.array(matrix.subs(w), float) for matrix in edge_matrices(CHAIN))
+    expected_s, expected_a = (np.array(matrix.subs(w), float) for matrix in trees.edge_matrices(CHAIN))
     np.testing.assert_allclose(stiffness[1::2, 1::2], expected_s, atol=1e-12)
     np.testing.assert_allclose(damping[1::2, 1::2], expected_a, atol=1e-12)
 
@@ -111,6 +98,6 @@ def test_the_law_has_the_spectrum_that_sympy_derives():
     edges = random_out_tree(5, np.random.default_rng(2))
     case = tree_case(MinimalFlocking(edges=edges, spacing=1.4, mu=0.8), 5)
     A = case.edge_system(case.on_manifold(np.random.default_rng(0).uniform(-1.0, 1.0, (5, 2))))
-    per_edge = sp.lambdify(S, spacing_spectrum(2).result.subs(MU, 0.8))
+    per_edge = sp.lambdify(trees.S, trees.spacing_spectrum(2).result.subs(trees.MU, 0.8))
     for s in (1.0, 2.0 + 1.0j, -2.5j):
         assert np.linalg.det(s * np.eye(len(A)) - A) == pytest.approx(per_edge(s) ** 4, rel=1e-10)
