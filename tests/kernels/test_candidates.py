@@ -58,6 +58,9 @@ def test_neighbours_at_exactly_the_radius_count():
     q = np.stack(np.meshgrid(x, x), axis=-1).reshape(1, -1, 2)
     radii = np.full(400, 1.5), np.full(400, 3.0), np.full(400, REACH)
     np.testing.assert_allclose(populations(q, *radii), [[0.0, 0.0, 4.0 * 19.0 / 20.0]], rtol=1e-13)
+    for distance, zone in ((1.5, 0), (3.0, 1), (REACH, 2)):
+        pair = np.array([[[0.0, 0.0], [distance, 0.0]]])
+        assert populations(pair, *(radius[:2] for radius in radii)).tolist() == [np.eye(3)[zone].tolist()]
     assert fragments(q, radii[2]).tolist() == [[1, 400]]
     assert fragments(q, radii[2] * (1.0 - 1e-12)).tolist() == [[400, 1]]
 
