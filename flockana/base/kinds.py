@@ -45,7 +45,9 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Decorate a function so that it refuses, by name, an argument of another class than its annotation."""
     # Annotations are read as text, so that no library is imported for a check. Items of a sequence are checked too.
     called = inspect.signature(function)
-    texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
+    if any(not isinstance(p.annotation, str) for p in called.parameters.values()):
+        raise TypeError(f"{function.__module__}: expected annotations as text, from __future__ import annotations")
+    texts = {name: p.annotation.strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
     items = {name: texts[name].partition("[")[2].rstrip("]").rpartition(".")[2] for name in kinds}

@@ -1,5 +1,7 @@
 """Metrics of one instant of a flock: the quantities of Olfati-Saber (2006)."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -49,3 +49,11 @@ def test_an_array_is_a_sequence_and_a_set_is_none():
     assert length(np.geomspace(1e-3, 0.3, 7)) == length([1.0] * 7) == 7
     with pytest.raises(ArgumentError, match=r"amplitudes = \{1.0\}: expected a sequence"):
         length({1.0})
+
+
+def test_annotations_that_are_no_text_are_refused_where_a_function_is_made():
+    def drawn(run: int) -> None: ...
+
+    drawn.__annotations__["run"] = int
+    with pytest.raises(TypeError, match="expected annotations as text"):
+        check_kinds(drawn)
