@@ -4,6 +4,7 @@ import copy
 import json
 from collections.abc import Iterator
 from fractions import Fraction
+from math import ceil, floor
 from pathlib import Path
 
 import numpy as np
@@ -220,10 +221,34 @@ def test_a_matrix_less_a_shift_is_positive_definite_to_its_last_minor(corner, ho
         rows = [[arb(3), arb(sign)], [arb(sign), arb(corner)]]
         assert positive(rows, arb(1)) is holds
     assert not positive([[arb(3), arb(1)], [arb(1), arb(corner) + arb(0, 0.02)]], arb(1))
+    assert [positive([[arb(x)]]) for x in (-0.5, 0.0, 0.5)] == [False, False, True]
 
 
 def pair_data():
     return json.loads(json.dumps(basin_certificate(basin_of("pair", 1))))
+
+
+@pytest.mark.parametrize(
+    ("name", "factor", "term"), [("theta", 0.9, 0), ("kappa", 1.1, 1), ("kappa", 0.9, 2), ("eps", 1.02, 2)]
+)
+def test_the_rate_is_the_least_of_three(name, factor, term):
+    """The best F has them alike; of others one is smaller, and the certificate holds with the rate that it leaves."""
+    data = with_value(small(), ("lyapunov", name), value(small()["lyapunov"][name]) * Fraction(factor))
+    eps, theta, kappa, tau = (value(data["lyapunov"][key]) for key in ("eps", "theta", "kappa", "tau"))
+    names = ("curvature", "surplus", "second_eigenvalue", "degree")
+    curvature, surplus, second, degree = (value(data[key]) for key in names)
+    c2, mean = value(data["law"]["c2_alpha"]), theta * surplus + (1 - theta) * curvature
+    pull = theta * curvature + 2 * mean - 2 * kappa * c2 * degree
+    drag = (1 - eps / (2 * kappa)) * c2 * second - eps
+    terms = [eps * theta, eps * pull / (curvature + eps * tau), 2 * drag / (1 + eps / tau)]
+    assert terms.index(min(terms)) == term
+    share = float(eps) / float(curvature) ** 0.5
+    rate = Fraction(floor(min(terms) / 2 / (step := unit(min(terms) / 2, 3)))) * step
+    beyond = unit(value(data["overshoot"]), 3)
+    more = Fraction(ceil(Fraction((1 + share) / (1 - share)) / beyond)) * beyond
+    fitted = with_value(with_value(data, ("rate",), rate), ("overshoot",), more)
+    assert not rejected(resealed(fitted))
+    assert rejected(resealed(with_value(fitted, ("rate",), rate + step)))
 
 
 def test_a_law_that_damps_nothing_proves_no_rate():

@@ -208,6 +208,7 @@ def test_extreme_bumps_still_work():
 
 
 def test_a_force_without_a_limit_excludes_coincidence():
+    assert [fl.AlphaInteraction().coincidence, fl.DeadZoneInteraction().coincidence] == [True, False]
     for formula in ("1/s", "log(s)", "exp(-s)"):
         assert not fl.pair_law(formula, adjacency="1-s/r", range=5.0, length=4.0).coincidence
 
