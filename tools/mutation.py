@@ -242,11 +242,12 @@ def main(given: Sequence[str] | None = None) -> int:
         files = sorted(str(path.relative_to(PROJECT)) for path in (PROJECT / "flockana" / package).rglob("*.py"))
         counts[package], some = draw([path for path in files if options.file in path], options.sample, options.salt)
         drawn += some
-    reviewed = {(one["path"], one["before"], one["after"]) for one in tomllib.loads(REVIEWED.read_text())["mutant"]}
+    known = tomllib.loads(REVIEWED.read_text())["mutant"]
+    reviewed = {(one["path"], *(" ".join(one[key].split()) for key in ("before", "after"))) for one in known}
     kept = options.out / "results.json"
     options.out.mkdir(parents=True, exist_ok=True)
     outcomes = json.loads(kept.read_text()) if kept.exists() else {}
-    same = [one["key"] for one in drawn if (one["path"], one["before"], " ".join(one["after"].split())) in reviewed]
+    same = [one["key"] for one in drawn if (one["path"], one["before"], one["after"]) in reviewed]
     outcomes |= dict.fromkeys(same, "equivalent")
     done = ("killed", "incompetent", "equivalent", *(() if options.again else ("survived",)))
     left = [one for one in drawn if outcomes.get(one["key"]) not in done]
