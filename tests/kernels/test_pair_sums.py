@@ -85,7 +85,7 @@ def test_an_agent_at_no_number_is_near_nobody_and_breaks_nothing():
     st.integers(1, 3),
     st.integers(1, 60),
     st.floats(0.5, 12.0),
-    st.sampled_from([0.0, 1e4, -1e300]),
+    st.sampled_from([0.0, 1e4, -1e150]),
     st.integers(0, 10**6),
 )
 def test_each_two_agents_within_range_are_in_adjacent_cells_once(m, n, spread, far, seed):
