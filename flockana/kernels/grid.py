@@ -8,6 +8,7 @@ from flockana.jit import inlined, kernel
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most
+_ROUNDINGS = 2.0**-49  # eight of the largest coordinate: two agents, each closed up in rounds that shrink by a quarter
 
 
 @inlined
@@ -59,15 +60,17 @@ def sort_into_grid(q, side):
     than agents, gaps are closed up; if that does not do, cells are strips across the longest side.
     """
     (n, m), most, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
-    low, across, strides, total = np.empty(m), np.empty(m), np.zeros(m, np.int64), np.inf
+    low, across, strides, total, farthest = np.empty(m), np.empty(m), np.zeros(m, np.int64), np.inf, 0.0
     for attempt in range(2):
         if total <= most:
             break
         if attempt == 1:
+            width += _ROUNDINGS * farthest  # or what is closed up might round two apart by more than the margin
             x = _closed_up(q, width, most)
         total = 1.0
         for k in range(m):
             low[k], high = _ends(x, k)
+            farthest = max(farthest, max(abs(low[k]), abs(high)))
             across[k] = np.floor((high - low[k]) / width) + 3.0
             strides[k] = np.int64(total) if total <= most else 0
             total *= across[k]

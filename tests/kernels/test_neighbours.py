@@ -105,6 +105,16 @@ def test_rounding_of_huge_coordinates_skips_no_pair():
     assert misses == 0
 
 
+@pytest.mark.parametrize("far", [-1.5 * 2.0**43, 1.5 * 2.0**43])
+def test_an_agent_far_away_takes_no_pair_from_a_flock_whose_coordinates_are_finer(far):
+    """Partners just within range, 1.5·2⁴³ from an agent beside which their places are known to 0.002 only."""
+    rng, r = np.random.default_rng(5), 4300.5 * 2.0**-9
+    for _ in range(60):
+        x = rng.uniform(0.0, 1e6, 3000)
+        q = np.concatenate([x, x + r * (1.0 - 1e-9), [far]])[:, None]
+        np.testing.assert_array_equal(search(q, r, dense=False), search(q, r, dense=True))
+
+
 def test_infinite_range_gives_all_pairs():
     q = np.random.default_rng(0).normal(0.0, 1e5, (DENSE_MAX + 3, 2))
     assert search(q, np.inf).size == len(q) * (len(q) - 1) // 2
