@@ -1,0 +1,91 @@
+"""Strongly connected components of a net: agents that hear each other, directly or through others.
+
+Ordered so that each component hears earlier ones only, the matrices of a linear flock are block triangular: its poles
+are those of its components, each taken by itself. A chain of n equal followers has one pole n times, in a Jordan block
+that moves by (rounding)^(1/n) where the whole matrix is given to LAPACK, and by rounding where its blocks are.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from graphlib import TopologicalSorter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+IndexArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class StrongComponents:
+    """Indices of each strongly connected component, those that are heard before those that hear them.
+
+    Parameters
+    ----------
+    indices : tuple of int array
+        Rows of each component, rising.
+    heard : tuple of set of int
+        Numbers of the earlier components that each hears directly.
+    """
+
+    indices: tuple[IndexArray, ...]
+    heard: tuple[frozenset[int], ...]
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    def upstream(self, k: int) -> IndexArray:
+        """Return the rows of all components that component k hears, directly or through others, in order."""
+        return self._rows(self._all_heard[k])
+
+    def downstream(self, k: int) -> IndexArray:
+        """Return the rows of all components that hear component k, directly or through others, in order."""
+        return self._rows(j for j, sources in enumerate(self._all_heard) if k in sources)
+
+    def _rows(self, numbers: Any) -> IndexArray:
+        parts = [self.indices[j] for j in sorted(numbers)]
+        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.int64)
+
+    @cached_property
+    def _all_heard(self) -> tuple[frozenset[int], ...]:
+        found: list[frozenset[int]] = []
+        for direct in self.heard:
+            found.append(direct.union(*(found[j] for j in direct)))
+        return tuple(found)
+
+
+def strong_components(*matrices: Any) -> StrongComponents:
+    """Return the strongly connected components of square matrices taken together.
+
+    Entry (i, j) says what i hears from j; only an exact zero is none.
+
+    Parameters
+    ----------
+    matrices : array_like or sparse array, shape (N, N)
+        Such as K and D.
+
+    Examples
+    --------
+    Agent 1 hears agent 0; agents 2 and 3 hear each other, and agent 1:
+
+    >>> net = strong_components([[0, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 1, 0]])
+    >>> [rows.tolist() for rows in net.indices], net.downstream(0).tolist()
+    ([[0], [1], [2, 3]], [1, 2, 3])
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    links = sum((abs(csr_array(matrix)) for matrix in matrices[1:]), abs(csr_array(matrices[0]))).tocoo()
+    links.eliminate_zeros()
+    count, label = connected_components(links, directed=True, connection="strong")
+    heard: dict[int, set[int]] = {k: set() for k in range(count)}
+    for k, source in np.unique(np.stack([label[index] for index in links.coords]), axis=1).T.tolist():
+        if k != source:
+            heard[k].add(source)
+    order = list(TopologicalSorter(heard).static_order())
+    place = {k: number for number, k in enumerate(order)}
+    rows, ends = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label, minlength=count))[:-1]
+    members = np.split(rows, ends)
+    return StrongComponents(
+        tuple(members[k] for k in order), tuple(frozenset(place[j] for j in heard[k]) for k in order)
+    )
