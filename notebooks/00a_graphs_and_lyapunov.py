@@ -209,8 +209,9 @@ slider(with_range, np.arange(1.0, 8.1, 0.5), name="r", title="the net of twelve 
 # 2. $W$ is continuous at $x^*$, so a smaller ball has $W - W(x^*) < e$ throughout.
 # 3. A solution from there has $W - W(x^*) < e$ at all later times, because $\dot W \le 0$. To leave the first ball
 #    it would have to cross the sphere, where $W - W(x^*) \ge e$. So it never does. That is stability.
-# 4. For convergence, $W$ falls along the solution and is bounded below, so it has a limit. If $\dot W < 0$ off
-#    $x^*$, the theorem of LaSalle below, applied to the closed ball, leaves $x^*$ as the only limit. $\square$
+# 4. For convergence, take $\Omega$, the states of the closed first ball with $W \le W(x(0))$. It is compact, and
+#    solutions that start in it stay in it: they stay in the ball by 3, and $W$ does not rise. If $\dot W < 0$ off
+#    $x^*$, the theorem of LaSalle below, applied to $\Omega$, leaves $x^*$ as the only limit. $\square$
 #
 # ## LaSalle
 #

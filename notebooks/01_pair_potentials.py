@@ -271,6 +271,12 @@ assert f"{float(alpha.phi_alpha(at)):.4f} {pair_force[0]:.3f} {pair_force[1]:.2f
 assert f"{-pair_force[1] / pair_force[0]:.0f}" == "27"
 assert f"{2.0 * np.sqrt(alpha.c_star - alpha.psi_alpha(alpha.r_alpha)):.1f}" == "14.4"
 assert abs(alpha.sigma_norm(4.3474) - 7.0) < 1e-4
+in_centimetres = fl.AlphaInteraction(d=700.0, r=840.0, eps=0.1e-4, h=0.2, a=5.0, b=5.0)
+ratios = [
+    float(in_centimetres.phi_alpha(in_centimetres.sigma_norm(100.0 * x)) / alpha.phi_alpha(alpha.sigma_norm(x))) * 100.0
+    for x in (3.0, 6.9, 8.0)
+]
+assert [f"{ratio:.1f}" for ratio in ratios] == ["100.5", "361.5", "105.7"]
 
 # %% [markdown]
 # ## Digits that disappear
@@ -302,9 +308,13 @@ print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {a
 # | $a$, $b$ | strongest pull and push | – | all energies and stiffnesses grow in proportion |
 #
 # The last line is exact for $a = b$: then $c = 0$ and $\phi(z) = a\,\sigma_1(z)$, so $\phi_\alpha$, $\psi_\alpha$
-# and $c^*$ are all proportional to $a$ (exercise 6). The unit of $\varepsilon$ is one over a length squared. Whoever
-# changes from metres to centimetres must divide it by $10^4$, or gets another law; that mistake has been made in
-# print.
+# and $c^*$ are all proportional to $a$ (exercise 6).
+#
+# **Units.** $\varepsilon$ is one over a length squared. To go from metres to centimetres one would multiply $d$ and $r$
+# by 100 and divide $\varepsilon$ by $10^4$. All σ-norms are then $10^4$ times as large, but the 1 under the root of
+# $\sigma_1(z) = z/\sqrt{1+z^2}$ stays 1: it has a unit, too, and no parameter to carry it. So this is still another
+# law. Were it the same, all forces would be 100 times as large; they are 100.5, 361.5 and 105.7 times as large at 3,
+# 6.9 and 8 m. The law as printed is tied to its unit of length.
 #
 # ## A collision in slow motion
 #

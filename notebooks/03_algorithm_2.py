@@ -106,11 +106,11 @@ _ = figures.target_pull(ax=ax)
 # &= -c_2^\gamma\sum\|v_i\|^2 - c_2^\alpha\,v^\top\hat Lv \le 0 . && \text{the gradient cancels}
 # \end{aligned}$$
 #
-# > **Theorem 3** (Olfati-Saber 2006). Apply Algorithm 2 with $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and
-# > $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every solution converges to an
-# > equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii) all agents
-# > asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with
-# > $c^* = c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
+# > **Theorem 3** (Olfati-Saber 2006, as lecture slides on it print it). Apply Algorithm 2 with
+# > $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every
+# > solution converges to an equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii)
+# > all agents asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with $c^* =
+# > c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
 #
 # *Proof of (i).* All terms of $H_\lambda$ are non-negative, and one agent at the distance $\|x_i\|$ from the centre
 # has $\lambda J \ge \tfrac\lambda2\|x_i\|^2$. So
@@ -152,10 +152,20 @@ _ = figures.target_pull(ax=ax)
 # What is the use of such a pole? Take one coordinate, $\ddot{\tilde x} + 2\dot{\tilde x} - 3\tilde x = 0$, with the
 # poles 1 and $-3$. All solutions are sums of multiples of $e^t$ and $e^{-3t}$, and only those without $e^t$ converge
 # to 0. They start on the line $\dot{\tilde x} = -3\tilde x$ of the plane of states, and a start drawn at random is not
-# on a line. In more dimensions, and for the nonlinear law, the line becomes a curved surface, the *stable manifold* of
-# the saddle. Its dimension is lower than that of the space of states, so its measure is 0. That excludes saddles whose
-# other eigenvalues are not 0. What it does not exclude are critical points with further zero curvatures, and
-# convergence to a *set* of critical points instead of to one; the paper's "almost every" passes over both. $\square$
+# on a line. For the nonlinear law the line becomes a curved surface. Two gaps must be closed, for in the plane *every*
+# critical point has a pole 0 besides: turned about the γ-agent, it is a critical point again.
+#
+# 1. *Poles 0.* The *centre-stable manifold theorem* holds with them. Each critical point with a pole $s > 0$ has a
+#    neighbourhood $B$ in which the starts whose solutions never leave $B$ lie on a surface of a dimension lower than
+#    that of the space of states: its measure is 0.
+# 2. *A continuum of critical points.* Countably many such neighbourhoods cover all these critical points. A solution
+#    that converges to one of them is from some whole time $k$ on in one neighbourhood for ever, so its start is among
+#    countably many sets of measure 0, each carried back by $k$, and a smooth flow carries measure 0 to measure 0.
+# 3. *Convergence to one point.* That solutions converge to one critical point, and not only to the set of them, follows
+#    from Łojasiewicz's inequality, because $\phi_\alpha$ is analytic in pieces (`proofs/convergence.py`).
+#
+# So from almost every start the shape converges to one critical point without a negative curvature. Whether it is a
+# strict minimum, up to motions, must be asked of the point: further curvatures may be 0. $\square$
 #
 # *Proof of (iv), as far as it is true.* Let $k+1$ pairs coincide *at one time*. Each costs
 # $c_1^\alpha\psi_\alpha(0) = c^*$, and all other terms are non-negative, so $H_\lambda \ge (k+1)c^* > H_\lambda(0)$,

@@ -361,8 +361,9 @@ lattice_rate = (brief.energy()[-1] - brief.energy()[0]) / 1e-3
 assert abs(lattice_rate - 370.0) < 1.0
 
 # %% [markdown]
-# Khatib's potential fields of 1986 have the same disease, and it is a theorem that every smooth potential with
-# obstacles has saddles: one for each obstacle at least, if it is a disc in the plane.
+# Khatib's potential fields of 1986 have the same disease, and it is a theorem: among smooth potentials whose critical
+# points are all nondegenerate (Morse functions), that grow towards the rim and rise towards each obstacle, those with
+# one minimum have a saddle for each obstacle at least, if it is a disc in the plane.
 #
 # What can be done about traps? Three answers are in use, and each gives something up.
 #
@@ -396,7 +397,9 @@ _ = plots.energy(run, ax=ax)
 #
 # *What if two points of an obstacle are equally near, as in a corner of the U?* Then a single β-agent would jump from
 # one to the other, and the force with it. The U here is made of three bars, each convex and with a β-agent of its own.
-# To a convex set the nearest point is unique and moves continuously.
+# To a convex set the nearest point is unique and moves continuously, so the push is continuous. The *velocity* of the
+# β-agent is not: where the flat side of a bar meets its round end it jumps, and the braking with it. Outside spheres
+# and walls the law is Lipschitz; outside bars it is not, and theorems that ask for that do not apply as they stand.
 #
 # *Why is the pull bounded here, when lecture 03 made use of its growth?* Because of the walls. A spring to a target
 # that is 1000 away pulls with $1000\,c_1^\gamma$, and no wall of finite height withstands that. $V_\gamma$ still grows
@@ -564,9 +567,9 @@ most_groups = max(len(set(fl.components(run.n, fl.links(q, 8.4)))) for q in run.
 grade(most_groups, 3, hint="look about t = 20")
 
 # %% [markdown] tags=["exercise"]
-# **9.** ★★★ (3 points, proof) Let $p_d = 0$, and let every agent stay outside the obstacles. Prove that every
-# solution of Algorithm 3 approaches states at rest at which $\nabla(V_\alpha + V_\beta + V_\gamma) = 0$. Where do
-# you use $c_2^\gamma > 0$, and where that $V_\gamma$ grows without bound?
+# **9.** ★★★ (3 points, proof) Let $p_d = 0$, and let every obstacle be a sphere or a wall, and let every agent stay
+# outside. Prove that every solution of Algorithm 3 approaches states at rest at which $\nabla(V_\alpha + V_\beta +
+# V_\gamma) = 0$. Where do you use $c_2^\gamma > 0$, and where that $V_\gamma$ grows without bound?
 
 # %% [markdown] tags=["answer"]
 # *Your answer:*
@@ -575,7 +578,8 @@ grade(most_groups, 3, hint="look about t = 20")
 # By Theorem 6 $\dot H \le -2c_2^\gamma T \le 0$. The set $\{H \le H(0)\}$ is closed and positively invariant. All
 # potentials are non-negative, so $T \le H(0)$ bounds the velocities, and $V_\gamma \le H(0)$ bounds the distances
 # from $q_d$, because $\sqrt{1+\|q_i-q_d\|^2}$ grows without bound. So the set is compact. The law has no explicit
-# time, as the γ-agent is static, and is Lipschitz outside the obstacles, so LaSalle's theorem applies: the solution
+# time, as the γ-agent is static, and outside spheres and walls it is Lipschitz (outside bars it is not, see the
+# questions: there the theorem as stated does not apply). So LaSalle's theorem applies: the solution
 # approaches an invariant set with $\dot H = 0$, hence with $T = 0$, because $c_2^\gamma > 0$. There $p = 0$ at all
 # times, so $\dot p = 0$, and with $p = \hat p = 0$ the law leaves $\nabla(V_\alpha+V_\beta+V_\gamma) = 0$.
 #

@@ -324,7 +324,8 @@ for share in (0.95, 1.05):
 #   d'\langle\tilde x\tilde v\rangle && \langle\tilde x^2\rangle = g^2/(2d'\omega'^2)
 # \end{aligned}$$
 #
-# The square root of the trace of $\Sigma$, for $g = 1$, is the *$H_2$ norm* from the forces to the shape.
+# The square root of the trace of the block $\langle\tilde x\tilde x^T\rangle$ of $\Sigma$, for $g = 1$, is the
+# *$H_2$ norm* from the forces to the shape. The other diagonal block counts the velocities, and is not part of it.
 #
 # One caution: the zero mode. Nothing brings the orientation back, so noise turns the flock like a random walk and its
 # variance grows for ever. Lengths of links do not see this. So let the model predict how much each of the 42 links

@@ -37,8 +37,8 @@
 # A theorem is a contract. Its hypotheses are what *you* deliver, its conclusion is what you get, and its proof is the
 # only place that shows which hypothesis pays for which conclusion. Take the contract of the scene.
 #
-# > **Theorem 1(iii)** (Olfati-Saber 2006). Let agents obey Algorithm 1 with gains 1, and let
-# > $H(0) < c^* = \psi_\alpha(0)$. Then no two agents ever collide.
+# > **Theorem 1(iii)** (Olfati-Saber 2006, as lecture slides on it print it). Let agents obey Algorithm 1 with gains 1,
+# > and let $H(0) < c^* = \psi_\alpha(0)$. Then no two agents ever collide.
 #
 # *Proof.*
 #
@@ -130,9 +130,9 @@ for n, found in barriers.items():
     print(f"; allowed above rest: {alpha.c_star - found.lowest:.2f} by c*, {found.height:.2f} by the barrier")
 
 # %% [markdown]
-# The last column hardly falls: the start may always have some fifty units of energy above rest. With $c^*$ the
-# allowance shrinks with every agent, and ends below 0. The minimum is searched from a few starts, so it is an upper
-# bound of the barrier; a certificate needs the true one. `os-1` checks both forms on a run:
+# The last column hardly falls: for these $n$, up to 8, the start may have some fifty units of energy above rest. With
+# $c^*$ the allowance shrinks with every agent, and ends below 0. The minimum is searched from a few starts, so it is an
+# upper bound of the barrier; a certificate needs the true one. `os-1` checks both forms on a run:
 
 # %%
 hexagon = fl.scenario("hexagon").run()
@@ -350,9 +350,9 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
 # look, and no run did.
 #
 # What does this lecture **not** say? That agents of a flock of 23 collide: the theorem claims nothing about them, and
-# nothing is not "no". That Algorithm 1 is bad: the mended bound covers starts with some fifty units of energy above
-# rest. And how often a flock ends in a lattice: one minimum that is none says nothing about shares, and a share has to
-# be counted, over starts of a stated kind (lecture 10).
+# nothing is not "no". That Algorithm 1 is bad: up to eight agents, where it was computed, the mended bound covers
+# starts with some fifty units of energy above rest. And how often a flock ends in a lattice: one minimum that is none
+# says nothing about shares, and a share has to be counted, over starts of a stated kind (lecture 10).
 #
 # Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
 # be wrong.

@@ -93,7 +93,7 @@ _ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60)))
 # 0.0239$, too little; the end is 0.284. So 4 of 5 says "between 28 % and 99.5 %", which is nearly nothing, and it is
 # honest. If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
 #
-# **And the formula from school?** The share $\hat p = k/N$ plus and minus $1.96\sqrt{\hat p(1-\hat p)/N}$ is in every
+# **And Wald's formula?** The share $\hat p = k/N$ plus and minus $1.96\sqrt{\hat p(1-\hat p)/N}$ is in every
 # textbook. Put $k = N$ into it: the root is 0, and the interval is the single point 1, for one run as for a million. It
 # rests on a normal approximation that fails exactly where engineers work, near 1. How badly, can be computed without
 # any simulation: for a given $p$ add up the probabilities of all $k$ whose interval contains $p$.
@@ -107,7 +107,7 @@ k = np.arange(N + 1)
 half = 1.96 * np.sqrt(k / N * (1.0 - k / N) / N)
 kinds = {
     "Clopper and Pearson": np.array([tuple(map(float, fl.clopper_pearson(each, N))) for each in k]),
-    "from school": np.column_stack([k / N - half, k / N + half]),
+    "Wald": np.column_stack([k / N - half, k / N + half]),
 }
 chances = np.linspace(0.005, 0.995, 397)
 covered = {
@@ -123,17 +123,17 @@ _ = ax.legend(loc="lower center")
 
 # %% [markdown]
 # **Figure 10.2.** How often an interval of 20 runs contains the truth. That of Clopper and Pearson never does so in
-# less than 95 % of all cases, as the theorem says (and mostly in more: it is cautious). The one from school falls to
+# less than 95 % of all cases, as the theorem says (and mostly in more: it is cautious). Wald's falls to
 # a tenth near 0 and 1.
 #
 # **Several claims at once.** A table with five claims has five intervals. Each is wrong with a probability of at most
 # 5 %; that *some* is wrong may then have up to 25 %. For the table as a whole to be right with 95 %, give each interval
 # $5/5 = 1\,\%$: the probability of a union is at most the sum of the probabilities, whether the claims depend on each
-# other or not. A student who looks at forty measures and reports the two that came out "significant" has found what
-# forty fair coins would give.
+# other or not. A student who looks at forty measures and reports the two that came out "significant" at 5 % has found
+# what forty tests of nothing give on average.
 #
 # **How many runs do I need?** Decide how wide the interval may be, and solve for $N$. In the middle, where successes
-# and failures are both frequent, the formula from school will do for planning; where all runs succeed, the end has a
+# and failures are both frequent, Wald's formula will do for planning; where all runs succeed, the end has a
 # closed form:
 #
 # $$\begin{aligned}
@@ -168,7 +168,7 @@ assert abs(float(fl.clopper_pearson(60, 60)[0]) - 0.025 ** (1 / 60)) < 1e-9
 assert [f"{float(end):.3f}" for end in fl.clopper_pearson(4, 5)] == ["0.284", "0.995"]
 assert [round(5 * x**4 * (1 - x) + x**5, 4) for x in (0.3, 0.28)] == [0.0308, 0.0238]
 assert covered["Clopper and Pearson"].min() >= 0.95
-assert covered["from school"].min() < 0.12
+assert covered["Wald"].min() < 0.12
 assert [round(x**10, 3) for x in (0.9, 0.7, 0.6, 0.75)] == [0.349, 0.028, 0.006, 0.056]
 
 # %% [markdown]
@@ -181,12 +181,13 @@ assert [round(x**10, 3) for x in (0.9, 0.7, 0.6, 0.75)] == [0.349, 0.028, 0.006,
 printed = fl.ensemble("zone-51-printed", range(60))
 mended = fl.ensemble("zone-51", range(60))
 figure, axes = plots.subplots(1, 2, size=(12, 3.4))
-plots.share_bars(fl.shares(printed), ax=axes[0], title="as printed")
-_ = plots.share_bars(fl.shares(mended), ax=axes[1], title="as recommended")
+plots.share_bars(fl.shares(printed, level=0.99), ax=axes[0], title="as printed")
+_ = plots.share_bars(fl.shares(mended, level=0.99), ax=axes[1], title="as recommended")
 
 # %% [markdown]
 # **Figure 10.3.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
-# intervals. As printed one of five holds; with the recommended gains nearly all.
+# intervals at 99 % each, so at 95 % for all five at once. As printed one of five holds; with the recommended gains
+# nearly all.
 #
 # The result is an `xarray.Dataset`, so everything else is a question to it: how close did they come?
 
@@ -208,7 +209,8 @@ _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 
 # %% [markdown]
 # **Figure 10.4.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is
-# divided in their shares.
+# divided in their shares. Three seeds a cell show where to look and prove nothing about a share: 3 of 3 says "more than
+# 29 %" with the interval above.
 #
 # Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
 # arrives. Kill it at any moment and call it again: only what is missing is computed. `executor=` takes any

@@ -20,7 +20,7 @@
 #
 # At a conference six speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
 # and a theorem. In the coffee break somebody asks: "If I give all of you the *same* ten drones, at the same places,
-# with the same velocities, what does each of you promise me?" Silence; then six different answers, two of which are
+# with the same velocities, what does each of you promise me?" Silence; then six different answers, some of which are
 # "nothing". **What do the classics promise about one and the same start, and which hypothesis decides?**
 #
 # ## Two ideas, and two agents
@@ -152,7 +152,8 @@ for outcome in outcomes:
 # start of Figure 12.1.
 #
 # *Ha and Liu.* Their weight is $4/(1 + x^2/r^2)$ with $r = 8.4$, divided by $n$. With the sizes of lecture 11 the start
-# has $y = 26.0$ in space and $z = 1.12$ in velocities, and the theorem asks for
+# has $y = 26.0$ in space and $z = 1.12$ in velocities. No distance exceeds $2y$, and with this plain bound (lecture 11
+# proved the sharper $\sqrt2\,y$ for its own theorem) the published one asks for
 #
 # $$z < \int_y^\infty\frac{4\,dx}{1 + (2x/r)^2} = 2r\Bigl(\frac{\pi}{2} - \arctan\frac{2y}{r}\Bigr) = 2.69 .$$
 #

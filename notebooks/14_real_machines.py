@@ -72,10 +72,10 @@
 #
 # A single agent bears any saturation; it only takes longer, and overshoots. And the flock? Its proofs used that pair
 # forces cancel in the sum and that the force is a gradient. Cut off at a limit, neither is true. *By hand:* three
-# agents on a line, A left of B and C, which sit close together. B and C push A with 4 each, so A is asked for $-8$, B
-# and C for $+4$ each, and the sum is 0. With the limit 5, A gets $-5$, B and C get $+4$, and the sum is $+3$. The
-# centre accelerates, and nobody outside has pushed. An agent that is pushed by several neighbours is cut off, each of
-# the neighbours is not, so action is no longer reaction.
+# agents on a line, A left of B and C, which are in one place, where the force between them is 0 (lecture 01). B and C
+# push A with 4 each, so A is asked for $-8$, B and C for $+4$ each, and the sum is 0. With the limit 5, A gets $-5$, B
+# and C get $+4$, and the sum is $+3$. The centre accelerates, and nobody outside has pushed. An agent that is pushed by
+# several neighbours is cut off, each of the neighbours is not, so action is no longer reaction.
 
 # %%
 import numpy as np
@@ -349,10 +349,12 @@ assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
 # | delay | yes | of an old state | no: it may pump | linear stability up to $\tau^*$ |
 # | noise | yes | yes | on average only | variances near rest |
 #
-# Sampling and delay keep momentum: what one agent gets the other loses, late or held. So the centre of a flock under
-# Algorithm 1 still moves at constant velocity, exactly. It is the energy that goes. But read the small print: this
-# holds if *everything* is late, an agent's own state too. If an agent knows itself at once and only its neighbours
-# late, the two forces of a pair belong to different instants, they are not opposite, and the centre is pushed:
+# Sampling by one common clock and one common delay keep momentum: what one agent gets the other loses, late or held. So
+# the centre of a flock under Algorithm 1 still moves at constant velocity, exactly. It is the energy that goes. But
+# read the small print. Agents that sample at different instants (`offsets=`) do not push each other equally. And a
+# delay keeps momentum only if *everything* is late, an agent's own state too. If an agent knows itself at once and only
+# its neighbours late, the two forces of a pair belong to different instants, they are not opposite, and the centre is
+# pushed:
 
 # %%
 shaking = np.random.default_rng(0).normal(0.0, 0.5, start.shape)

@@ -40,7 +40,7 @@
 #
 # A *constant* ratio is a wrong factor: some gain explains it exactly. A ratio that *changes* with the distance is a
 # wrong form: no gain does. Look at the fourth column, though. Between 6 and 8 the unit vector's ratio changes by 5 %
-# only, because $n_{ij}$ is nearly a vector of constant length out there (lecture 00). So this wrong form is nearly a
+# only, because $n_{ij}$ is nearly a vector of constant length out there (lecture 01). So this wrong form is nearly a
 # wrong factor, and will hide behind a gain of about a third. Remember that when we meet it again.
 #
 # ## The program

@@ -122,7 +122,8 @@ def references(lecture: Lecture) -> str:
 def notation_page(folder: Path) -> str:
     """Return all symbols of the course, in Markdown."""
     rows = "\n".join(_rows(notation(folder), "all"))
-    return f"# Notation\n\nA symbol means the same in all lectures.\n\n{rows}\n"
+    meaning = "Most symbols mean the same in all lectures; where one means something else, its row says in which."
+    return f"# Notation\n\n{meaning}\n\n{rows}\n"
 
 
 def map_page(folder: Path) -> str:
