@@ -8,13 +8,12 @@ fields, set by the function that computes it (`sealed`). Whatever rests on such 
 
 import hashlib
 import json
-import marshal
 from collections.abc import Collection, Mapping, Set
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from functools import cached_property, partial
 from numbers import Number
-from types import CodeType, FunctionType, MethodType
+from types import FunctionType, MappingProxyType, MethodType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -52,13 +51,24 @@ def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = No
     return rest
 
 
-def checksum(value: Any) -> str:
-    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their code."""
+def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their name.
+
+    `modules` names, by class, modules that count as part of a class's name, as in seals of older files.
+    """
     # Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
     # field that takes no part in comparisons counts for nothing.
     total = hashlib.sha256()
-    _feed(total, value, ())
+    _feed(total, value, (), modules)
     return total.hexdigest()
+
+
+def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the name by which digests and files know a class or function: one of flockana's by no module."""
+    module, name = item.__module__, item.__qualname__
+    if module.partition(".")[0] == "flockana":
+        module = modules.get(name, "flockana")
+    return f"{module}:{name}"
 
 
 def sealed(evidence: _Evidence) -> _Evidence:
@@ -67,9 +77,9 @@ def sealed(evidence: _Evidence) -> _Evidence:
     return evidence
 
 
-def seal_of(evidence: Any) -> dict[str, str]:
+def seal_of(evidence: Any, modules: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
     """Return the checksum of all fields of a dataclass."""
-    return {field.name: checksum(getattr(evidence, field.name)) for field in fields(evidence)}
+    return {field.name: checksum(getattr(evidence, field.name), modules) for field in fields(evidence)}
 
 
 def is_sealed(evidence: Any) -> bool:
@@ -96,7 +106,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
     raise ArgumentError(f"{name}: this {type(evidence).__name__} {fault}: expected {source}; {remedy}")
 
 
-def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
+def _feed(total: Any, value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -> None:
     """Add a value to a hash; `within` are the objects that contain it."""
     if isinstance(value, np.generic):
         value = value.item()
@@ -109,18 +119,15 @@ def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
         items = value.tolist() if isinstance(value, np.ndarray) else value
         total.update(f"sequence {len(items)}".encode())
         for item in items:
-            _feed(total, item, within)
+            _feed(total, item, within, modules)
         return
     kind = type(value)
     parts: Mapping[Any, Any] | None = None
-    text = f"{kind.__module__}:{kind.__qualname__}"
+    text = public_name(kind, modules)
     if value is None or isinstance(value, Number | str | bytes | Enum):
         text += f" {value!r}"
     elif isinstance(value, type | FunctionType):
-        text += f" {value.__module__}:{value.__qualname__}"
-        parts = {"code": getattr(value, "__code__", None)}
-    elif isinstance(value, CodeType):
-        text += marshal.dumps(value, 2).hex()  # the version without references, which is always the same
+        text += f" {public_name(value, modules)}"
     elif isinstance(value, MethodType):
         parts = {"self": value.__self__, "function": value.__func__}
     elif isinstance(value, partial):
@@ -132,7 +139,7 @@ def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
     elif isinstance(value, Mapping):
         parts = value
     elif isinstance(value, Set):
-        text += " ".join(sorted(map(checksum, value)))
+        text += " ".join(sorted(checksum(item, modules) for item in value))
     elif is_dataclass(value):
         parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init and field.compare}
     else:
@@ -142,7 +149,7 @@ def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
     if parts is not None and id(value) not in within:
         for key in sorted(parts, key=str):
             total.update(f"{key!s} =".encode())
-            _feed(total, parts[key], (*within, id(value)))
+            _feed(total, parts[key], (*within, id(value)), modules)
 
 
 def _numbers(value: Any) -> npt.NDArray[Any] | None:

@@ -19,6 +19,7 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.modules import modules
+from flockana.base.seals import public_name
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
 
@@ -41,7 +42,7 @@ def to_data(value: Any) -> Any:
         ours = kind.__module__.startswith("flockana.")
         if ours and parameter_classes().get(kind.__qualname__) is not kind:
             raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
-        return {"type": f"{'flockana' if ours else kind.__module__}:{kind.__qualname__}", **data}
+        return {"type": public_name(kind), **data}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):

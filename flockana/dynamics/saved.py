@@ -13,6 +13,7 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 _Run = TypeVar("_Run")
 
 FORMAT = "flockana-trajectory"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2  # seals of format 1 name the modules of classes
 RUN, RECORDING = "simulate", "hand"  # what made it
 _LINE = b"\nflockana sha256 %s\n"
 _BLOCK = 2**20  # bytes read at once
@@ -81,7 +82,8 @@ def _ensure_intact(run: Any, attributes: Mapping[str, Any], source: Path) -> Any
         raise FileError(
             f"{source} is damaged: it has no seal, which every file of a run is written with; run the simulation again"
         )
-    seal, found = read_json(attributes["seal"]), _file_seal(run, attributes["made_by"])
+    modules = _format_1_modules() if int(attributes["format_version"]) == 1 else {}
+    seal, found = read_json(attributes["seal"]), _file_seal(run, attributes["made_by"], modules)
     differing = sorted(name for name in {*seal, *found} if seal.get(name) != found.get(name))
     if differing:
         raise FileError(
@@ -90,9 +92,15 @@ def _ensure_intact(run: Any, attributes: Mapping[str, Any], source: Path) -> Any
     return sealed(run) if attributes["made_by"] == RUN else run
 
 
-def _file_seal(run: Any, made_by: str) -> dict[str, str]:
-    """The checksums of a run's fields, and of whether it is a run or a recording."""
-    return seal_of(run) | {"made_by": checksum(made_by)}
+def _file_seal(run: Any, made_by: str, modules: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
+    """Return the checksums of a run's fields, and of whether it is a run or a recording."""
+    return seal_of(run, modules) | {"made_by": checksum(made_by)}
+
+
+def _format_1_modules() -> dict[str, str]:
+    """Return the module by class that seals of files of format 1 name."""
+    lines = Path(__file__).with_name("format_1_modules.txt").read_text("utf-8").splitlines()
+    return {name: module for module, *names in map(str.split, lines) for name in names}
 
 
 def _ensure_whole(source: Path) -> None:

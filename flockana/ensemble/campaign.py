@@ -19,9 +19,9 @@ import numpy as np
 from flockana.base.checks import ensure_kind, ensure_known
 from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
+from flockana.base.seals import digest
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
-from flockana.ensemble.digest import run_key
 from flockana.ensemble.executors import ensure_worker_options, worker_pool
 from flockana.ensemble.guard import can_start_processes
 from flockana.ensemble.processes import cores
@@ -265,7 +265,7 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
     shared = request.to_dict(strict=strict)
     own = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
-    return {job: run_key(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
+    return {job: digest(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
 
 
 def _source_digest(name: str, *, strict: bool) -> str:

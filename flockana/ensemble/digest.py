@@ -1,4 +1,4 @@
-"""Keys of stored runs, and the version of the mathematics behind their numbers.
+"""Version of the mathematics behind the numbers of stored runs.
 
 The version is no constant that somebody must remember to raise, or a stale number could be taken for a fresh one. It
 is a digest of all that decides the numbers: every source of the package up to the
@@ -19,15 +19,16 @@ from functools import cache
 from importlib.metadata import version
 from importlib.util import cache_from_source
 from pathlib import Path
-from typing import Any
 
 from flockana.base.errors import FileError
 from flockana.base.files import write_atomic
 
 _DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
-_SILENT = ("plots", "report", "cli", "falsify", "ensemble", "base/references.py", "_version.py", "__init__.py")
-_ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
+# files and folders of these names, wherever they are, decide no number
+_SILENT = {"plots", "figures", "report", "player", "explore", "course", "cli", "falsify", "ensemble", "references"}
+_SILENT |= {"_version", "__init__"}
+_ENSEMBLE = "ensemble/work.py"  # of the ensemble, what makes a record
 
 
 @cache
@@ -63,8 +64,8 @@ def _libraries() -> dict[str, str]:
 def source_files(root: Path) -> list[Path]:
     """Return the package's modules and data that decide a run's numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
-    pairs = ((p, p.relative_to(root)) for p in files)
-    return sorted(p for p, r in pairs if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
+    pairs = ((p, p.relative_to(root).with_suffix("")) for p in files)
+    return sorted(p for p, r in pairs if p == root / _ENSEMBLE or not {*r.parts} & _SILENT)
 
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
@@ -86,8 +87,3 @@ def _code_without_comments(source: bytes) -> bytes:
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 del body[0]
     return ast.dump(tree).encode()
-
-
-def run_key(what: Mapping[str, Any]) -> str:
-    """Return the key of a run in a store: a digest of plain data, independent of the order of names."""
-    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()

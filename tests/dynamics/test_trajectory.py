@@ -191,7 +191,7 @@ def tampered(path, **attributes):
         ({"format": "other"}, "holds no flockana run (format 'other'"),
         ({"format_version": 0}, "is damaged: there is no format 0"),
         ({"format_version": -1}, "is damaged: there is no format -1"),
-        ({"format_version": 2}, "is of format 2, newer than 1: update flockana"),
+        ({"format_version": 3}, "is of format 3, newer than 2: update flockana"),
         ({"format_version": None}, "is damaged: KeyError('format_version'); run the simulation again"),
         ({"format_version": "x"}, "is damaged"),
         ({"law": None}, "is damaged"),
