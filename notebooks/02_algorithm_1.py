@@ -219,11 +219,11 @@ assert f"{parted} {rims:.0f} {run.energy()[-1]:.0f}" == "762 16823 17052"
 # (lecture 04). A *critical point* of $V$ is an $x$ with $\nabla V(x) = 0$: all pair forces on each agent balance.
 # *Almost every* start means every start outside a set of measure zero, which a start drawn at random does not hit.
 #
-# > **Theorem 1** (Olfati-Saber 2006, as lecture slides on it print it; the paper itself was not looked up). Let $\Omega
-# > = \{(x, v) : H(x, v) \le H_0\}$ be such that every solution of Algorithm 1 that starts in it is a cohesive flock for
-# > all times. Then (i) almost every solution that starts in $\Omega$ converges to an equilibrium $(x^*, 0)$ where $x^*$
-# > is an α-lattice; (ii) all agents asymptotically move with the same velocity; (iii) if $H_0 < c^* =
-# > c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
+# > **Theorem 1** (Olfati-Saber 2006, as lecture slides on it print it; the paper itself was not looked up). Let
+# > $\Omega = \{(x, v) : H(x, v) \le H_0\}$ be such that every solution of Algorithm 1 that starts in it is a cohesive
+# > flock for all times. Then (i) almost every solution that starts in $\Omega$ converges to an equilibrium $(x^*, 0)$
+# > where $x^*$ is an α-lattice; (ii) all agents asymptotically move with the same velocity; (iii) if
+# > $H_0 < c^* = c_1^\alpha\psi_\alpha(0)$, no two agents ever collide.
 #
 # *Proof of (ii), of (iii), and of what is true of (i).* Let a solution start in $\Omega$.
 #

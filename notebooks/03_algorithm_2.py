@@ -107,10 +107,11 @@ _ = figures.target_pull(ax=ax)
 # \end{aligned}$$
 #
 # > **Theorem 3** (Olfati-Saber 2006, as lecture slides on it print it). Apply Algorithm 2 with
-# > $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every
-# > solution converges to an equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii)
-# > all agents asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with $c^* =
-# > c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
+# > $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and $J(x(0))$ be finite. Then (i) the group is cohesive for all
+# > $t \ge 0$; (ii) almost every solution converges to an equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local
+# > minimum of $U_\lambda$; (iii) all agents asymptotically move with the same velocity; (iv) if
+# > $H_\lambda(0) < (k+1)\,c^*$ with $c^* = c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide,
+# > and none if $k = 0$.
 #
 # *Proof of (i).* All terms of $H_\lambda$ are non-negative, and one agent at the distance $\|x_i\|$ from the centre
 # has $\lambda J \ge \tfrac\lambda2\|x_i\|^2$. So
@@ -156,7 +157,7 @@ _ = figures.target_pull(ax=ax)
 # critical point has a pole 0 besides: turned about the γ-agent, it is a critical point again.
 #
 # 1. *Poles 0.* The *centre-stable manifold theorem* holds with them. Each critical point with a pole $s > 0$ has a
-#    neighbourhood $B$ in which the starts whose solutions never leave $B$ lie on a surface of a dimension lower than
+#    neighbourhood in which the starts whose solutions never leave it lie on a surface of a dimension lower than
 #    that of the space of states: its measure is 0.
 # 2. *A continuum of critical points.* Countably many such neighbourhoods cover all these critical points. A solution
 #    that converges to one of them is from some whole time $k$ on in one neighbourhood for ever, so its start is among
