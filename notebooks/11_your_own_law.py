@@ -449,7 +449,7 @@ grade(
     lambda text: next(
         not law.faults
         and (law.force(np.linspace(0.1, 0.95, 50)) < 0).all()
-        and (law.force(np.linspace(1.05, 2.9, 99)) > 0).all()
+        and (law.force(np.linspace(1.05, 2.999, 400)) > 0).all()
         for law in [fl.pair_law(text, adjacency=0, range=3.0, length=1.0)]
     ),
     form="word",
@@ -474,8 +474,9 @@ grade(escape, 0.78539816, digits=4, hint="v must not reach 0 as x → ∞")
 # %% [markdown] tags=["exercise"]
 # **6.** ★★★ (3 points, design) Capstone: write a law of your own, its theorem and its proof, after the three files in
 # `own_law/` (in cells, or in files beside this notebook). Any law will do that you can prove something about; try the
-# linear consensus $u_i = \frac gn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[THEOREM, run,
-# PROOF]`; the check verifies the theorem on the run and the steps of the proof, and your lecturer reads them.
+# linear consensus $u_i = \frac gn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[theorem, run,
+# proof]`, with an `id` of your own; the check verifies the theorem on the run and the steps of the proof, refuses the
+# law, the theorem and the proof of this lecture and those of the library, and your lecturer reads them.
 
 # %% tags=["answer"]
 capstone = ...
@@ -533,9 +534,15 @@ capstone = [own_theorem, fl.simulate(LinearConsensus(), q0, p0, (0.0, 2.0)), own
 # %% tags=["check"]
 grade(
     capstone,
-    lambda parts: fl.verify(parts[0], parts[1]).status == "verified" and all(s.holds for s in parts[2].steps()),
+    lambda parts: (
+        parts[0].id not in (*fl.theorems(), "cucker-smale")
+        and type(parts[1].law).__module__.partition(".")[0] not in ("flockana", "own_law")
+        and fl.verify(parts[0], parts[1]).status == "verified"
+        and [step.holds for step in parts[2].steps()] == [True] * max(1, len(list(parts[2].steps())))
+        and getattr(parts[2], "id", "") != "cucker-smale"
+    ),
     form="list",
-    hint="fl.verify(THEOREM, run) must be verified, and every step of the proof hold",
+    hint="theorem, law and proof are to be your own; fl.verify(theorem, run) must be verified, and each step hold",
 )
 
 # %% [markdown] tags=["exercise"]

@@ -54,6 +54,7 @@ import numpy as np
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
+from flockana.course.unknown import unknown_program
 
 law = fl.Algorithm1()
 alpha, c1, c2 = law.alpha, law.gains.c1_alpha, law.gains.c2_alpha
@@ -502,29 +503,19 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★★ (3 points, experiment) Here is a log from an unknown program, as the function `unknown()` below makes
-# it. Compare it with `law`. Which gain $c_2^\alpha$ has it? (Three significant digits.)
-#
-# `unknown = lambda: fl.simulate(fl.Algorithm1(gains=fl.Gains(c1_alpha=30.0, c2_alpha=4.2)),
-# fl.lattice.hexagonal_patch(1, 7.1), 0.3 * fl.lattice.hexagonal_patch(1, 1.0)[::-1], (0.0, 1.0),
-# t_eval=np.linspace(0.0, 1.0, 201))`
+# **3.** ★★★ (3 points, experiment) `unknown_program()` returns the log of a program whose gains nobody tells you, as a
+# `Recording`. Compare it with `law`. Which gain $c_2^\alpha$ has the program? (Three significant digits.)
 
 # %% tags=["answer"]
 unknown_gain = ...
 
 # %% tags=["solution"]
-source = fl.simulate(
-    fl.Algorithm1(gains=fl.Gains(c1_alpha=30.0, c2_alpha=4.2)),
-    fl.lattice.hexagonal_patch(1, 7.1),
-    0.3 * fl.lattice.hexagonal_patch(1, 1.0)[::-1],
-    (0.0, 1.0),
-    t_eval=np.linspace(0.0, 1.0, 201),
-)
-print(fl.compare(fl.Recording(source.t, source.q, source.p, source.u, bound=0.0), law))
-unknown_gain = 4.2
+comparison = fl.compare(unknown_program(), law)
+print(comparison)
+unknown_gain = next(share.found for share in comparison.shares if share.symbol == "c2α")
 
 # %% tags=["check"]
-grade(unknown_gain, 4.2, digits=3, hint="fl.compare(fl.Recording(t, q, p, u, bound=0.0), law) prints the gains")
+grade(unknown_gain, 6.3, digits=3, hint="fl.compare(unknown_program(), law) prints the gains")
 
 # %% [markdown] tags=["exercise"]
 # **4.** ★ (1 point, player) A `Recording` has no player, a `Trajectory` has. Simulate `law` from the start of the
@@ -546,21 +537,26 @@ grade(calms, True, hint="look at the arrows, or compute the mean speeds")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★ (2 points, counterexample) Counterexample hunt: "If gains fit exactly and the residual is 0, the program
-# is right." Give positions of two agents on a line, $[x_1, x_2]$, both at rest, at which the error "no weight" has
-# no effect at all on the inputs, although the agents are in range of each other and not at the distance 7.
+# is right." Give two agents on a line, $[x_1, x_2, v_1, v_2]$, at least 1 apart and with velocities that differ by at
+# least 1, at which the error "no weight" has no effect at all on the inputs, although there is friction.
 
 # %% tags=["answer"]
 silent = ...
 
 # %% tags=["solution"]
-silent = [0.0, 6.0]  # at rest there is no friction, with or without weight
+silent = [0.0, 2.0, 1.0, -1.0]  # nearer than 2.95 the bump is 1: weighted or not, the friction is the same
 
 # %% tags=["check"]
 grade(
     silent,
-    lambda x: len(x) == 2 and 0.0 < abs(x[1] - x[0]) < 8.4 and abs(abs(x[1] - x[0]) - 7.0) > 1e-6,
+    lambda x: (
+        len(x) == 4
+        and abs(x[1] - x[0]) >= 1.0
+        and abs(x[3] - x[2]) >= 1.0
+        and fl.AlphaInteraction().adjacency(fl.AlphaInteraction().sigma_norm(abs(x[1] - x[0]))) == 1.0
+    ),
     form="list",
-    hint="which term has the weight, and when is that term 0?",
+    hint="which term has the weight, and at which distances is that weight 1?",
 )
 
 # %% [markdown] tags=["exercise"]

@@ -1,5 +1,6 @@
 """Check a student's answer in a notebook: right, not yet, or not answered; never an exception."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 from flockana.base.errors import ArgumentError
 
 _MARKS = {"right": "✓", "handed in": "✓", "not yet": "✗", "not answered": "…"}
+_WORD = re.compile(r"[\w-]+")
 _ROUNDING = 1e-9  # of the right answer: what double precision may leave of an exact one
 
 
@@ -52,6 +54,8 @@ def grade(
     handed = answered(answer, form or form_of(right))
     if handed.status != "handed in":
         return handed
+    if isinstance(right, str) and _WORD.fullmatch(right) and not _WORD.fullmatch(answer.strip()):
+        return Grade("not yet", f"one word is asked for, without blanks or marks around it; got {answer!r}")
     try:
         if isinstance(right, Callable):  # type: ignore[arg-type]
             good = bool(right(answer))

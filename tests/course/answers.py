@@ -4,6 +4,7 @@ Right answers are such as a student may hand in: rounded to what the question as
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +13,9 @@ import numpy as np
 
 import flockana as fl
 from flockana.plots import subplots
+from flockana.theorems import Theorem
+from flockana.theorems.claims import judged
+from flockana.theorems.hypotheses import law_is
 
 _STEPS = [(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1) if abs(a) + abs(b) + abs(c) in (0, 2)]
 THIRTEEN = np.array(_STEPS) * 7.0 / np.sqrt(2)
@@ -52,11 +56,37 @@ def in_one_place(q: Any, r: float) -> float:
     return 1.0
 
 
-def capstone(dimension: int, *, holds: bool) -> list[Any]:
-    """A theorem, a run on which it is verified, and what stands for a proof."""
-    q = 1.02 * np.array([[0.0] * dimension, [7.0] + [0.0] * (dimension - 1)])
+@dataclass(frozen=True)
+class Drag(fl.Law):
+    """A student's law: u = -p."""
+
+    def flow(self, t: float, q: Any, p: Any) -> tuple[Any, float]:
+        return -p, -float(np.sum(p**2))
+
+    def hamiltonian(self, t: float, q: Any, p: Any) -> float:
+        return 0.5 * float(np.sum(p**2))
+
+
+def capstone(dimension: int, *, holds: bool = True, id: str = "drag") -> list[Any]:
+    """A theorem of one's own, a run on which it is verified, and what stands for a proof."""
+    theorem = Theorem(
+        id=id,
+        title="Drag takes energy",
+        statement="T falls.",
+        source="ours",
+        kind="trajectory",
+        check=lambda seen, tolerances: ([], [judged("falls", seen.energy[0] - seen.energy[1:], detail="T is smaller")]),
+        references=(),
+        law=law_is("drag", Drag),
+        claims=("falls",),
+    )
+    q = np.array([[0.0] * dimension, [7.0] + [0.0] * (dimension - 1)])
     proof = SimpleNamespace(steps=lambda: iter([SimpleNamespace(holds=True), SimpleNamespace(holds=holds)]))
-    return [fl.theorem("energy"), fl.simulate(fl.Algorithm1(), q, 0.0 * q, (0.0, 1.0)), proof]
+    return [theorem, fl.simulate(Drag(), q, q + 1.0, (0.0, 1.0)), proof]
+
+
+# Force 2 s (s² - 1) (9 - s²)² (8.41 - s²), its integral from s to 3: vanishes twice at the range, repels from 2.9 on.
+REPELS_AGAIN = "(9 - s**2)**5/5 - 2.1475*(9 - s**2)**4 + 118*(9 - s**2)**3/75"
 
 
 ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
@@ -182,11 +212,37 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "stiffness": ([2.0, [2.0, 0.26], [8.0, 0.2604], [-2.0, 0.2604]], [[2, 0.2604], (2.0, Fraction(25, 96))]),
         "residual": ([0, 2, 0.9, -1], [1, 1.0]),
         "formula": (
-            ["1/s + s", "(s - 1)**2*s**2", "(s**2 - 1)**2", 3, "(s**2 - 1)**2*(9 - s**2)**3"],
+            # the last but one holds at 1, and repels again from 2.9 on
+            [
+                "1/s + s",
+                "(s - 1)**2*s**2",
+                "(s**2 - 1)**2",
+                3,
+                "(s**2 - 1)**2*(9 - s**2)**3",
+                REPELS_AGAIN,
+                "(9 - s**2)**4",
+            ],
             ["(9 - s**2)**4/4 - 8*(9 - s**2)**3/3", "(9 - s**2)**4*3 - 32*(9 - s**2)**3 + 5"],
         ),
         "escape": ([0.785, 0.7863, 1.5708, 0.5], [0.7854, np.pi / 4, 0.785398]),
-        "capstone": ([[], [1, 2, 3], "done"], [capstone(1, holds=True), tuple(capstone(2, holds=True))]),
+        "capstone": (
+            # nothing; numbers; a text; the library's theorem; the library's law; the lecture's theorem; no proof
+            [
+                [],
+                [1, 2, 3],
+                "done",
+                [fl.theorem("energy"), *capstone(1)[1:]],
+                [
+                    capstone(1)[0],
+                    fl.simulate(fl.Algorithm1(), [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0)),
+                    capstone(1)[2],
+                ],
+                capstone(1, id="cucker-smale"),
+                [*capstone(1)[:2], SimpleNamespace(steps=lambda: iter(()))],
+                capstone(1, holds=False),
+            ],
+            [capstone(1), tuple(capstone(2))],
+        ),
         "spreads": ([False, np.False_, 2.6, "yes"], [True, np.True_]),
     },
     "12": {
@@ -220,9 +276,20 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
                 lambda q, p: fl.Algorithm1(gains=fl.Gains(c2_alpha=1e-14)).acceleration(0.0, q, p).tolist(),
             ],
         ),
-        "unknown_gain": ([10.95, 4.0, 4.3, 30.0], [4.2, 4.2003, Fraction(21, 5)]),
+        "unknown_gain": ([10.95, 4.2, 6.4, 30.0], [6.3, 6.3003, Fraction(63, 10)]),
         "calms": ([False, np.False_, 1, "yes"], [True, np.True_]),
-        "silent": ([[0.0, 7.0], [0.0, 9.0], [1.0, 1.0], 6.0], [[0.0, 6.0], (1, 8.5), np.array([0.0, -5.0])]),
+        "silent": (
+            # at rest relative to each other; on the taper of the bump; two numbers; too near; out of range, no friction
+            [
+                [0.0, 2.0, 1.0, 1.0],
+                [0.0, 6.0, 1.0, -1.0],
+                [0.0, 2.0],
+                [0.0, 0.5, 1.0, -1.0],
+                [0.0, 9.0, 1.0, -1.0],
+                6.0,
+            ],
+            [[0.0, 2.0, 1.0, -1.0], (1, 3.9, 0, 1), np.array([0.0, -2.5, 0.0, 2.0])],
+        ),
     },
     "A1": {
         "figures": (

@@ -50,6 +50,15 @@ def test_the_tolerance_is_half_a_unit_of_the_last_digit_asked_for(right, digits)
         assert grade(right + off * unit, right, digits=digits).status == status
 
 
+@pytest.mark.parametrize("answer", ["vacuous.", "it is vacuous", "'vacuous'", ""])
+def test_a_word_in_another_form_is_told_so(answer):
+    graded = grade(answer, "vacuous", hint="read the hypotheses")
+    assert graded.status == "not yet"
+    assert graded.hint == f"one word is asked for, without blanks or marks around it; got {answer!r}"
+    assert grade(" Vacuous ", "vacuous").status == "right"
+    assert grade("refuted", "vacuous", hint="read the hypotheses").hint == "read the hypotheses"
+
+
 def test_one_precision_at_a_time():
     assert [grade(x, 5.0, within=0.1).status for x in (5.1, 5.11)] == ["right", "not yet"]
     with pytest.raises(ArgumentError, match=r"digits = 2 and within = 0\.1"):
