@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf, sqrt
 from typing import Any, ClassVar
 
 from flockana.base.checks import FloatArray, freeze_vector
 from flockana.base.units import Powers
 from flockana.environment.motion import Forced
+from flockana.environment.spring import Spring
 from flockana.environment.target import Target
 
 
@@ -56,3 +58,13 @@ class SystemTarget(Forced, Target):
 
     def rate(self, t: float) -> FloatArray:  # noqa: D102
         return self.state(t)[1]
+
+    consistent = True
+
+    @property
+    def feature(self) -> float | None:
+        """Time scale of a spring; infinite of none, None of a function."""
+        if not isinstance(self.force, Spring):
+            return None
+        fastest = max(sqrt(abs(self.force.stiffness)), self.force.damping)
+        return 1.0 / fastest if fastest > 0.0 else inf

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -70,3 +71,21 @@ class TableTarget(Target):
     def rate(self, t: float) -> FloatArray:
         """Return dq_r/dt, 0 beyond the table."""
         return self._path(t, 1) if self.t[0] <= t <= self.t[-1] else np.zeros(len(self.q[0]))
+
+    consistent = True
+
+    def acceleration_bound(self, t0: float) -> float | None:
+        """Return the largest ‖d²q_r/dt²‖ of the pieces that reach beyond t0; infinite if the velocity jumps there."""
+        ends = [t for t in (self.t[0], self.t[-1]) if t >= t0]
+        if any(self._path(t, 1).any() for t in ends):
+            return inf
+        bends = self._path.derivative(2)  # linear on each piece
+        start, slope = bends.c[1], bends.c[0]
+        last = start + slope * np.diff(self.t)[:, None]
+        sizes = np.maximum(*(np.linalg.norm(x, axis=1) for x in (start, last)))
+        return float(sizes[np.array(self.t[1:]) > t0].max(initial=0.0))
+
+    @property
+    def feature(self) -> float | None:
+        """Shortest time between two samples."""
+        return float(np.diff(self.t).min())

@@ -1,8 +1,8 @@
-"""Interface of γ-agents: position, velocity, and the velocity reported to the law."""
+"""Interface of γ-agents: position, velocity, the velocity reported to the law, and what is known of them by formula."""
 
 from abc import ABC, abstractmethod
-from math import cos, sin
-from typing import NamedTuple
+from math import cos, inf, sin
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -32,9 +32,30 @@ class Harmonic(NamedTuple):
         c, s = self.terms[2:4]
         return 0.0 - self.omega**2 * (cos(self.omega * t) * c + sin(self.omega * t) * s)
 
+    @property
+    def largest_acceleration(self) -> float:
+        """Largest ‖d²q_r/dt²‖ over all times: ω² times the longer half-axis of the ellipse."""
+        return float(self.omega**2 * np.linalg.norm(self.terms[2:4], 2))
+
+
+_ANSWERS = ("consistent", "acceleration_bound", "feature")
+
 
 class Target(ABC):
-    """Base class of γ-agents: frozen dataclasses with `position`, `rate` and, where p_r differs, `state`."""
+    """Base class of γ-agents: frozen dataclasses with `position`, `rate` and, where p_r differs, `state`.
+
+    A class may also say by closed form what it is: `consistent`, `acceleration_bound` and `feature`, None where that is
+    unknown. A subclass that defines its motion anew loses the answers that it inherits.
+    """
+
+    motion: ClassVar[tuple[str, ...]] = ("position", "rate", "state", "harmonic")  # what the answers follow from
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if any(name in vars(cls) for name in cls.motion):
+            for name in _ANSWERS:
+                if name not in vars(cls):
+                    setattr(cls, name, vars(Target)[name])
 
     @abstractmethod
     def position(self, t: float) -> FloatArray:
@@ -52,6 +73,26 @@ class Target(ABC):
     def harmonic(self) -> Harmonic | None:
         """Return the path in closed form for compiled integrators, or None."""
         return None
+
+    @property
+    def consistent(self) -> bool | None:
+        """Whether p_r = dq_r/dt at all times, by closed form; None if unknown."""
+        return None
+
+    def acceleration_bound(self, t0: float) -> float | None:
+        """Return a bound of ‖d²q_r/dt²‖ for all t >= t0, by closed form; infinite of a jump, None if unknown."""
+        return None
+
+    @property
+    def feature(self) -> float | None:
+        """Time within which nothing of the path or of p_r hides; infinite of a straight path, None if unknown."""
+        return None
+
+    @property
+    def constant_velocity(self) -> bool | None:
+        """Whether dq_r/dt is the same at all times, by closed form; None if unknown."""
+        bound = self.acceleration_bound(-inf)
+        return None if bound is None else bound == 0.0
 
     def mismatch(self, times: npt.ArrayLike) -> float:
         """Return the largest ‖p_r − dq_r/dt‖ over given times: 0 for a consistent target.

@@ -29,7 +29,9 @@ def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0,
 
 
 class _HarmonicTarget(Target):
-    """γ-agent whose path is given in closed form by `harmonic`."""
+    """γ-agent whose path is given in closed form by `harmonic`, from which all else follows."""
+
+    motion = ("position", "rate", "state")
 
     @property
     @abstractmethod
@@ -40,6 +42,20 @@ class _HarmonicTarget(Target):
 
     def rate(self, t: float) -> FloatArray:
         return self.harmonic.rate(t)
+
+    def state(self, t: float) -> tuple[FloatArray, FloatArray]:
+        return self.position(t), self.rate(t) + self.harmonic.terms[4]
+
+    @property
+    def consistent(self) -> bool | None:
+        return not self.harmonic.terms[4].any()
+
+    def acceleration_bound(self, t0: float) -> float | None:
+        return self.harmonic.largest_acceleration
+
+    @property
+    def feature(self) -> float | None:
+        return inf if self.harmonic.largest_acceleration == 0.0 else 1.0 / abs(self.harmonic.omega)
 
 
 @dataclass(frozen=True)
@@ -67,9 +83,6 @@ class StaticTarget(_HarmonicTarget):
         if np.isscalar(self.p) and self.p == 0:
             object.__setattr__(self, "p", np.zeros(m))
         checks.freeze_vector(self, "p", m)
-
-    def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
-        return np.array(self.q), np.array(self.p)
 
     @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
@@ -231,6 +244,20 @@ class RescaledVelocity(Target):
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.target.position(t), self.factor * self.target.rate(t)
 
+    @property
+    def consistent(self) -> bool | None:  # noqa: D102
+        if self.target.consistent is None:
+            return None
+        rests = bool(self.target.constant_velocity) and not self.target.rate(0.0).any()
+        return self.factor == 1.0 or rests
+
+    def acceleration_bound(self, t0: float) -> float | None:  # noqa: D102
+        return self.target.acceleration_bound(t0)
+
+    @property
+    def feature(self) -> float | None:  # noqa: D102
+        return self.target.feature
+
     @cached_property
     def harmonic(self) -> Harmonic | None:  # noqa: D102
         path = self.target.harmonic
@@ -254,6 +281,9 @@ class CallableTarget(Target):
     span : tuple of float
         Times between which the function is defined, all unless given. It is never called beyond: the path stays where
         the span ends, and dq_r/dt is there a difference to one side.
+    changes_slower_than : float, optional
+        Your statement that neither q_r nor p_r has a feature narrower than this time. Without it nobody knows what the
+        function does between the times at which it is seen, and hypotheses about it are assumed.
 
     Raises
     ------
@@ -270,9 +300,12 @@ class CallableTarget(Target):
     function: Callable[[float], Any]
     time: float = 1.0
     span: tuple[float, float] = (-inf, inf)
+    changes_slower_than: float | None = None
 
     def __post_init__(self) -> None:
         normalise(self, checks.ensure_positive, "time")
+        if self.changes_slower_than is not None:
+            normalise(self, checks.ensure_positive, "changes_slower_than")
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         try:
@@ -297,7 +330,12 @@ class CallableTarget(Target):
             return length * q, length / time * p
 
         start, end = self.span
-        return type(self)(scaled, time * self.time, (time * start, time * end))
+        slow = None if self.changes_slower_than is None else time * self.changes_slower_than
+        return type(self)(scaled, time * self.time, (time * start, time * end), slow)
+
+    @property
+    def feature(self) -> float | None:  # noqa: D102
+        return self.changes_slower_than
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         t = min(max(t, self.span[0]), self.span[1])

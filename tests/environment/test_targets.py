@@ -112,3 +112,44 @@ def test_a_function_is_never_called_outside_of_its_span():
     for span in ((1.0, 1.0), (2.0, 1.0), 3, ("a", "b")):
         with pytest.raises(ArgumentError, match="span = "):
             CallableTarget(function, span=span)
+
+
+def test_what_targets_say_of_themselves():
+    """By hand: Aω² and Rω², 1/ω, and p_r = dq_r/dt only where nothing is added or rescaled."""
+    sine, circle = SineTarget((0.0, 0.0), (1.0, 0.0), 2.0, 0.25), CircleTarget((0.0, 0.0), 10.0, 0.1)
+    for target, consistent, bound, feature in (
+        (StaticTarget((0.0,)), True, 0.0, np.inf),
+        (StaticTarget((0.0,), (1.0,)), False, 0.0, np.inf),
+        (LinearTarget((0.0,), (1.0,)), True, 0.0, np.inf),
+        (sine, True, 2.0 * (pi / 2) ** 2, 2.0 / pi),
+        (circle, True, 10.0 * (0.2 * pi) ** 2, 5.0 / pi),
+        (RescaledVelocity(circle, 0.2), False, 10.0 * (0.2 * pi) ** 2, 5.0 / pi),
+        (RescaledVelocity(StaticTarget((0.0,), (1.0,)), 0.2), True, 0.0, np.inf),
+        (CallableTarget(sine.state), None, None, None),
+        (CallableTarget(sine.state, changes_slower_than=0.5), None, None, 0.5),
+    ):
+        assert (target.consistent, target.acceleration_bound(0.0), target.feature) == (
+            consistent,
+            pytest.approx(bound, rel=1e-14) if bound else bound,
+            pytest.approx(feature, rel=1e-14) if feature else feature,
+        )
+        assert target.constant_velocity is (None if bound is None else bound == 0.0)
+    assert CallableTarget(sine.state, changes_slower_than=0.5).in_units(1.0, 4.0).feature == 2.0
+
+
+def test_a_subclass_with_another_motion_loses_the_answers():
+    class Turning(LinearTarget):
+        def position(self, t):
+            return np.array([np.sin(t), 0.0])
+
+    class Named(LinearTarget):
+        name = "a line"
+
+    args = (0.0, 0.0), (1.0, 0.0)
+    assert (Turning(*args).consistent, Turning(*args).constant_velocity, Turning(*args).feature) == (None, None, None)
+    assert (Named(*args).consistent, Named(*args).constant_velocity, Named(*args).feature) == (True, True, np.inf)
+
+
+def test_a_stated_time_is_positive():
+    with pytest.raises(ArgumentError, match="changes_slower_than = 0.*> 0"):
+        CallableTarget(lambda t: ((t,), (1.0,)), changes_slower_than=0.0)

@@ -1,9 +1,9 @@
 """Checks of the γ-agent during a run: whether it rests, and moves as it declares.
 
-A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
-each interval between samples is compared with the integral of what it declares, and rest means that no position seen
-differs. A function cannot be seen everywhere: of a target of a user's own each half of the solver's steps is such an
-interval, and rest that was seen is assumed.
+A target that has a closed form says what it is (`flockana.environment.target`). Of any other one the difference of its
+positions over each interval between samples is compared with the integral of what it declares, each half of the
+solver's steps being such an interval. What differs is unmet. What does not is assumed, as a function cannot be seen
+everywhere, unless its user states how slowly it changes and it was seen more often than that.
 """
 
 from collections.abc import Callable
@@ -12,27 +12,37 @@ from math import sqrt
 import numpy as np
 
 from flockana.environment.target import Target
-from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.theorems.theorem import HypothesisStatus
 from flockana.theorems.toolkit import EPS, FloatArray, Hypothesis, Trajectory
 
-_CLOSED_FORMS = (StaticTarget, LinearTarget, SineTarget, CircleTarget)
 _NODES = np.array([-sqrt(0.6), 0.0, sqrt(0.6)])  # Gauss-Legendre, exact up to degree five
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 _CONSISTENT = 1e-6  # of the law's speed: what a source's own rounding of a velocity may amount to
+_PER_FEATURE = 4.0  # times in the shortest time in which a function changes, by its user's statement
+_MOST_TIMES = 100_000
 
 
-def _known(target: Target) -> bool:
-    """Return whether the path is one of the built-in formulas, which samples determine."""
-    return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
+def _is_closed(target: Target) -> bool:
+    """Return whether the path is a known sum of a line and a swing, which rests always or never."""
+    return target.consistent is not None and target.harmonic is not None
 
 
 def _sample_times(run: Trajectory) -> FloatArray:
     """Return the times at which the γ-agent is sampled."""
-    if _known(run.law.target) or len(run.t) < 2:
+    target = run.law.target
+    if _is_closed(target) or len(run.t) < 2:
         return run.t
     steps = run.path.t
-    return np.unique(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))  # a jump is two samples at one time
+    times = np.unique(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))  # a jump is two samples at one time
+    count = min((times[-1] - times[0]) * _PER_FEATURE / (target.feature or np.inf), _MOST_TIMES)
+    return np.union1d(times, np.linspace(times[0], times[-1], int(np.ceil(count)) + 1))
+
+
+def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
+    """Return whether nothing can hide between times: of a closed form, or by how slowly its user says it changes."""
+    target = run.law.target
+    slow = target.feature is not None and len(times) > 1
+    return _is_closed(target) or bool(slow and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE)
 
 
 def _between(t: FloatArray) -> FloatArray:
@@ -50,8 +60,12 @@ def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
     q_r, p_r = (np.array(series) for series in zip(*states, strict=True))
     speed = run.scales.speed
     way, change = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if any_p_r else 0.0)).max())
-    moves = way > 4.0 * EPS * float(np.abs(q_r).max()) or change > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
-    status: HypothesisStatus = "unmet" if moves else "met" if _known(target) else "assumed"
+    moves = (
+        (_is_closed(target) and not target.constant_velocity)
+        or way > 4.0 * EPS * float(np.abs(q_r).max())
+        or change > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
+    )
+    status: HypothesisStatus = "unmet" if moves else "met" if _seen_everywhere(run, at) else "assumed"
     return Hypothesis(
         "the γ-agent is static" if any_p_r else "the γ-agent is at rest, p_r = 0",
         status,
@@ -93,18 +107,30 @@ def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatAr
 
 def consistent(run: Trajectory) -> Hypothesis:
     """Return the hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it reports."""
-    return _agrees(run, "dq_r/dt = p_r", "p_r", lambda t: run.law.target.state(t)[1])
+    name, known = "dq_r/dt = p_r", run.law.target.consistent
+    seen = _agrees(run, name, "p_r", lambda t: run.law.target.state(t)[1])
+    if known is None or (known is False and seen.status == "unmet"):
+        return seen
+    detail = "by the closed form of its path" if known else "p_r is another velocity, by the closed form of its path"
+    return Hypothesis(name, "met" if known else "unmet", seen.margin, detail, seen.error)
 
 
 def declared_rate_is_true(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that the target's declared rate is the derivative of its positions."""
-    return _agrees(run, "the γ-agent's declared rate is dq_r/dt", "the rate", run.law.target.rate)
+    name, target = "the γ-agent's declared rate is dq_r/dt", run.law.target
+    if target.consistent is not None:
+        return Hypothesis(name, "met", detail="by the closed form of its path")
+    return _agrees(run, name, "the rate", target.rate)
 
 
 def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
     (off, error), allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
     if off + error <= allowed:
-        return Hypothesis(name, "met", -off, error=error)
+        times = _sample_times(run)
+        if _seen_everywhere(run, times):
+            return Hypothesis(name, "met", -off, error=error)
+        detail = f"so at {times.size} times; nobody states how slowly it changes (changes_slower_than)"
+        return Hypothesis(name, "assumed", -off, detail, error)
     if off - error <= allowed:
         return Hypothesis(name, "assumed", -off, "the samples are too sparse to decide", error)
     return Hypothesis(name, "unmet", -off, f"{what} is off by up to {off:.3g}", error)

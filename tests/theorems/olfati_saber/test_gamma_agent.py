@@ -28,7 +28,7 @@ MOVING = [
     LinearTarget(HERE, AWAY),
     SineTarget(HERE, AWAY, 3.0, 0.3),
     CircleTarget(HERE, 3.0, 0.3),
-    CallableTarget(lambda t: ((np.sin(t), 1.0), (np.cos(t), 0.0))),
+    CallableTarget(lambda t: ((np.sin(t), 1.0), (np.cos(t), 0.0)), changes_slower_than=1.0),
 ]
 
 
@@ -74,6 +74,29 @@ def test_a_function_that_was_seen_at_rest_but_for_rounding_is_assumed_to_be():
     assert target_rests(run(noisy), any_p_r=False).status == "assumed"
 
 
+def test_a_function_is_assumed_until_its_user_states_how_slowly_it_changes():
+    def path(t):
+        return (np.sin(t), 1.0), (np.cos(t), 0.0)
+
+    for slow, status in ((None, "assumed"), (1.0, "met"), (1e-5, "assumed")):  # the last asks for 2e6 times
+        target = CallableTarget(path, changes_slower_than=slow)
+        assert consistent(run(target)).status == declared_rate_is_true(run(target)).status == status
+    still = CallableTarget(lambda t: (HERE, AWAY), changes_slower_than=0.1)
+    assert target_rests(run(still), any_p_r=True).status == "met"
+    assert consistent(run(still)).status == "unmet"
+
+
+def test_closed_forms_decide_where_the_samples_see_nothing():
+    """Samples, and Gauss nodes of whole periods, see a circle at rest; the subclass has the name and another motion."""
+    whole = np.linspace(0.0, 4.0, 5)
+    circle = RescaledVelocity(CircleTarget(HERE, 3.0, 2.0), 0.3)
+    assert target_rests(run(circle, whole), any_p_r=True).status == "unmet"
+    assert consistent(run(circle, whole)).status == "unmet"
+    other = type("StaticTarget", (StaticTarget,), {"state": lambda self, t: (np.sin(2 * np.pi * t) * np.ones(2), HERE)})
+    assert (other(HERE).consistent, other(HERE).constant_velocity) == (None, None)
+    assert target_rests(run(other(HERE, AWAY), [0.0, 0.3, 1.0]), any_p_r=True).status == "unmet"
+
+
 @pytest.mark.parametrize("between", [0.02, 0.11])
 def test_a_jump_between_two_samples_is_seen(between):
     jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
@@ -85,7 +108,8 @@ def test_a_motion_that_vanishes_at_every_sample_is_seen_and_samples_too_sparse_l
     h = 5.0 / 40.0
     between = CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
     assert target_rests(run(between), any_p_r=True).status == "unmet"
-    assert consistent(run(CircleTarget(HERE, 3.0, 7.3), np.linspace(0.0, 5.0, 4))).status == "assumed"
+    fast = CallableTarget(CircleTarget(HERE, 3.0, 7.3).state)
+    assert consistent(run(fast, np.linspace(0.0, 5.0, 4))).status == "assumed"
     assert slip(run(MOVING[0], [1.0]), lambda t: np.zeros(2))[1] == np.inf
 
 
