@@ -65,9 +65,10 @@ newest:  ## the tests with every dependency as new as it is today; PYTHON=python
 
 wheel:  ## build sdist and wheel into dist, and verify NAME with the installed wheel, in a folder without the sources
 	$(call environment,.venv-wheel)
-	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check build
+	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check build twine
 	rm -rf dist
 	.venv-wheel/bin/python -m build --outdir dist
+	.venv-wheel/bin/python -m twine check --strict dist/*
 	$(call environment,.venv-wheel)
 	.venv-wheel/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
 	away=$$(mktemp -d) && cd "$$away" && unset PYTHONPATH && "$(CURDIR)"/.venv-wheel/bin/flockana verify $(NAME) \
