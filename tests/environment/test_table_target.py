@@ -52,11 +52,11 @@ def test_a_run_with_it_is_saved_judged_and_rescaled(tmp_path):
 
 test_what_is_no_table_is_refused = refused(
     (lambda: fl.TableTarget([0.0], [[1.0]]), "two or more"),
-    (lambda: fl.fl.environment.table_target.TableTarget([0.0, 1.0], [[1.0]]), "t has 2 times and q 1 positions"),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0]]), "t has 2 times and q 1 positions"),
     (lambda: fl.TableTarget([1.0, 0.0], [[1.0], [2.0]]), "expected rising times"),
-    (lambda: fl.fl.environment.table_target.TableTarget([0.0, 1.0], [[1.0], [np.nan]]), "expected finite numbers"),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0], [np.nan]]), "expected finite numbers"),
     (
-        lambda: fl.fl.environment.table_target.TableTarget([0.0, 1.0], [[1.0], [2.0]], [[1.0]]),
+        lambda: fl.TableTarget([0.0, 1.0], [[1.0], [2.0]], [[1.0]]),
         r"p has shape \(1, 1\): expected \(2, 1\)",
     ),
 )
@@ -64,7 +64,7 @@ test_what_is_no_table_is_refused = refused(
 
 def test_the_acceleration_of_a_table_by_hand():
     """q = t³ − 3 t² + 3 t on [0, 1]: q'' = 6 t − 6, and the velocity jumps at t = 0 alone."""
-    path = fl.environment.table_target.TableTarget([0.0, 1.0], [[0.0], [1.0]], [[3.0], [0.0]])
+    path = fl.TableTarget([0.0, 1.0], [[0.0], [1.0]], [[3.0], [0.0]])
     assert (path.consistent, path.feature) == (True, 1.0)
     assert path.acceleration_bound(-1.0) == np.inf
     assert path.acceleration_bound(0.5) == pytest.approx(6.0, rel=1e-14)  # of the whole piece

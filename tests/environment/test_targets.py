@@ -151,5 +151,5 @@ def test_a_subclass_with_another_motion_loses_the_answers():
 
 
 def test_a_stated_time_is_positive():
-    with pytest.raises(ArgumentError, match="changes_slower_than = 0.*> 0"):
+    with pytest.raises(ArgumentError, match=r"changes_slower_than = 0.*> 0"):
         CallableTarget(lambda t: ((t,), (1.0,)), changes_slower_than=0.0)
