@@ -83,6 +83,7 @@ from .laws.lossy import Lossy as Lossy
 from .laws.measured import Measured as Measured
 from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
 from .laws.minimal import MinimalFlocking as MinimalFlocking
+from .laws.net_consensus import NetConsensus as NetConsensus
 from .laws.olfati_saber import Algorithm1 as Algorithm1
 from .laws.olfati_saber import Algorithm2 as Algorithm2
 from .laws.peer_to_peer import PeerToPeer as PeerToPeer

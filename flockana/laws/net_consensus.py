@@ -1,0 +1,105 @@
+"""Linear laws of a net: agents draw towards the positions and velocities that they hear, over any digraph."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
+from flockana.base.errors import ArgumentError
+from flockana.laws.law import Law
+
+_WANTED = "a square array of weights a_ij >= 0, with which agent i hears agent j"
+
+
+def ensure_weights(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
+    """Return the weights of a digraph as rows of numbers, with 0 on the diagonal."""
+    weights = ensure_numbers(name, value.toarray() if hasattr(value, "toarray") else value, _WANTED)
+    if weights.ndim != 2 or weights.shape[0] != weights.shape[1] or not weights.size:
+        raise ArgumentError(f"{name} has shape {weights.shape}: expected {_WANTED}")
+    bad = ~np.isfinite(weights) | (weights < 0.0)
+    if bad.any():
+        i, j = np.argwhere(bad)[0].tolist()
+        raise ArgumentError(f"{name}[{i}, {j}] = {weights[i, j]:g}: expected {_WANTED}")
+    if np.diag(weights).any():
+        i = int(np.diag(weights).nonzero()[0][0])
+        raise ArgumentError(f"{name}[{i}, {i}] = {weights[i, i]:g}: expected 0, as no agent hears itself")
+    return tuple(map(tuple, weights.tolist()))
+
+
+@dataclass(frozen=True)
+class NetConsensus(Law):
+    """u_i = Σ_j a_ij (α (q_j − q_i) + β (p_j − p_i)): u = −L(αq + βp), L the Laplacian of a digraph with weights.
+
+    On a symmetric net the energy is ½ α Σ_{i<j} a_ij ‖q_j − q_i‖² + ½ Σ ‖p_i − p̄‖²; on others none is known.
+
+    Parameters
+    ----------
+    weights : array_like or sparse array, shape (n, n)
+        a_ij >= 0, with which agent i hears agent j (1/time² where α is 1); row i is what i hears.
+    position, velocity : float
+        α >= 0 and β >= 0 (β in units of time, relative to α).
+
+    Raises
+    ------
+    ArgumentError
+        On weights that are no square array of numbers >= 0 with 0 on the diagonal, or negative gains.
+
+    Examples
+    --------
+    Agent 0 leads, agent 1 hears it:
+
+    >>> law = NetConsensus([[0.0, 0.0], [1.0, 0.0]], position=2.0, velocity=3.0)
+    >>> law.acceleration(0.0, [[0.0], [1.0]], [[0.0], [1.0]]).tolist()
+    [[0.0], [-5.0]]
+    """
+
+    weights: Any
+    position: float = 1.0
+    velocity: float = 1.0
+
+    references: ClassVar[tuple[str, ...]] = ("ren-atkins-2007",)
+
+    def __post_init__(self) -> None:
+        normalise(self, ensure_weights, "weights")
+        normalise(self, ensure_nonnegative, "position", "velocity")
+
+    @cached_property
+    def laplacian(self) -> FloatArray:
+        """L = diag(Σ_j a_ij) − A, shape (n, n): row i holds what agent i hears."""
+        weights = np.array(self.weights)
+        return np.asarray(np.diag(weights.sum(axis=1)) - weights)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether each pair hears each other with one weight."""
+        weights = np.array(self.weights)
+        return bool((weights == weights.T).all())
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the net is symmetric, so that the force at rest is minus a gradient."""
+        return self.symmetric
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        if n != len(self.weights):
+            raise ArgumentError(f"weights are of {len(self.weights)} agents and the state is of {n}: expected one net")
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        u = -self.laplacian @ (self.position * q + self.velocity * p)
+        rate = -self.velocity * float(np.sum(p * (self.laplacian @ p))) if self.symmetric else float("nan")
+        return u, rate
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        if not self.symmetric:
+            return float("nan")
+        v = p - p.mean(axis=0)
+        return 0.5 * self.position * float(np.sum(q * (self.laplacian @ q))) + 0.5 * float(np.sum(v * v))
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
+        """Return −αL and −βL for each component of space, sparse."""
+        from scipy.sparse import csr_array, eye_array, kron
+
+        whole = csr_array(kron(csr_array(self.laplacian), eye_array(q.shape[1]), format="csr"))
+        return -self.position * whole, -self.velocity * whole
