@@ -16,7 +16,8 @@ from flockana.equilibria.terminal import rigid_motions
 from flockana.laws import Navigation, PairTerm
 from flockana.stability.linearise import linearise
 
-NEUTRAL = 1e-9  # of the largest stiffness: a rigid motion that meets no more than that is neutral
+NEUTRAL = 1e-9  # of the stiffness of its agents: a rigid motion that meets no more than that is neutral
+_LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which it cancels
 MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many
 
 
@@ -83,7 +84,7 @@ def complement(basis: FloatArray) -> FloatArray:
 
 
 @check_kinds
-def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
+def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray, *, zero: float = NEUTRAL) -> Blocks:
     """Classify a flock's rigid motions by the forces that hold them.
 
     Parameters
@@ -91,6 +92,8 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     stiffness, damping : ndarray, shape (n m, n m)
         K and D, such as those of a `Linearisation`, dense.
     q : ndarray, shape (n, m)
+    zero : float
+        What counts as no force, relative to those that cancel in it.
 
     Examples
     --------
@@ -98,8 +101,8 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     (2, 0)
     """
     rigid = rigid_motions(ensure_points("q", q))
-    neutral = _kernel(stiffness, rigid)
-    return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral))
+    neutral = _kernel(stiffness, rigid, zero)
+    return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral, zero))
 
 
 def is_pairs_and_pull(law: Any) -> bool:
@@ -149,12 +152,12 @@ def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
             "find_equilibrium finds one, and strict=False studies this state all the same"
         )
     linearised = linearise(law, q, allow_residual=True)
-    return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q)
+    return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q, zero=max(linearised.zero, _LEAST))
 
 
-def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:
+def _kernel(matrix: FloatArray, basis: FloatArray, zero: float) -> FloatArray:
     """Orthonormal basis of the vectors in the span of `basis` that the matrix takes to zero."""
     if basis.shape[1] == 0:
         return basis
     _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
-    return basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
+    return basis @ rows[sizes <= zero * float((np.abs(matrix) @ np.abs(basis)).max())].T

@@ -42,7 +42,8 @@ class Linearisation:
     A_sparse : scipy.sparse.csr_array, shape (2nm, 2nm)
         A of d(δq, δp)/dt = A (δq, δp), in the order ``(q.ravel(), p.ravel())``.
     zero : float
-        What counts as a zero mode: a motion that K multiplies by less than this, relative to its largest row sum.
+        What counts as a zero mode: a motion that K multiplies by less than this, relative to the row sums of the agents
+        that move.
 
     Examples
     --------
@@ -77,6 +78,8 @@ class Linearisation:
             return {**known, "poles": f"{2 * self.q.size}; slowest_modes(...) finds a few of them"}
         zero, modes = [mode.name for mode in self.zero_modes], self.modes
         known |= {"zero modes": ", ".join(zero) if len(zero) <= _FEW else f"{len(zero)}", "poles": f"{2 * self.q.size}"}
+        if (doubtful := self._dense.kernel.doubtful(self.zero)).size:
+            known["zero modes in doubt"] = f"{doubtful.size}, of stiffness {doubtful[0]:.2g} of their agents' own"
         known |= {"stable": "yes" if self.stable else "no"}
         for k, mode in enumerate(modes[:_FEW], 1):
             swing = f" ± {mode.frequency:.4g}i" if mode.frequency else ""
@@ -150,7 +153,7 @@ class Linearisation:
     @property
     def decay_rate(self) -> float:
         """Slowest decay rate off the zero modes, per time unit; negative if something grows, NaN without modes."""
-        return self.modes[0].decay_rate if self.modes else float("nan")
+        return min((mode.decay_rate for mode in self.modes), default=float("nan"))
 
     @property
     def stable(self) -> bool:
@@ -162,7 +165,7 @@ class Linearisation:
         """`decay_rate` of the shape alone, the centre of mass left out; raises where they do not separate."""
         self.ensure_split()
         centre = {id(mode) for mode in self._dense.invariant.translational}
-        return next((mode.decay_rate for mode in self.modes if id(mode) not in centre), float("nan"))
+        return min((mode.decay_rate for mode in self.modes if id(mode) not in centre), default=float("nan"))
 
     @property
     def spectral_abscissa(self) -> float:

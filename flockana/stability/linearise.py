@@ -23,7 +23,7 @@ from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
-from flockana.stability.modes import ZERO
+from flockana.stability.zero_modes import zero_threshold
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -87,8 +87,8 @@ def linearise(
     allow_residual : bool
         Linearise about a state that is no equilibrium as if it stood still.
     zero : float, optional
-        See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
-        that lets go at r is as stiff as the solver left it).
+        See `Linearisation`; by default what rounding and the force left here may feign, at most 1e-8, or what takes in
+        the soft modes that an `Equilibrium` tells of (a link that lets go at r is as stiff as the solver left it).
 
     Returns
     -------
@@ -120,7 +120,7 @@ def linearise(
     ensure_flag("allow_residual", allow_residual)
     tolerance = ensure_positive("force_tolerance", force_tolerance)
     matrix = _finite_jacobian(law, t, q, p)
-    zero = _softest(equilibrium, matrix) if zero is None else ensure_positive("zero", zero)
+    zero = _zero_threshold(law, equilibrium, t, q, p, matrix) if zero is None else ensure_positive("zero", zero)
     residual = _residual(law, t, q, p, matrix)
     if not residual <= tolerance and not allow_residual:
         raise ArgumentError(
@@ -156,14 +156,18 @@ def _positions(law: Any, equilibrium: Any) -> FloatArray:
     return q
 
 
-def _softest(equilibrium: Any, matrix: csr_array) -> float:
-    """Return the zero threshold: twice the stiffest soft mode, if larger than the default."""
+def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
+    """Return what counts as a zero mode: rounding, what the force left here may feign, soft modes already known."""
+    half, own = q.size, law.scales
+    stiffness, force = -matrix[half:, :half], law.flow(t, q, p)[0]
+    force = moving_frame(force) if law.centre_decouples else force
+    length = own.length if own else float(np.linalg.norm(moving_frame(q), axis=1).max()) or 1.0
+    zero = zero_threshold(stiffness, force, length)
     sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
-    soft, half = getattr(equilibrium, "zero_modes", 0), matrix.shape[0] // 2
-    row = float(abs(matrix[half:, :half]).sum(axis=1).max())
+    soft, row = getattr(equilibrium, "zero_modes", 0), float(abs(stiffness).sum(axis=1).max())
     if soft == 0 or row == 0.0 or (soft < sizes.size and 2.0 * sizes[soft - 1] >= sizes[soft]):
-        return ZERO
-    return max(ZERO, 2.0 * float(sizes[soft - 1]) / row)
+        return zero
+    return max(zero, 2.0 * float(sizes[soft - 1]) / row)
 
 
 def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_array:

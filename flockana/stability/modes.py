@@ -5,6 +5,8 @@ it moves by itself. Both are taken out exactly, by the left eigenvectors, before
 comes out as 0, and a double one does not smear over ±√(rounding).
 """
 
+from __future__ import annotations
+
 from cmath import sqrt
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -18,14 +20,14 @@ from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.terminal import rigid_motions
+from flockana.stability.components import IndexArray, StrongComponents, strong_components
 from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
 from flockana.stability.rounding import eigen, root_error, slowest_first
+from flockana.stability.zero_modes import ZERO, Kernel, Split, agent_scales, joined_kernel, kernel_of, split
 
-ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothing
-_SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
+_HUGE = 1e100  # answer of followers that is too long to be squared
 _SYMMETRIC = 1e-10  # relative
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
-_ROUNDINGS = 8.0  # of eps √N times the largest row sum: rounding of sums that cancel
 
 
 @dataclass(frozen=True)
@@ -82,38 +84,6 @@ class Mode:
         return self.decay_rate / abs(self.eigenvalue) if self.eigenvalue else float("nan")
 
 
-class Split(NamedTuple):
-    """Decoupling of the centre of mass: its own dynamics by axis, and the coupling's size.
-
-    `errors` are those of stiffness and damping, which remain when the agents' pair terms have cancelled.
-    """
-
-    stiffness: FloatArray
-    damping: FloatArray
-    leak: float
-    errors: tuple[float, float]
-
-    @property
-    def exact(self) -> bool:
-        """Return whether centre and shape are decoupled."""
-        return self.leak <= _SPLIT
-
-
-def split(stiffness: Any, damping: Any, m: int) -> Split:
-    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
-    unit = translations(stiffness.shape[0] // m, m)
-    own, leak, errors = [], 0.0, []
-    for matrix in (stiffness, damping):
-        size = float(abs(matrix).max()) or 1.0
-        errors.append(_ROUNDINGS * EPS * sqrt(stiffness.shape[0]).real * float(abs(matrix).sum(axis=1).max()))
-        block = unit.T @ (matrix @ unit)
-        diagonal = np.diag(block)
-        for image in (matrix @ unit, matrix.T @ unit):
-            leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
-        own.append(diagonal)
-    return Split(own[0], own[1], leak, (errors[0], errors[1]))
-
-
 class Invariant(NamedTuple):
     """Invariant subspace of separated modes, right and left (2nm, r).
 
@@ -135,8 +105,11 @@ class Invariant(NamedTuple):
 class SecondOrder:
     """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration."""
 
-    def __init__(self, q: FloatArray, stiffness: Any, damping: Any, *, zero: float = ZERO) -> None:
+    def __init__(
+        self, q: FloatArray, stiffness: Any, damping: Any, *, zero: float = ZERO, scales: FloatArray | None = None
+    ) -> None:
         self.q, self.stiffness, self.damping, self.zero = q, stiffness, damping, zero
+        self.scales = agent_scales(stiffness, q.shape[1]) if scales is None else scales
         self.scale = float(abs(stiffness).sum(axis=1).max()) or 1.0
         self.damping_scale = float(abs(damping).sum(axis=1).max()) or 1.0
         fastest = max(sqrt(self.scale).real if abs(stiffness).max() else 0.0, float(abs(damping).sum(axis=1).max()))
@@ -153,20 +126,51 @@ class SecondOrder:
         return split(self.stiffness, self.damping, self.q.shape[1])
 
     @cached_property
-    def invariant(self) -> Invariant:
-        """Return the separated modes from the whole kernel of K (dense)."""
+    def net(self) -> StrongComponents | None:
+        """Strongly connected components; None where all is one, symmetric, or splits off the centre of mass."""
+        if self.symmetric or self.split.exact:
+            return None
+        net = strong_components(self.stiffness, self.damping)
+        return net if len(net) > 1 else None
+
+    @cached_property
+    def parts(self) -> tuple[SecondOrder, ...]:
+        """Problems of the strongly connected components, each by itself; none where there is but one."""
+        return tuple(self._part(rows) for rows in self.net.indices) if self.net else ()
+
+    def _part(self, rows: IndexArray) -> SecondOrder:
+        """Return the problem of a component: of whole agents with their places, or of coordinates alone."""
+        m = self.q.shape[1]
+        agents = np.unique(rows // m)
+        q = self.q[agents] if agents.size * m == rows.size else np.zeros((rows.size, 1))
+        blocks = (matrix.tocsr()[rows][:, rows] for matrix in (self.stiffness, self.damping))
+        return SecondOrder(q, *blocks, zero=self.zero, scales=self.scales[rows])
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        """Kernels of K, of a motion of the centre that splits off left out (dense)."""
+        if self.net:
+            parts = [
+                kernel_of(part.stiffness.toarray(), part.scales, self.zero, symmetric=part.symmetric)
+                for part in self.parts
+            ]
+            return joined_kernel(self.stiffness.tocsr(), self.net, parts, self.zero)
         stiffness = self.stiffness.toarray()
         if self.split.exact:
             unit = translations(*self.q.shape)
             away = self.scale - self.split.stiffness  # translations are dealt with by themselves
             stiffness = stiffness + unit * away @ unit.T
-        if self.symmetric:
-            values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
-            kernel = vectors[:, np.abs(values) <= self.zero * self.scale]
-            return self._zero_subspace(kernel, kernel)
-        left, sizes, right = np.linalg.svd(stiffness)
-        flat = sizes <= self.zero * self.scale
-        return self._zero_subspace(right[flat].T, left[:, flat])
+        return kernel_of(stiffness, self.scales, self.zero, symmetric=self.symmetric)
+
+    @cached_property
+    def invariant(self) -> Invariant:
+        """Return the separated modes from the whole kernel of K (dense)."""
+        whole = self._zero_subspace(self.kernel.right, self.kernel.left)
+        if not self.net:
+            return whole
+        zeros = 2 * self.q.size - sum(int(np.count_nonzero(part.eigenvalues)) for part in self.parts)
+        values = np.zeros(zeros, dtype=np.complex128)
+        return whole._replace(eigenvalues=values, chains=zeros - len(whole.zero))
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
@@ -178,8 +182,9 @@ class SecondOrder:
             rigid = rest[:, sizes > 0.5]
         kernels = []
         for matrix in (self.stiffness, self.stiffness.T):
-            _, sizes, rows = np.linalg.svd(matrix @ rigid, full_matrices=False)
-            kernels.append(rigid @ rows[sizes <= self.zero * self.scale].T)
+            image, terms = matrix @ rigid, float((abs(matrix) @ np.abs(rigid)).max(initial=0.0))
+            _, sizes, rows = np.linalg.svd(image, full_matrices=False)
+            kernels.append(rigid @ rows[sizes <= self.zero * terms].T)
         if kernels[0].shape != kernels[1].shape:
             raise SolverError("a rigid motion has no stiffness but is no left eigenvector of K: use the dense modes")
         return self._zero_subspace(*kernels)
@@ -194,12 +199,61 @@ class SecondOrder:
     @cached_property
     def eigenvalues(self) -> ComplexArray:
         """Return all 2nm eigenvalues, the largest real part first; zeros exact."""
-        whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
+        rest = [part.eigenvalues[part.eigenvalues != 0.0] for part in self.parts] if self.net else [self._others[0]]
+        whole = np.concatenate([self.invariant.eigenvalues, *rest])
         return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
+
+    def local_modes(self) -> list[tuple[float, int, Mode]]:
+        """Modes of the components by rising decay rate: (rate, number of the component, mode)."""
+        found = [(mode.decay_rate, k, mode) for k, part in enumerate(self.parts) for mode in part.modes]
+        return sorted(found, key=lambda one: one[:2])
+
+    def spread(self, k: int, mode: Mode) -> ComplexArray:
+        """Return the motion of all coordinates in a mode of component k: those that hear it follow."""
+        from scipy.sparse import csc_array, eye_array
+        from scipy.sparse.linalg import splu
+
+        assert self.net is not None
+        shape: Any = np.zeros(self.q.size, np.complex128)
+        rows, down = self.net.indices[k], self.net.downstream(k)
+        shape[rows] = mode.shape.ravel()
+        # where a follower has the same pole it answers without bound: a shift by the error shows its own mode alone
+        s: Any = mode.eigenvalue + max(mode.error, EPS * self.pace)
+        if s.imag == 0.0:
+            s, shape = s.real, shape.real
+        if down.size:
+            heard = self.stiffness.tocsr()[down] + s * self.damping.tocsr()[down]
+            try:
+                follow = splu(csc_array(heard[:, down] + eye_array(down.size) * (s * s))).solve(-(heard @ shape))
+            except RuntimeError:  # singular to the last bit
+                follow = np.full(down.size, np.inf)
+            if np.abs(follow).max() < _HUGE:
+                shape[down] = follow
+            else:
+                self._follow_one_by_one(shape, s, k)
+        return shape
+
+    def _follow_one_by_one(self, shape: Any, s: complex, first: int) -> None:
+        """Put in the answers of all components from number `first` on, where these grow beyond all numbers."""
+        assert self.net is not None
+        for rows in self.net.indices[first + 1 :]:
+            heard = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
+            push = heard @ shape
+            if push.any():
+                own = heard[:, rows].toarray() + s * s * np.eye(rows.size)
+                own += EPS * np.abs(own).max() * np.eye(rows.size)
+                shape[rows] = -np.linalg.solve(own, push)
+                shape /= np.abs(shape).max()
 
     @cached_property
     def _others(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
         """Return eigenvalues, displacements and rounding errors of the remaining modes."""
+        if self.net:
+            local = self.local_modes()
+            shapes = [self.spread(k, mode) for _, k, mode in local]
+            values, errors = (np.array([getattr(mode, x) for *_, mode in local]) for x in ("eigenvalue", "error"))
+            shapes = [shape / np.abs(shape).max() for shape in shapes]
+            return values.astype(np.complex128), np.array(shapes, np.complex128).reshape(len(local), -1).T, errors
         # Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
         # the user's choice of a time unit.
         left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
@@ -230,15 +284,22 @@ class SecondOrder:
         k = kernel.shape[1]
         names, kernel = name_kernel(kernel, self.q)
         drag = cokernel.T @ (self.damping @ kernel)  # a zero mode is semisimple iff D pushes it out of the range of K
-        small = self.zero * self.damping_scale
-        u, sizes, vt = np.linalg.svd(drag) if k else (drag, np.zeros(0), drag)
-        flat = sizes <= small
-        on, off = kernel @ vt[flat].T, cokernel @ u[:, flat]
+        terms = np.abs(cokernel).T @ (abs(self.damping) @ np.abs(kernel))  # of which that is the sum
+        rows, columns = (
+            np.where(x > 0.0, x, 1.0) for x in (terms.max(axis=1, initial=0.0), terms.max(axis=0, initial=0.0))
+        )
+        rows, columns = np.sqrt(rows)[:, None], np.sqrt(columns)
+        u, sizes, vt = np.linalg.svd(drag / rows / columns) if k else (drag, np.zeros(0), drag)
+        flat = sizes <= self.zero
+        on, off = (
+            x / np.linalg.norm(x, axis=0) for x in (kernel @ (vt[flat] / columns).T, cokernel @ (u[:, flat] / rows))
+        )
         nothing = np.zeros_like
         right = [np.vstack([kernel, nothing(kernel)]), np.vstack([self._against(on), on])]
         b = self._against(off, transposed=True)
         left = [np.vstack([self.damping.T @ cokernel, cokernel]), np.vstack([off + self.damping.T @ b, b])]
-        drifting = [name for name, column in zip(names, drag.T, strict=True) if np.abs(column).max() <= small]
+        still = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
+        drifting = [name for name, slow in zip(names, still.tolist(), strict=True) if slow]
         zero = [Mode(0j, vector.reshape(self.q.shape), name) for name, vector in zip(names, kernel.T, strict=True)]
         chains = int(flat.sum())
         values: list[complex] = [0j] * (k + chains)
@@ -272,7 +333,7 @@ class SecondOrder:
         """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 where D motion is 0."""
         matrix, damping = (self.stiffness.T, self.damping.T) if transposed else (self.stiffness, self.damping)
         push = damping @ motion
-        if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
+        if not push.size or np.abs(push).max() <= self.zero * float((abs(damping) @ np.abs(motion)).max()):
             return np.zeros_like(motion)
         return -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
 

@@ -1,5 +1,6 @@
 """The slowest modes of a large flock: sparse shift-invert about zero, with zero modes set apart."""
 
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from flockana.stability.rounding import mode_errors
 _SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3
 _TRIES = (1.4, 2.0, 1.0, 2.8, 4.0, 0.7, 0.5, 0.25)  # of the ratio of the scales of K and D: the best ones first
+_DENSE = 1500  # coordinates of a strongly connected component whose whole spectrum is found
 _FIRST = 8  # eigenvalues asked for at first, for each mode that is wanted
 
 
@@ -69,6 +71,8 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
         raise ArgumentError(f"linearisation = {linearisation!r}: expected what linearise(law, equilibrium) gives")
     count = ensure_count("count", count)
     problem = linearisation.second_order
+    if problem.net and max(part.q.size for part in problem.parts) <= _DENSE:
+        return SlowModes(_of_components(problem, count), inf)
     free = 2 * problem.q.size - problem.rigid_invariant.left.shape[1]
     if 2 * count >= free - 2:
         raise ArgumentError(
@@ -87,6 +91,16 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
             break
         wanted = min(2 * wanted, free - 2)
     return SlowModes(modes[:count], known)
+
+
+def _of_components(problem: SecondOrder, count: int) -> tuple[Mode, ...]:
+    """Return the slowest modes from the whole spectra of the strongly connected components."""
+    local = problem.local_modes()
+    if count >= len(local):
+        raise ArgumentError(f"count = {count}: expected fewer modes than {len(local)}; `modes` has them all")
+    shapes = np.array([problem.spread(k, mode) for _, k, mode in local[:count]]).T
+    values, errors = (np.array([getattr(mode, x) for *_, mode in local[:count]]) for x in ("eigenvalue", "error"))
+    return problem.named(values, shapes, errors, ())
 
 
 def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count: int) -> float:

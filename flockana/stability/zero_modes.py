@@ -1,0 +1,136 @@
+"""Zero modes of δq'' + D δq' + K δq = 0: kernels of K, relative to the agents' own stiffness, component by component.
+
+How stiff a motion is, is told by what K does to it relative to the stiffness of the agents that move, not of the
+stiffest agent of all: an agent held by 1e-5 beside links of 1e3 is held. A net that is not strongly connected is looked
+at by components: the kernel of each is continued to those that hear it, where these can follow.
+"""
+
+from cmath import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import SolverError
+from flockana.equilibria.curvature import EPS
+from flockana.stability.components import StrongComponents
+from flockana.stability.mode_names import translations
+
+ZERO = 1e-8  # of the agents' own row sums: what K does to a motion that costs nothing
+_ROUNDING, _LEFT = 64.0, 16.0  # of eps √N, and of the force left at an equilibrium: what may appear as stiffness
+_BELOW, _ABOVE = 10.0, 1000.0  # times the threshold: where a motion may or may not be a zero mode
+_SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
+_ROUNDINGS = 8.0  # of eps √N times the largest row sum: rounding of sums that cancel
+
+
+class Split(NamedTuple):
+    """Decoupling of the centre of mass: its own dynamics by axis, and the coupling's size.
+
+    `errors` are those of stiffness and damping, which remain when the agents' pair terms have cancelled.
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    leak: float
+    errors: tuple[float, float]
+
+    @property
+    def exact(self) -> bool:
+        """Return whether centre and shape are decoupled."""
+        return self.leak <= _SPLIT
+
+
+def split(stiffness: Any, damping: Any, m: int) -> Split:
+    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
+    unit = translations(stiffness.shape[0] // m, m)
+    own, leak, errors = [], 0.0, []
+    for matrix in (stiffness, damping):
+        size = float(abs(matrix).max()) or 1.0
+        errors.append(_ROUNDINGS * EPS * sqrt(stiffness.shape[0]).real * float(abs(matrix).sum(axis=1).max()))
+        block = unit.T @ (matrix @ unit)
+        diagonal = np.diag(block)
+        for image in (matrix @ unit, matrix.T @ unit):
+            leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
+        own.append(diagonal)
+    return Split(own[0], own[1], leak, (errors[0], errors[1]))
+
+
+def agent_scales(stiffness: Any, m: int) -> FloatArray:
+    """Return the largest row sum of K among the coordinates of each agent, by coordinate; 1 where nothing acts."""
+    rows = np.asarray(abs(stiffness).sum(axis=1)).reshape(-1, m).max(axis=1)
+    return np.repeat(np.where(rows > 0.0, rows, 1.0), m)
+
+
+def zero_threshold(stiffness: Any, force: FloatArray, length: float) -> float:
+    """Return the stiffness, relative to the agents' own, that rounding and a force (n, m) left at rest may feign."""
+    scales = agent_scales(stiffness, force.shape[1])
+    left = _LEFT * float((np.abs(force).ravel() / scales).sum()) / length  # a force f turns into f/length, as a stress
+    return min(ZERO, max(_ROUNDING * EPS * sqrt(force.size).real, left))
+
+
+class Kernel(NamedTuple):
+    """Right and left kernel of K, and all its sizes relative to the agents' own stiffness, rising."""
+
+    right: FloatArray
+    left: FloatArray
+    sizes: FloatArray
+
+    def doubtful(self, zero: float) -> FloatArray:
+        """Return the sizes beside the threshold, of which it is hard to say whether they are 0."""
+        return self.sizes[(self.sizes > zero / _BELOW) & (self.sizes < zero * _ABOVE)]
+
+
+def kernel_of(stiffness: FloatArray, scales: FloatArray, zero: float, *, symmetric: bool) -> Kernel:
+    """Return the kernels of a dense K: motions that it multiplies by at most `zero`, relative to `scales`."""
+    if symmetric:
+        half = 1.0 / np.sqrt(scales)
+        values, vectors = np.linalg.eigh(half[:, None] * (0.5 * (stiffness + stiffness.T)) * half)
+        flat = np.abs(values) <= zero
+        right = _orthonormal(half[:, None] * vectors[:, flat])
+        return Kernel(right, right, np.sort(np.abs(values)))
+    left, sizes, rows = np.linalg.svd(stiffness / scales[:, None])
+    flat = sizes <= zero
+    return Kernel(rows[flat].T, _orthonormal(left[:, flat] / scales[:, None]), sizes[::-1])
+
+
+def joined_kernel(stiffness: Any, net: StrongComponents, parts: list[Kernel], zero: float) -> Kernel:
+    """Return the kernels of a sparse K from those of its strongly connected components."""
+    forward, backward = range(len(net)), range(len(net) - 1, -1, -1)
+    right = _continued(stiffness, net, [(part.right, part.left) for part in parts], forward, zero)
+    left = _continued(stiffness.T.tocsr(), net, [(part.left, part.right) for part in parts], backward, zero)
+    if right.shape != left.shape:
+        raise SolverError(
+            f"K has {right.shape[1]} zero modes by its rows and {left.shape[1]} by its columns: its rank is in doubt "
+            f"at {zero:.2g}; give `zero`, what counts as a zero mode"
+        )
+    return Kernel(right, left, np.sort(np.concatenate([part.sizes for part in parts])))
+
+
+def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, zero: float) -> FloatArray:
+    """Return a kernel built up component by component: each follows those it hears, as far as it can."""
+    basis = np.zeros((stiffness.shape[0], 0))
+    for k in order:
+        rows, (free, against) = net.indices[k], kernels[k]
+        block = stiffness[rows]
+        if basis.shape[1] and block.nnz:
+            push = block @ basis
+            if free.shape[1] and push.any():  # a part that can move freely cannot take up a force along that motion
+                stuck = against.T @ push
+                terms = float((np.abs(against).T @ (abs(block) @ np.abs(basis))).max())
+                _, sizes, turn = np.linalg.svd(stuck)
+                held = int(np.sum(sizes > zero * terms))
+                basis, push = basis @ turn[held:].T, push @ turn[held:].T
+            if push.any():
+                own = block[:, rows].toarray()
+                scale = np.abs(own).sum(axis=1, keepdims=True)
+                scale[scale == 0.0] = 1.0
+                basis[rows] = -np.linalg.lstsq(own / scale, push / scale, rcond=zero)[0]
+                basis = basis / np.linalg.norm(basis, axis=0)
+        fresh = np.zeros((len(basis), free.shape[1]))
+        fresh[rows] = free
+        basis = np.hstack([basis, fresh])
+    return _orthonormal(basis)
+
+
+def _orthonormal(basis: FloatArray) -> FloatArray:
+    return np.linalg.qr(basis)[0] if basis.shape[1] else basis
