@@ -22,7 +22,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.equilibria.terminal import rigid_motions
 from flockana.stability.components import IndexArray, StrongComponents, strong_components
 from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
-from flockana.stability.rounding import eigen, root_error, slowest_first
+from flockana.stability.rounding import eigen_of_one, root_error, slowest_first
 from flockana.stability.zero_modes import ZERO, Kernel, Split, agent_scales, joined_kernel, kernel_of, split
 
 _HUGE = 1e100  # answer of followers that is too long to be squared
@@ -262,7 +262,7 @@ class SecondOrder:
         push = np.hstack([self.stiffness.toarray() / -pace, -self.damping.toarray()])
         whole = np.vstack([np.eye(size, 2 * size, size) * pace, push])
         # A maps what is orthogonal to `left` into itself
-        values, vectors, errors = eigen(turn("R", "N", turn("L", "T", whole))[apart:, apart:])
+        values, vectors, errors = eigen_of_one(turn("R", "N", turn("L", "T", whole))[apart:, apart:])
         parts = (np.vstack([np.zeros((apart, len(values))), part]) for part in (vectors.real, vectors.imag))
         real, imag = (turn("L", "N", part)[:size] for part in parts)
         return values, real + 1j * imag, errors

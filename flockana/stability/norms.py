@@ -17,7 +17,7 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.stability.blocks import Blocks, complement, ensure_pairs_and_pull, law_blocks
-from flockana.stability.rounding import eigen
+from flockana.stability.rounding import eigenvalues
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -190,7 +190,7 @@ def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
 
 def _stable(a: FloatArray) -> bool:
     """Return whether every mode decays beyond rounding."""
-    values, _, errors = eigen(a)
+    values, errors = eigenvalues(a)
     return bool(np.all(values.real < -errors))
 
 

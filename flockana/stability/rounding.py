@@ -15,18 +15,51 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
+from flockana.stability.components import strong_components
 
 _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 
 
+def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, FloatArray]:
+    """Return eigenvalues with error bounds, component by strongly connected component, in the order of `eigen`."""
+    parts = [eigen_of_one(matrix[np.ix_(rows, rows)], off) for rows in strong_components(matrix).indices]
+    values, errors = (np.concatenate([part[i] for part in parts] or [np.zeros(0)]) for i in (0, 2))
+    return values.astype(np.complex128), errors
+
+
 def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's error, of rounding and of the matrix.
+
+    A block triangular matrix has the eigenvalues of its strongly connected components, with the errors of these.
 
     Parameters
     ----------
     off : float
         By what share of its size the matrix itself may be off.
     """
+    net = strong_components(matrix)
+    if len(net) < 2:
+        return eigen_of_one(matrix, off)
+    vectors, column = np.zeros(matrix.shape, np.complex128), 0
+    for k, rows in enumerate(net.indices):
+        values, shapes, errors = eigen_of_one(matrix[np.ix_(rows, rows)], off)
+        for value, shape, error in zip(values, shapes.T, errors, strict=True):
+            vector = vectors[:, column]
+            vector[rows] = shape
+            shifted = value + max(float(error), EPS * float(np.abs(matrix).max()))  # beside an equal one of a listener
+            for own in net.indices[k + 1 :]:
+                push = matrix[own] @ vector
+                if push.any():
+                    vector[own] = np.linalg.solve(shifted * np.eye(own.size) - matrix[np.ix_(own, own)], push)
+                    vector /= np.abs(vector).max()
+            vector /= np.linalg.norm(vector)
+            column += 1
+    every, errors = eigenvalues(matrix, off)
+    return every, vectors, errors
+
+
+def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Return eigenvalues, right eigenvectors and error bounds of a matrix taken as a whole."""
     from scipy.linalg import eig
     from scipy.linalg.lapack import dgebal
 

@@ -8,7 +8,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.design import GainDesign, design_gains
 from flockana.stability.gain_problems import gain_problem
-from flockana.stability.rounding import eigen
+from flockana.stability.rounding import eigenvalues
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, spectral, undecided
 
 _WORTH = 0.01  # least relative improvement that counts: both searches end only near the best, where roots coalesce
@@ -44,7 +44,7 @@ def _ratio_error(design: GainDesign) -> float:
     # 1e-4.
     slow = []
     for gains in (design.homogeneous, design.heterogeneous):
-        values, _, errors = eigen(design.problem.matrix(gains))
+        values, errors = eigenvalues(design.problem.matrix(gains))
         k = int(np.argmax(values.real))
         slow.append(float(errors[k]) / abs(float(values[k].real)))
     return design.ratio * (sum(slow) + _CUSP)

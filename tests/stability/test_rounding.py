@@ -16,7 +16,7 @@ from flockana.stability.centre_path import centre_path
 from flockana.stability.decay import decay
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
-from flockana.stability.rounding import eigen, slowest_first
+from flockana.stability.rounding import eigen, eigen_of_one, eigenvalues, slowest_first
 from flockana.stability.sweeps import gain_sweep
 from flockana.stability.translational import CentreOfMass
 
@@ -197,3 +197,21 @@ def test_a_sweep_keeps_its_neutral_columns_in_every_unit():
     there = gain_sweep(rescale(law, time=1e3), hexagonal_spiral(4, 7.0), "c2_alpha", values / 1e3, follow=False)
     assert here.neutral == there.neutral == 5
     np.testing.assert_allclose(1e3 * there.abscissa, here.abscissa, rtol=1e-8)
+
+
+def test_a_block_triangular_matrix_has_the_eigenvalues_of_its_blocks():
+    """A row of 50 equal blocks, numbered from the end: no Jordan block smears, and vectors solve the whole."""
+    block = np.array([[-0.2, 1.0], [-1.0, -0.2]])
+    for n in (3, 50):
+        matrix = np.kron(np.eye(n), block) + np.kron(np.eye(n, k=1), [[0.0, 0.0], [0.3, 0.0]])
+        values, errors = eigenvalues(matrix)
+        assert np.abs(values.real + 0.2).max() <= errors.max() < 1e-14
+        whole, vectors, bounds = eigen(matrix)
+        np.testing.assert_array_equal(whole, values)
+        np.testing.assert_array_equal(bounds, errors)
+        assert np.abs(matrix @ vectors - vectors * values).max() < 1e-10
+        np.testing.assert_allclose(np.linalg.norm(vectors, axis=0), 1.0, rtol=1e-12)
+    other = np.array([[-1.0, 0.5, 0.0], [0.0, -2.0, 0.0], [1.0, 1.0, -3.0]])
+    values, vectors, _ = eigen(other)
+    assert sorted(values.real) == [-3.0, -2.0, -1.0]
+    assert np.abs(other @ vectors - vectors * values).max() < 1e-14
