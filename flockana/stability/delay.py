@@ -26,9 +26,11 @@ from flockana.base.progress import progress_bar
 from flockana.equilibria.curvature import EPS
 from flockana.laws import Law
 from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
+from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
 from flockana.stability.linearise import linearise
-from flockana.stability.rounding import eigen
+from flockana.stability.rounding import eigenvalues
+from flockana.stability.zero_modes import ZERO, kernel_of
 
 DELAYED = ("all", "pairs", "neighbours")
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
@@ -214,14 +216,9 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
 
 def _strong_parts(system: DelaySystem) -> Iterator[DelaySystem]:
     """Strongly connected parts: the roots of the whole are those of its parts, each taken by itself."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
     matrices = (*system.prompt, *system.late)
-    heard = csr_array(np.sum([np.abs(part) for part in matrices], axis=0))
-    count, part_of = connected_components(heard, directed=True, connection="strong")
-    for k in range(count):
-        own = np.ix_(part_of == k, part_of == k)
+    for rows in strong_components(*matrices).indices:
+        own = np.ix_(rows, rows)
         k0, d0, k1, d1 = (part[own] for part in matrices)
         yield DelaySystem((k0, d0), (k1, d1), system.neutral)
 
@@ -232,8 +229,8 @@ def _stable(system: DelaySystem) -> bool:
     found = []
     for part in _strong_parts(system):
         (k0, d0), (k1, d1) = part.prompt, part.late
-        found.append(eigen(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
-    roots, errors = np.concatenate([x[0] for x in found]), np.concatenate([x[2] for x in found])
+        found.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
+    roots, errors = (np.concatenate(x) for x in zip(*found, strict=True))
     neutral = np.abs(roots) <= errors
     neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
     return bool(np.all(roots.real[~neutral] < -errors[~neutral]))
@@ -270,22 +267,46 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
     [0.0, 0.0]
     """
     ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
-    delay, nodes = ensure_positive("delay", delay), ensure_count("nodes", nodes)
+    delay, nodes, count = ensure_positive("delay", delay), ensure_count("nodes", nodes), ensure_count("count", count)
+    parts = list(_strong_parts(system))
+    neutral = [_neutral_roots(part, delay) for part in parts] if len(parts) > 1 else [system.neutral]
+    each = zip(parts, neutral, strict=True)
+    found = np.concatenate([_rightmost_of_part(part, zeros, delay, nodes, count) for part, zeros in each])
+    found = found[np.argsort(-found.real, kind="stable")]
+    pairs = [(s,) if s.imag == 0.0 else (s, s.conjugate()) for s in found.tolist()]  # each with its conjugate
+    return np.array([s for pair in pairs for s in pair], dtype=np.complex128)[:count]
+
+
+def _neutral_roots(part: DelaySystem, delay: float) -> int:
+    """Return how many roots a strongly connected part has at s = 0 for a delay."""
+    if part.neutral == 0:
+        return 0
+    (k0, d0), (k1, d1) = part.prompt, part.late
+    rows = np.abs(k0 + k1).sum(axis=1)
+    kernel = kernel_of(k0 + k1, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
+    slope = d0 + d1 - delay * k1
+    drag, terms = kernel.left.T @ slope @ kernel.right, np.abs(kernel.left).T @ np.abs(slope) @ np.abs(kernel.right)
+    held = np.linalg.matrix_rank(drag, tol=ZERO * float(terms.max(initial=0.0))) if drag.size else 0
+    return 2 * kernel.right.shape[1] - int(held)
+
+
+def _rightmost_of_part(system: DelaySystem, neutral: int, delay: float, nodes: int, count: int) -> ComplexArray:
+    """Return the rightmost roots with Im s >= 0 of a strongly connected part, `neutral` roots at 0 left out."""
     (k0, d0), (k1, d1) = system.prompt, system.late
     size, zero, one = len(k0), np.zeros_like(k0), np.eye(len(k0))
     now, then = np.block([[zero, one], [-k0, -d0]]), np.block([[zero, zero], [-k1, -d1]])
-    generator = np.kron(_chebyshev(nodes) * (2.0 / delay), np.eye(2 * size))
-    generator[: 2 * size] = 0.0
-    generator[: 2 * size, : 2 * size] = now
-    generator[: 2 * size, -2 * size :] += then
+    if not then.any():  # nothing is late
+        nodes, generator = 0, now
+    else:
+        generator = np.kron(_chebyshev(nodes) * (2.0 / delay), np.eye(2 * size))
+        generator[: 2 * size] = 0.0
+        generator[: 2 * size, : 2 * size] = now
+        generator[: 2 * size, -2 * size :] += then
     values = np.linalg.eigvals(generator)
-    values = np.delete(values, np.argsort(np.abs(values), kind="stable")[: system.neutral])
+    values = np.delete(values, np.argsort(np.abs(values), kind="stable")[:neutral])
     upper = values[values.imag >= 0.0]
-    upper = upper[np.argsort(-upper.real, kind="stable")][: ensure_count("count", count)]
-    refined = np.array([_refine(system, complex(s), delay) for s in upper])
-    refined = refined[np.argsort(-refined.real, kind="stable")]
-    pairs = [(s,) if s.imag == 0.0 else (s, s.conjugate()) for s in refined.tolist()]  # each with its conjugate
-    return np.array([s for pair in pairs for s in pair], dtype=np.complex128)[:count]
+    upper = upper[np.argsort(-upper.real, kind="stable")][:count]
+    return np.array([_refine(system, complex(s), delay) for s in upper], dtype=np.complex128)
 
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:

@@ -5,6 +5,7 @@ from math import pi
 import networkx
 import numpy as np
 import pytest
+from scipy.special import lambertw
 
 from flockana import laplacian
 from flockana.base.errors import ArgumentError
@@ -88,3 +89,40 @@ def test_bad_roots():
         consensus_root(0.0, 1.0)
     with pytest.raises(ArgumentError, match="delay = -1"):
         consensus_root(1.0, -1.0)
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.3, 1.0])
+def test_rightmost_roots_of_a_path_are_those_of_each_follower(delay):
+    """S8: each of 18 followers adds s + e^(−sτ), the leader nothing."""
+    matrix = np.diag([0.0] + [1.0] * 18) - np.diag([1.0] * 18, -1)
+    system = consensus_system(matrix)
+    found = rightmost_roots(system, delay, count=6)
+    assert np.abs(found.real - consensus_root(1.0, delay).real).max() < 1e-12
+    assert found.size == 6
+
+
+def test_roots_of_a_star_a_tree_and_a_ring_are_lamberts():
+    star = np.zeros((6, 6))
+    star[1:, 0], star[np.arange(1, 6), np.arange(1, 6)] = -np.arange(1.0, 6.0), np.arange(1.0, 6.0)
+    found = rightmost_roots(consensus_system(star), 0.1, count=5)
+    expected = sorted((consensus_root(float(k), 0.1) for k in range(1, 6)), key=lambda s: -s.real)
+    assert np.abs(found[0] - expected[0]) < 1e-12
+    ring = np.eye(5) - np.roll(np.eye(5), -1, axis=1)
+    values = 1.0 - np.exp(2j * pi * np.arange(1, 5) / 5)
+    roots = lambertw(-values * 0.2) / 0.2
+    best = rightmost_roots(consensus_system(ring), 0.2, count=2)
+    assert np.abs(best[0].real - roots.real.max()) < 1e-11
+    below = np.zeros((8, 8))  # the ring leads a chain of three, the last of which hears one of the ring as well
+    below[:5, :5] = ring
+    for k, heard in ((5, (0,)), (6, (5,)), (7, (6, 2))):
+        below[k, list(heard)], below[k, k] = -1.0, len(heard)
+    both = np.concatenate([roots, lambertw(-np.array([1.0, 1.0, 2.0]) * 0.2) / 0.2])
+    assert np.abs(rightmost_roots(consensus_system(below), 0.2, count=1)[0].real - both.real.max()) < 1e-11
+
+
+def test_a_net_without_links_has_no_roots_but_its_neutral_ones():
+    system = consensus_system(np.zeros((3, 3)))
+    assert rightmost_roots(system, 0.3).size == 0
+    one_link = np.array([[0.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
+    found = rightmost_roots(consensus_system(one_link), 0.3, count=2)
+    assert found[0] == pytest.approx(consensus_root(1.0, 0.3), abs=1e-12)

@@ -16,7 +16,7 @@ from flockana.stability.centre_path import centre_path
 from flockana.stability.decay import decay
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
-from flockana.stability.rounding import eigen, eigen_of_one, eigenvalues, slowest_first
+from flockana.stability.rounding import eigen, eigenvalues, slowest_first
 from flockana.stability.sweeps import gain_sweep
 from flockana.stability.translational import CentreOfMass
 
