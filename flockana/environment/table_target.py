@@ -75,7 +75,13 @@ class TableTarget(Target):
     consistent = True
 
     def acceleration_bound(self, t0: float) -> float | None:
-        """Return the largest ‖d²q_r/dt²‖ of the pieces that reach beyond t0; infinite if the velocity jumps there."""
+        """Return the largest ‖d²q_r/dt²‖ of the pieces that reach beyond t0; infinite if the velocity jumps there.
+
+        Parameters
+        ----------
+        t0 : float
+            Time from which on the bound holds.
+        """
         ends = [t for t in (self.t[0], self.t[-1]) if t >= t0]
         if any(self._path(t, 1).any() for t in ends):
             return inf

@@ -80,7 +80,13 @@ class Target(ABC):
         return None
 
     def acceleration_bound(self, t0: float) -> float | None:
-        """Return a bound of ‖d²q_r/dt²‖ for all t >= t0, by closed form; infinite of a jump, None if unknown."""
+        """Return a bound of ‖d²q_r/dt²‖ for all t >= t0, by closed form; infinite of a jump, None if unknown.
+
+        Parameters
+        ----------
+        t0 : float
+            Time from which on the bound holds.
+        """
         return None
 
     @property

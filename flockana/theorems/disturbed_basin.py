@@ -59,19 +59,19 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
     name = "the start lies in a certified basin, too deep for the disturbance to leave"
     if len(q) > _MOST:
         text = f"{len(q)} agents: expected at most {_MOST}, of which a basin is proved here"
-        return condition(name, False, detail=text), None
+        return condition(name, False, detail=text, decided="enclosed"), None
     try:
         basin = certify(find_equilibrium(in_lengths_of_unit(law.law), q))
         bound = ultimate_bound(basin, largest_push(law, q.shape) / unit)
     except FlockanaError as error:
-        return condition(name, False, detail=f"no basin: {error}"), None
+        return condition(name, False, detail=f"no basin: {error}", decided="enclosed"), None
     largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
     margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
     detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{rounded}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
-        return condition(name, False, margin, text), None
-    return condition(name, True, margin, detail), _Case(bound, q, p, unit)
+        return condition(name, False, margin, text, decided="enclosed"), None
+    return condition(name, True, margin, detail), _Case(bound, q, p, unit, decided="enclosed")
 
 
 def _stays(seen: Observed, case: _Case) -> Claim:

@@ -11,7 +11,7 @@ from flockana.interactions.weights import Weight
 from flockana.laws.composition import Composition
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.theorem import Decided, Hypothesis
 
 if TYPE_CHECKING:
     from flockana.certified.tube import Tube
@@ -20,7 +20,13 @@ _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 
 
 def condition(
-    name: str, holds: bool, margin: float | None = None, detail: str = "", *, error: float | None = None
+    name: str,
+    holds: bool,
+    margin: float | None = None,
+    detail: str = "",
+    *,
+    error: float | None = None,
+    decided: Decided = "exact",
 ) -> Hypothesis:
     """Return a hypothesis that is met or unmet, never assumed.
 
@@ -34,13 +40,15 @@ def condition(
         In words.
     error : float, optional
         Of the margin.
+    decided : {"exact", "proved", "enclosed"}
+        By which means; exact means from parameters, a start, or a closed form.
 
     Examples
     --------
     >>> condition("c1α > 0", False, 0.0).status
     'unmet'
     """
-    return Hypothesis(name, "met" if holds else "unmet", margin, detail, error)
+    return Hypothesis(name, "met" if holds else "unmet", margin, detail, error, decided)
 
 
 def law_is(
@@ -101,7 +109,7 @@ def hypothesis_from_fact(name: str, fact: Fact) -> Hypothesis:
     'unmet'
     """
     left = f" (open on a length of {fact.width:.2g})" if fact.status == "assumed" and fact.width > 0.0 else ""
-    return Hypothesis(name, fact.status, detail=fact.detail + left)
+    return Hypothesis(name, fact.status, detail=fact.detail + left, decided="proved")
 
 
 def smooth_pair(run: Observed) -> Hypothesis:
@@ -202,5 +210,5 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
     """
     margin, error = float(room.mid), float(room.half_width)
     if room.lo > 0.0 or room.hi <= 0.0:
-        return condition(name, bool(room.lo > 0.0), margin, detail, error=error)
+        return condition(name, bool(room.lo > 0.0), margin, detail, error=error, decided="enclosed")
     return Hypothesis(name, "assumed", margin, f"{detail}; equal within the error", error)

@@ -114,7 +114,7 @@ def verify_recording(
     law.check_dimension(rec.m)
     law.check_agents(rec.n)
     follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
-    first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail)
+    first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail, None, "enclosed")
     named = f"{_named(rec, subject)}: {rec.accuracy}"
     if follow.status == "unmet":
         claims = item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)

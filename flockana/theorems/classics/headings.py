@@ -34,9 +34,9 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
     if connected.certain:
-        return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}")
+        return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}", decided="enclosed")
     if parted.certain:
-        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, none can follow: {parted.text}")
+        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, none can follow: {parted.text}", decided="enclosed")
     return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
 
 

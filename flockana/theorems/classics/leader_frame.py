@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.dynamics.between import Between
-from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.nets import components, links
 from flockana.theorems.limits import Certificate, decays_to_zero
@@ -39,14 +39,18 @@ def some_informed(run: Trajectory) -> Hypothesis:
     return condition(name, alike, detail=f"{int(who.sum())} of {run.n} agents are informed")
 
 
-def constant_velocity(run: Trajectory) -> Hypothesis:
-    """Return the hypothesis that the leader moves at constant velocity, and reports it."""
-    target, name = run.law.target, "the leader's velocity is constant"
-    if type(target) in (LinearTarget, StaticTarget):
-        return Hypothesis(name, "met", detail=type(target).__name__)
+def constant_velocity(run: Trajectory, *, any_p_r: bool = False) -> Hypothesis:
+    """Return the hypothesis that the leader's velocity is constant and p_r; with `any_p_r`, off it by a constant."""
+    # p_r = dq_r/dt + e acts on agents of one c1 and one c2 as the true velocity of a leader at q_r + (c2/c1) e does.
+    target = run.law.target
+    name = "the leader's velocity is constant" + (", and so is p_r" if any_p_r else "")
+    if target.constant_velocity and target.consistent is not None:
+        told = any_p_r or target.consistent
+        detail = type(target).__name__ if told else "the leader reports another velocity than it has"
+        return condition(name, told, detail=detail)
     feedforward = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
-    spread = float(np.abs(feedforward - feedforward[0, 1]).max())
-    if spread > 64.0 * EPS * float(np.abs(feedforward).max()):
+    spread = float(np.abs(feedforward - (feedforward[0] if any_p_r else feedforward[0, 1])).max())
+    if target.constant_velocity is False or spread > 64.0 * EPS * float(np.abs(feedforward).max()):
         return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or differs from the reported one")
     return Hypothesis(name, "assumed", detail="constant at all steps of the run")
 
@@ -103,6 +107,11 @@ def comes_to_rest(
     """Return the claim that the velocities of some agents, of a run in its leader's frame, die out."""
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
     what = f"the largest of {count} differences from the leader's velocity"
-    about: dict[str, Any] = {"series": speeds, "what": what, "of": "the largest difference", "stated": "p_i - p_r -> 0"}
+    about: dict[str, Any] = {
+        "series": speeds,
+        "what": what,
+        "of": "the largest difference",
+        "stated": "p_i - dq_r/dt -> 0",
+    }
     claim = decays_to_zero(seen, name, needs, certificates, proof=proof, **about)
     return claim.described(witness={"time": float(seen.t[-1]), "agents": count})

@@ -45,16 +45,20 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     """
     run = observed.run
     gains, steady = positive(observed, c1_alpha="c1α", c2_alpha="c2α"), leader_frame.constant_velocity(run)
-    needs = [leader_frame.some_informed(run), gains, steady]
-    if unmet(needs):
+    follow = [leader_frame.some_informed(run), gains, leader_frame.constant_velocity(run, any_p_r=True)]
+    needs = [*follow[:2], steady]
+    if unmet(follow):
         return needs, []
     seen = leader_frame.as_the_leader_sees(observed)
+    rests = leader_frame.comes_to_rest(seen, leader_frame.informed(run), follow, "informed", proof="matched-velocities")
+    if unmet(needs):  # a constant error of p_r moves the place that the flock follows, and not its velocity
+        return needs, [rests]
     below = below_multiple(seen.energy[0], run.law.gains.c1_alpha * run.law.alpha.c_star)
     lasting, linked = _lasting(run)
     return [*needs, lasting, below], [
         never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
         stays_within(seen, needs, name="distance", proof=PROOF),
-        leader_frame.comes_to_rest(seen, leader_frame.informed(run), needs, "informed", proof="matched-velocities"),
+        rests,
         leader_frame.comes_to_rest(seen, linked, [*needs, lasting], "linked"),
         distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),

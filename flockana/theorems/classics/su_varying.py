@@ -18,6 +18,7 @@ from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
 from flockana.theorems.olfati_saber.energy import pairs_dissipate
+from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, Observed, Trajectory, condition, judged, law_is, positive
 
@@ -41,6 +42,8 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
     terms = [type(term) for term in law.terms]
     alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
     known = alike and type(law.alpha) is AlphaInteraction
+    if known and (tells := consistent(run)).status != "met":
+        return Hypothesis(name, tells.status, tells.margin, f"{tells.name}: {tells.detail}", tells.error)
     return condition(name, known, detail=", ".join(term.__name__ for term in terms))
 
 

@@ -16,12 +16,12 @@ def _connected(seen: Observed) -> Hypothesis:
     blur = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
     for q, t, off in zip(run.q, run.t, blur, strict=True):
         if components(run.n, links(q, run.law.r + float(off))).max() > 0:
-            return condition(name, False, detail=f"the net has several components at t = {t:.6g}")
+            return condition(name, False, detail=f"the net has several components at t = {t:.6g}", decided="enclosed")
     pairs = out_of_range(seen)
     start = components(run.n, links(run.q[0], run.law.r - float(blur[0]))).max() == 0
     if start and pairs.hi < run.n - 1:
         text = f"the energy of the start can put {pairs.mid:.3g} pairs out of range; to part takes {run.n - 1}"
-        return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text)
+        return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text, decided="enclosed")
     return Hypothesis(name, "assumed", None, "connected at every sample; its energy does not guarantee more")
 
 

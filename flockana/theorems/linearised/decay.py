@@ -150,7 +150,7 @@ def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     linear, why = _terminal(seen)
     stable = linear is not None and bool(linear.modes) and linear.stable
-    given = [condition("an equilibrium near the last state is stable", stable, detail=why)]
+    given = [condition("an equilibrium near the last state is stable", stable, detail=why, decided="enclosed")]
     if linear is None or not stable:
         return given, []
     try:

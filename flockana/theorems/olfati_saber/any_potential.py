@@ -103,17 +103,19 @@ def stays_together(seen: Observed) -> Hypothesis:
     name = "every solution from Ω_c is a cohesive dynamic flock"
     if parts[worst] > 1:
         detail = f"this run is no flock at t = {seen.t[worst]:.4g}, where it has {int(parts[worst])} components"
-        return Hypothesis(name, "unmet", 1.0 - float(parts[worst]), detail)
+        return Hypothesis(name, "unmet", 1.0 - float(parts[worst]), detail, decided="enclosed")
     energy, apart = collisions.energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
     if energy.lo >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
-        return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
+        return Hypothesis(name, "unmet", apart - float(energy.mid), detail, decided="enclosed")
     parted, of = parting_energy(seen), "ψ_α(r_α)" if is_paper(seen) else "(ψ(r) - L)"
     what = "H" if is_paper(seen) else "E"
     for t, height in ((seen.t[0], energy), (seen.t[-1], collisions.energy_at_end(seen))):
         if (height := above_least(seen, height)).hi < parted:  # limits are those of the start at that time
             detail = f"at t = {t:.4g} {what} = {height.mid:.5g}: a disconnected state has (n-1) c1α {of} = {parted:.5g}"
-            return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
+            return Hypothesis(
+                name, "met", parted - float(height.mid), detail, float(height.half_width), decided="enclosed"
+            )
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; other solutions are not known")
 
 

@@ -132,7 +132,9 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
     detail += f" and at most {high:.5g}" if np.isfinite(high) else ""
     bound = high if status == "unmet" else low
     margin = float(bound - energy.mid)
-    return Hypothesis("H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width))
+    return Hypothesis(
+        "H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width), decided="enclosed"
+    )
 
 
 def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothesis:

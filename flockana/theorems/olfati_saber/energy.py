@@ -137,10 +137,10 @@ def stays_outside(run: Observed) -> Hypothesis:
     rounding = 64.0 * EPS * float(np.abs(run.run.q).max()) + off
     where = f"(agent {least.agent} at obstacles[{least.obstacle}], t = {least.time:.4g})"
     if least.lower > rounding:
-        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.4g} {where}")
+        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.4g} {where}", decided="enclosed")
     status: HypothesisStatus = "unmet" if least.reached < -rounding else "assumed"
     text = f"clearance {least.reached:.4g} {where}, and {least.lower:.4g} at least"
-    return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text)
+    return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text, decided="enclosed")
 
 
 def smooth_where_needed(run: Observed) -> list[Hypothesis]:

@@ -71,6 +71,7 @@ def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
         status,
         -max(way / run.scales.length, change / speed),
         _describe_rest(moves, any_p_r, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
+        decided="exact" if moves or _is_closed(target) else "assumed",
     )
 
 
@@ -128,9 +129,9 @@ def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], F
     if off + error <= allowed:
         times = _sample_times(run)
         if _seen_everywhere(run, times):
-            return Hypothesis(name, "met", -off, error=error)
+            return Hypothesis(name, "met", -off, "as its user states how slowly it changes", error, "assumed")
         detail = f"so at {times.size} times; nobody states how slowly it changes (changes_slower_than)"
         return Hypothesis(name, "assumed", -off, detail, error)
     if off - error <= allowed:
         return Hypothesis(name, "assumed", -off, "the samples are too sparse to decide", error)
-    return Hypothesis(name, "unmet", -off, f"{what} is off by up to {off:.3g}", error)
+    return Hypothesis(name, "unmet", -off, f"{what} is off by up to {off:.3g}", error, decided="enclosed")

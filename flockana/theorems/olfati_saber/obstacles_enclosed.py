@@ -35,13 +35,17 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         pulls = [pull.power(p[i : i + m], p[i : i + m], Piece.CORE) for i in range(0, half, m)]
         slack.append(-sum(pulls, arb(0)))
     if not _declared_velocity(tube).any() or all(x >= 0 for x in slack):
-        return condition(name, True, detail="at all times of the tube"), 0
+        return condition(name, True, detail="at all times of the tube", decided="enclosed"), 0
     doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
     since = doubtful + 1
     if since < len(slack) and tube.t[-1] - tube.t[since] >= tube.law.scales.time:
-        return condition(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
+        return condition(
+            name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube", decided="enclosed"
+        ), since
     if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
-        return condition(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
+        return condition(
+            name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end", decided="enclosed"
+        ), 0
     return Hypothesis(name, "assumed", detail="the tube is too wide or too short to decide"), 0
 
 
@@ -53,10 +57,12 @@ def _stays_outside(tube: Tube) -> Hypothesis:
     least = tube.min_clearance()
     where = f"(agent {least.agent} at obstacles[{least.obstacle}], about t = {least.time:.4g})"
     if least.lower > 0.0:
-        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.6g} {where}, proved")
+        return Hypothesis(
+            name, "met", least.lower, f"clearance at least {least.lower:.6g} {where}, proved", decided="enclosed"
+        )
     inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
     text = "certainly inside" if inside else "the tube is too wide to tell"
-    return Hypothesis(name, "unmet" if inside else "assumed", least.lower, f"{text} {where}")
+    return Hypothesis(name, "unmet" if inside else "assumed", least.lower, f"{text} {where}", decided="enclosed")
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:

@@ -114,7 +114,7 @@ def test_varying_leader_is_vacuous_otherwise(other):
     ],
 )
 def test_a_velocity_is_constant_if_none_that_is_told_or_moved_at_differs_from_the_first(told, moving, off):
-    target = SimpleNamespace(state=lambda t: ([5.0 * t, 0.0], told(t)), rate=moving)
+    target = SimpleNamespace(state=lambda t: ([5.0 * t, 0.0], told(t)), rate=moving, constant_velocity=None)
     run = SimpleNamespace(law=SimpleNamespace(target=target), path=SimpleNamespace(t=np.array([0.0, 1.0, 2.0])))
     found = leader_frame.constant_velocity(run)
     assert found.status == ("unmet" if off else "assumed")
