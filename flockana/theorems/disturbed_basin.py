@@ -71,7 +71,7 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
         return condition(name, False, margin, text, decided="enclosed"), None
-    return condition(name, True, margin, detail), _Case(bound, q, p, unit, decided="enclosed")
+    return condition(name, True, margin, detail, decided="enclosed"), _Case(bound, q, p, unit)
 
 
 def _stays(seen: Observed, case: _Case) -> Claim:
