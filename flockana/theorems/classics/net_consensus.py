@@ -1,0 +1,105 @@
+"""Ren and Atkins; Yu, Chen and Cao: second-order consensus on a digraph, by the eigenvalues of its Laplacian."""
+
+import numpy as np
+
+from flockana.certified.balls import exact
+from flockana.certified.second_order import (
+    laplacian_of,
+    moving_eigenvalues,
+    stable_off_agreement,
+    velocity_threshold,
+)
+from flockana.laws.net_consensus import NetConsensus
+from flockana.theorems.claims import judged, run_theorem
+from flockana.theorems.toolkit import (
+    Checked,
+    Claim,
+    Enclosure,
+    Hypothesis,
+    Needs,
+    Observed,
+    Tolerances,
+    condition,
+    law_is,
+    limit_claim,
+    vacuous,
+)
+
+_PROOF = "net-consensus"
+_MOST = 30  # agents of which equality is decided with rationals
+
+
+def gains_positive(law: NetConsensus) -> Hypothesis:
+    """Return the hypothesis α, β > 0."""
+    least = min(law.position, law.velocity)
+    return condition("α > 0 and β > 0", least > 0.0, least, f"α = {law.position:g}, β = {law.velocity:g}")
+
+
+def rooted(law: NetConsensus) -> Hypothesis:
+    """Return the hypothesis that one agent is heard by all, directly or through others."""
+    import networkx
+
+    hears = networkx.from_numpy_array(np.array(law.weights), create_using=networkx.DiGraph)
+    groups = [sorted(group) for group in networkx.attracting_components(hears)]
+    listed = " and ".join(", ".join(map(str, group[:4])) + (" ..." if len(group) > 4 else "") for group in groups[:2])
+    text = f"root {groups[0][0]}" if len(groups) == 1 else f"{len(groups)} groups hear nobody outside: {listed}"
+    return condition("one agent is heard by all, directly or through others", len(groups) == 1, detail=text)
+
+
+def threshold_exceeded(law: NetConsensus) -> Hypothesis:
+    """Return the hypothesis β²/α > max Im²μ/(Re μ |μ|²) of a rooted net: by enclosures, else by exact algebra."""
+    name = "β²/α > max Im²μ/(Re μ |μ|²) over μ ≠ 0"
+    laplacian = laplacian_of(law.weights)
+    bound, ratio = velocity_threshold(moving_eigenvalues(laplacian)), exact(law.velocity) ** 2 / exact(law.position)
+    margin, text = (
+        float((ratio - bound).mid()),
+        f"β²/α = {float(ratio.p) / float(ratio.q):.6g}, the bound {bound.str(6, radius=False)}",
+    )
+    if ratio > bound or ratio < bound:
+        return condition(name, bool(ratio > bound), margin, text)
+    if len(law.weights) > _MOST:
+        return Hypothesis(name, "assumed", margin, f"{text}; equal to 30 digits")
+    return condition(
+        name, stable_off_agreement(laplacian, law.position, law.velocity), margin, f"{text}, decided exactly"
+    )
+
+
+def _consensus(seen: Observed, needs: Needs) -> Claim:
+    spreads = [float(np.ptp(series[-1], axis=0).max()) for series in (seen.run.q, seen.run.p)]
+    return limit_claim("consensus", needs, proof=_PROOF).described(
+        computed=spreads,
+        stated="q_i - q_j -> 0 and p_i - p_j -> 0 from every start",
+        detail=f"at the end positions differ by {spreads[0]:.3g} and velocities by {spreads[1]:.3g}",
+    )
+
+
+def _never(gains: Hypothesis, root: Hypothesis, above: Hypothesis | None) -> Claim:
+    """Return the claim that some start never agrees, vacuous where the conditions are met."""
+    missed = root if above is None else above
+    opposite = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[missed.status]
+    need = Hypothesis(f"not: {missed.name}", opposite, detail=missed.detail)  # type: ignore[arg-type]
+    if need.status == "unmet":
+        return vacuous("some-start", need)
+    return judged("some-start", Enclosure.of(0.0), [gains, need], about="all", proof=_PROOF).described(
+        stated="from some start positions or velocities never agree", detail=missed.detail
+    )
+
+
+@run_theorem(
+    "net-consensus",
+    title="Second-order consensus on a digraph: a root, and enough damping for the net's turns",
+    source="Ren and Atkins 2007; Yu, Chen and Cao 2010, in our words",
+    law=law_is("consensus over a net", NetConsensus),
+    claims=("consensus", "some-start"),
+    references=("ren-atkins-2007", "yu-chen-cao-2010"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let u = -L(αq + βp) with α, β > 0 and the Laplacian L of a fixed digraph. Positions and velocities agree from
+    every start if and only if one agent is heard by all, directly or through others, and β²/α > max Im²μ/(Re μ |μ|²)
+    over the eigenvalues μ ≠ 0 of L. On a directed ring of n agents the bound is ½ cot²(π/n).
+    """
+    law: NetConsensus = seen.law
+    gains, root = gains_positive(law), rooted(law)
+    above = threshold_exceeded(law) if gains.status == root.status == "met" else None
+    needs = [gains, root, *([] if above is None else [above])]
+    return needs, [_consensus(seen, needs), _never(gains, root, above)]
