@@ -11,10 +11,10 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.law import Law
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 
 STUDY = "Time per pair, law by law"
 N = 10_000

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.rows import Found, Row
 from benchmarks.timing import interleaved, ratio
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 
 STUDY = "Zone flocking"
 SPACING = 2.5  # of agents, on average, where they attract each other up to 5

@@ -91,9 +91,8 @@ import numpy as np
 import flockana as fl
 from flockana import plots
 from flockana.course import figures, grade
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors
+from flockana.sources.jond_2025 import MinimalFlocking, ZoneFlocking
 from flockana.stability import linearise
 from flockana.symbolic import bearing_distance, spanning_trees
 

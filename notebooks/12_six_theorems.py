@@ -51,7 +51,7 @@ import numpy as np
 import flockana as fl
 from flockana import plots
 from flockana.course import figures, grade
-from flockana.scenarios.one_start import ENTRIES, compare, one_start
+from flockana.scenarios.one_start import compare, entries, one_start
 
 q, p = one_start()
 ax = plots.configuration(q, p, r=8.4, title="the start of them all")
@@ -83,7 +83,7 @@ print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diamet
 # The theorems differ in these conditions.
 
 # %%
-for entry in ENTRIES:
+for entry in entries():
     print(f"{entry.name} ({entry.theorem}):\n    {entry.promise}\n")
 
 # %% [markdown]
@@ -92,7 +92,7 @@ for entry in ENTRIES:
 # %%
 import textwrap
 
-for entry in ENTRIES:
+for entry in entries():
     print(f"{entry.theorem}. {fl.theorem(entry.theorem).title}")
     print(textwrap.indent(textwrap.fill(fl.theorem(entry.theorem).statement, 100), "    "), "\n")
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
-from flockana.symbolic.spanning_trees import MU, RHO, S, tree_characteristic
+from flockana.sources.jond_2025.symbolic.spanning_trees import MU, RHO, S, tree_characteristic
 from proofs.proof import Proof, Step
 from proofs.rooted_trees import Tree, trees, unit_edge
 from proofs.smt import implication, real

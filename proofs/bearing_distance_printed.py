@@ -10,7 +10,7 @@ import sympy as sp
 import z3
 
 from flockana.certified.decimals import decimal
-from flockana.symbolic.spanning_trees import (
+from flockana.sources.jond_2025.symbolic.spanning_trees import (
     MU,
     RHO,
     S,

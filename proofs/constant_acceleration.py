@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import sympy as sp
 
-from flockana.laws.msn import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
+from flockana.sources.isola_2024.laws import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
 from proofs.proof import Proof, Step
 
 Q, P, U, DT, S = sp.symbols("q p u dt s")

@@ -16,7 +16,7 @@ import z3
 from flint import ctx
 
 from flockana.certified.decimals import interval
-from flockana.symbolic.dead_zone import (
+from flockana.sources.li_dead_zone.symbolic import (
     D_2,
     ETA,
     ETA_POSITIVE,

@@ -17,8 +17,8 @@ from flint import arb, ctx
 
 from flockana.certified.balls import ball, exact
 from flockana.certified.decimals import first_digits, interval
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.symbolic.dead_zone import (
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.symbolic import (
     D_1,
     D_2,
     ETA,

@@ -17,9 +17,9 @@ from flint import arb, ctx
 
 from flockana.certified.decimals import small
 from flockana.jit import Inlined
-from flockana.kernels import dead_zone as dead_zone_kernel
 from flockana.kernels import elementary
-from flockana.symbolic.dead_zone import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
+from flockana.sources.li_dead_zone.kernels import pair as dead_zone_kernel
+from flockana.sources.li_dead_zone.symbolic import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
 from flockana.symbolic.named import TINY, Named, Phi, PhiIntegral, SigmaNorm
 from proofs.dead_zone_pairs import zones
 from proofs.proof import Proof, Step

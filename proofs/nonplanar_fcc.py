@@ -12,7 +12,7 @@ from itertools import combinations, permutations, product
 from typing import Any
 
 from flockana.lattice import kuratowski, planar_bound
-from flockana.theorems.slides.e05 import fragments
+from flockana.sources.geschwender_2016.theorems.e05_planarity_in_space import fragments
 from proofs.proof import Proof, Step
 
 Site = tuple[int, int, int]

@@ -12,8 +12,8 @@ from flint import arb, ctx
 
 from flockana.certified.balls import ball
 from flockana.certified.decimals import interval
-from flockana.kernels import zones
-from flockana.symbolic.bearing_distance import BOUND, saturation
+from flockana.sources.jond_2025.kernels import zones
+from flockana.sources.jond_2025.symbolic.zone_pair import BOUND, saturation
 from proofs.proof import Proof, Step
 from proofs.smt import implication
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import sympy as sp
 
-from flockana.kernels import zone_obstacles
-from flockana.symbolic.bearing_distance import stand_off
+from flockana.sources.jond_2025.kernels import zone_obstacles
+from flockana.sources.jond_2025.symbolic.zone_pair import stand_off
 from proofs.library_formulas import on_symbols
 from proofs.proof import Proof, Step
 

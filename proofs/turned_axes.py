@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from flockana.symbolic.dead_zone import RHO, direction
+from flockana.sources.li_dead_zone.symbolic import RHO, direction
 from proofs.proof import Proof, Step
 
 X, Y, ANGLE = sp.symbols("x y theta", real=True)

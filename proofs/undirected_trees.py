@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
-from flockana.symbolic.spanning_trees import incidence_matrix
+from flockana.sources.jond_2025.symbolic.spanning_trees import incidence_matrix
 from proofs.proof import Step
 from proofs.rooted_trees import Tree, trees, unit_edge
 from proofs.smt import implication

@@ -10,7 +10,7 @@ import pytest
 import flockana as fl
 
 TOYS = Path(__file__).parent / "toys"
-ROOMS = ("interactions", "laws", "environment", "measures", "theorems", "scenarios", "plots", "report")
+ROOMS = ("interactions", "environment", "measures", "plots", "sources")
 
 
 @pytest.fixture(scope="module")
@@ -23,6 +23,8 @@ def toys():
         importlib.import_module("flockana.report.figures").pictures_of_laws,
         importlib.import_module("flockana.base.serialize").parameter_classes,
         importlib.import_module("flockana.measures.measure").measures,
+        importlib.import_module("flockana.theorems.errata").errata,
+        importlib.import_module("flockana.base.references").bibliography,
     )
     before = set(sys.modules)
     for room, package in packages.items():
@@ -33,14 +35,14 @@ def toys():
         name: getattr(importlib.import_module(f"flockana.{module}"), name)
         for name, module in (
             ("ToyMorse", "interactions.toy_morse"),
-            ("ToySwarm", "laws.toy_swarm"),
+            ("ToySwarm", "sources.toy_2026.laws"),
             ("ToySlab", "environment.toy_slab"),
         )
     }
     for room, package in packages.items():
         package.__path__.remove(str(TOYS / room))
     for name in set(sys.modules) - before:
-        if name.rpartition(".")[2].startswith("toy"):
+        if ".toy_" in name:
             del sys.modules[name]
     for cache in caches:
         cache.cache_clear()
@@ -88,6 +90,17 @@ def test_theorem_and_scenario(run, toys):
     assert fl.verify("toy-rest", run).claim("slow").status == "verified"
     assert fl.verify("alpha-flocking", run).claim("giant").status == "verified"
     assert fl.verify("os-1", run).status == "vacuous"
+
+
+def test_an_erratum(toys):
+    assert str(fl.theorem("T1").erratum) == "T1 · Toy: drag keeps the energy ✗ · right: it loses k Σ‖p_i‖² ·"
+    assert fl.verify("T1").claim("printed").status == "refuted"
+    assert fl.theorem("T1").title == "Drag keeps the energy (as printed)"
+
+
+def test_the_toy_paper_is_short():
+    files = [path for path in (TOYS / "sources" / "toy_2026").iterdir() if path.is_file()]
+    assert sum(len(path.read_text().splitlines()) for path in files) < 150
 
 
 def test_derivatives_and_linearisation(run, toys):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
@@ -12,12 +13,12 @@ from typing import Any
 
 import flockana
 from flockana.base.errors import ArgumentError, FileError, FlockanaError, UnknownNameError
-from flockana.base.modules import modules
+from flockana.base.modules import source_modules
 from flockana.report.coverage import Reference, Source
 from flockana.report.coverage.anchors import is_erratum
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems
-from flockana.theorems.catalogue import theorems_in
+from flockana.theorems.catalogue import theorem_modules, theorems_in
 
 _CHECKOUT = Path(__file__).resolve().parents[1]  # the folder that holds the package
 
@@ -46,7 +47,7 @@ def _function(name: str) -> str:
 
 def _plot(name: str) -> str:
     path = _relative(_file(*_resolve("plot", name)))
-    if not path.startswith("flockana/plots/"):
+    if not path.startswith("flockana/plots/") and not re.match(r"flockana/sources/\w+/plots\b", path):
         raise ArgumentError(
             f"plot {name!r} is defined in {path}: expected one of flockana.plots; else call it function"
         )
@@ -94,12 +95,12 @@ def _file(found: Any, holder: Any) -> str:
 
 @cache
 def _theorem_files() -> dict[str, str]:
-    return {item.id: str(m.__file__) for m in modules("flockana.theorems") for item in theorems_in(m).values()}
+    return {item.id: str(m.__file__) for m in theorem_modules() for item in theorems_in(m).values()}
 
 
 @cache
 def _scenario_files() -> dict[str, str]:
-    return {name: str(m.__file__) for m in modules("flockana.scenarios") for name in getattr(m, "SCENARIOS", ())}
+    return {name: str(m.__file__) for m in source_modules("scenarios") for name in getattr(m, "SCENARIOS", ())}
 
 
 def _scenario(name: str) -> str:

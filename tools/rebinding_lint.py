@@ -121,7 +121,12 @@ def _loops(node: ast.AST, taken: set[str], around: tuple[str, ...]) -> Iterator[
 def main() -> int:
     """Print every finding of the package's compiled functions."""
     root = Path(__file__).resolve().parents[1]
-    paths = (path for room in ROOMS for path in sorted((root / "flockana" / room).rglob("*.py")))
+    patterns = (
+        pattern
+        for room in ROOMS
+        for pattern in (f"{room}/**/*.py", f"sources/*/{room}.py", f"sources/*/{room}/**/*.py")
+    )
+    paths = (path for pattern in patterns for path in sorted((root / "flockana").glob(pattern)))
     lines = [f"{path.relative_to(root)}:{line}: {text}" for path in paths for line, text in findings(path.read_text())]
     sys.stdout.write("\n".join(lines or ["no name of a compiled function stands for two things"]) + "\n")
     return 1 if lines else 0

@@ -1,13 +1,33 @@
-"""Discovery of a package's modules by their names."""
+"""Discovery of a package's modules by their names, and of the parts of sources by their kinds."""
 
 import pkgutil
 from collections.abc import Iterator
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from types import ModuleType
 
+SOURCES = "flockana.sources"
 
-def modules(package: str, *, ending: str = "") -> Iterator[ModuleType]:
-    """Import every module of a package and its subpackages whose name has the ending, in order of names."""
+
+def source_files(pattern: str) -> Iterator[Path]:
+    """Yield the files of all sources that fit a pattern below the folder of a source, in order."""
+    for folder in import_module(SOURCES).__path__:
+        yield from sorted(Path(folder).glob(f"*/{pattern}"))
+
+
+def modules(package: str) -> Iterator[ModuleType]:
+    """Import every module of a package and its subpackages, in order of names."""
     for info in pkgutil.walk_packages(import_module(package).__path__, f"{package}."):
-        if info.name.endswith(ending):
-            yield import_module(info.name)
+        yield import_module(info.name)
+
+
+def source_modules(kind: str) -> Iterator[ModuleType]:
+    """Import the modules of one kind of every source: ``SOURCE/KIND.py``, or all files of ``SOURCE/KIND/``."""
+    for source in pkgutil.iter_modules(import_module(SOURCES).__path__, f"{SOURCES}."):
+        name = f"{source.name}.{kind}"
+        spec = find_spec(name) if source.ispkg else None
+        if spec is not None and spec.origin is not None:  # a module
+            yield import_module(name)
+        if spec is not None and spec.submodule_search_locations is not None:
+            yield from modules(name)

@@ -2,17 +2,17 @@
 
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import ArgumentError
+from flockana.base.modules import source_files
 
 
 @cache
 def bibliography() -> Mapping[str, str]:
-    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package."""
-    package = Path(__file__).parent.parent
-    return {path.stem: path.read_text(encoding="utf-8").strip() for path in sorted(package.rglob("*.bib"))}
+    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the sources."""
+    paths = sorted(source_files("*.bib"), key=lambda path: path.stem)
+    return {path.stem: path.read_text(encoding="utf-8").strip() for path in paths}
 
 
 def cite(item: Any) -> str:

@@ -18,17 +18,17 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError, format_value
-from flockana.base.modules import modules
+from flockana.base.modules import modules, source_modules
 from flockana.base.seals import public_name
 
-_ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
+_ROOMS = ("interactions", "environment", "laws")  # whose objects files may hold, and kinds of sources likewise
 
 
 @cache
 def parameter_classes() -> dict[str, type]:
     """Return every parameter class that a file may name, by its name."""
     classes_by_name: dict[str, type] = {}
-    for module in chain.from_iterable(map(modules, _ROOMS)):
+    for module in chain.from_iterable((*modules(f"flockana.{room}"), *source_modules(room)) for room in _ROOMS):
         classes = (x for x in vars(module).values() if isinstance(x, type))
         classes_by_name |= {x.__name__: x for x in classes if is_dataclass(x) and x.__module__ == module.__name__}
     return classes_by_name

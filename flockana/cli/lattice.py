@@ -101,10 +101,10 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str, Any]:
     """Return scale, links, crossings, rigidity and defects of a configuration as plain data."""
     from flockana.lattice import classify, coordination, harborth, is_complete, planar_bound
+    from flockana.lattice.crossings import LISTED
     from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance
     from flockana.measures.nets import components, link_lengths
-    from flockana.theorems.olfati_saber.os_5 import LISTED
 
     q, d, r = given.q, given.d, given.r
     (n, m), lengths = q.shape, link_lengths(q, pairs)

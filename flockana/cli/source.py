@@ -89,7 +89,7 @@ def law_scales(law: Any) -> tuple[float, float]:
 
     Examples
     --------
-    >>> from flockana.laws.dead_zone import DeadZoneFlocking
+    >>> from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
     >>> law_scales(DeadZoneFlocking())
     (3.5, 4.2)
     """

@@ -15,7 +15,3 @@ from .targets import LinearTarget as LinearTarget
 from .targets import RescaledVelocity as RescaledVelocity
 from .targets import SineTarget as SineTarget
 from .targets import StaticTarget as StaticTarget
-from .zone_obstacles import Box as Box
-from .zone_obstacles import SimplePolygon as SimplePolygon
-from .zone_world import Alien as Alien
-from .zone_world import ZoneWorld as ZoneWorld

@@ -1,5 +1,5 @@
 """Equilibria of laws with a potential: solvers, classification, searches, and barriers against collisions."""
 
-import lazy_loader
+from flockana.base.lazy import attach_stub
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -14,16 +14,14 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.falsify.counterexample import Counterexample
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.candidates import Candidate, candidates
+from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Tolerances
 
 _FLOCK = 50  # agents of a law that is tried
 _SPREAD, _SPEED = 0.9, 0.2  # side of the square over √n lengths of the law; speeds over the length per time unit
-_SPANS = {"Algorithm1": 20.0, "Algorithm2": 20.0, "Algorithm3": 40.0, "CuckerSmale": 10.0, "DeadZoneFlocking": 10.0}
 _OPTIONS = ("method", "rtol", "atol", "dt", "max_step")
 FILES = (".nc", ".json")
 
@@ -55,7 +53,18 @@ def law_names() -> tuple[str, ...]:
     >>> law_names()
     ('Algorithm1', 'Algorithm2', 'Algorithm3', 'CuckerSmale', 'DeadZoneFlocking')
     """
-    return tuple(_SPANS)
+    return tuple(_tried_laws())
+
+
+@cache
+def _tried_laws() -> dict[str, Candidate]:
+    """Return the laws that can be tried, by the name of their class."""
+    targeted = Candidate(Algorithm2, span=20.0), Candidate(Algorithm3, span=40.0)
+    return {each.law.__name__: each for each in sorted((*targeted, *candidates().values()), key=_class_name)}
+
+
+def _class_name(candidate: Candidate) -> str:
+    return candidate.law.__name__
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
@@ -68,8 +77,7 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
         radius = round(side / 8.0, 3)
         target, text = StaticTarget(there), f"fl.StaticTarget({there}), obstacles=(fl.Sphere({between}, {radius}),)"
         return Algorithm3(target=target, obstacles=(Sphere(between, radius),)), f"fl.Algorithm3(target={text})"
-    laws = {"Algorithm1": Algorithm1, "CuckerSmale": CuckerSmale, "DeadZoneFlocking": DeadZoneFlocking}
-    return laws[name](), f"fl.{name}()"
+    return _tried_laws()[name].law(), f"fl.{name}()"
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
@@ -82,8 +90,8 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     """
     ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
-    length = 1.0 if name == "CuckerSmale" else 7.0
-    side, speed, end = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3), _SPANS[name]
+    length, end = _tried_laws()[name].length, _tried_laws()[name].span
+    side, speed = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3)
     law, text = _law(name, m, side)
     rng = np.random.default_rng(seed)
     q0 = side * rng.uniform(-0.5, 0.5, (n, m))

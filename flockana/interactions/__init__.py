@@ -2,11 +2,7 @@
 
 from flockana.interactions.alpha import AlphaInteraction as AlphaInteraction
 from flockana.interactions.beta import BetaInteraction as BetaInteraction
-from flockana.interactions.dead_zone import DeadZoneInteraction as DeadZoneInteraction
 from flockana.interactions.formula import FormulaInteraction as FormulaInteraction
 from flockana.interactions.from_formula import pair_law as pair_law
 from flockana.interactions.gains import Gains as Gains
 from flockana.interactions.pair import PairInteraction as PairInteraction
-from flockana.interactions.zone_noise import ZoneNoise as ZoneNoise
-from flockana.interactions.zones import ZoneRadii as ZoneRadii
-from flockana.interactions.zones import ZoneWeights as ZoneWeights

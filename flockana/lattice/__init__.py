@@ -1,5 +1,5 @@
 """α-lattices: build them, measure any configuration, find crossings, test planarity and rigidity."""
 
-import lazy_loader
+from flockana.base.lazy import attach_stub
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

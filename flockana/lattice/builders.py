@@ -1,5 +1,6 @@
 """Builders of α-lattices on the line, in the plane and in space, with their largest ratios r/d."""
 
+from itertools import product
 from math import isqrt, prod, sqrt
 from typing import Any
 
@@ -235,3 +236,9 @@ def bcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
     """
     side = 2.0 / sqrt(3.0)
     return _sites([[0.0] * 3, [0.5 * side] * 3], side * np.eye(3), {"nx": nx, "ny": ny, "nz": nz}, d)
+
+
+def fcc_star(d: float) -> FloatArray:
+    """Return a site of the face-centred cubic lattice and its twelve neighbours, shape (13, 3)."""
+    steps = (x for x in product((-1, 0, 1), repeat=3) if x[0] ** 2 + x[1] ** 2 + x[2] ** 2 == 2)
+    return d / sqrt(2.0) * np.array([(0, 0, 0), *steps], dtype=float)

@@ -28,6 +28,8 @@ from flockana.kernels.crossings import crossing_signs, nearest_links
 from flockana.kernels.segments import UNSURE, meet
 from flockana.measures.nets import LinkArray
 
+LISTED = 100_000  # crossings that are listed at most where all are asked for; beyond, a count says "at least"
+
 _FARTHEST = 1e300  # where positions differ by so many orders of magnitude that no unit fits all
 _TOGETHER = 1_000_000  # pairs of links looked at in one go, about
 _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side

@@ -1,5 +1,5 @@
 """Laws of motion: the base class in `law.py`, and one file for each family."""
 
-import lazy_loader
+from flockana.base.lazy import attach_stub
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
@@ -14,6 +14,7 @@ from flockana.base.scales import Scales
 from flockana.interactions.pair import PairInteraction
 
 if TYPE_CHECKING:
+    from control import StateSpace
     from scipy.sparse import csr_array, sparray
 
     from flockana.environment.beta import ObstacleField
@@ -42,6 +43,8 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
 
 
 Arrays = Mapping[str, FloatArray]  # by name
+# ``block(q, p, steps, wanted=None)`` returns q, p after each wanted step, numbered from 1, and u before it
+Block = Callable[..., tuple[FloatArray, FloatArray, FloatArray]]
 _Term = TypeVar("_Term", bound="Term")
 _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field": None}
 
@@ -117,6 +120,10 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     def conservative(self) -> bool:
         """Whether the force at rest is known to be minus the gradient of the energy."""
         return False
+
+    def centre_system(self) -> StateSpace | None:
+        """Return a map's linear system of the centre of mass, from the target's (q_r, p_r) to q_c; None by default."""
+        return None
 
     @property
     def centre_decouples(self) -> bool:
@@ -216,6 +223,16 @@ class Law(LawOfMotion):
         self.check_dimension(q.shape[1])
         self.check_agents(q.shape[0])
         return ensure_finite_scalar("t", t), q, p
+
+    def block(self, solver: Any) -> Block | None:
+        """Return a compiled loop of the law's own for many steps of a solver, None if it has none.
+
+        Parameters
+        ----------
+        solver : SemiImplicitEuler, or another solver
+            Which steps the law; its step is ``solver.dt``.
+        """
+        return None
 
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return `flow`; raise unless it is an array of real numbers in the flock's shape and a real number."""

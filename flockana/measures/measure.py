@@ -11,7 +11,7 @@ from math import nan
 from typing import Any, NamedTuple
 
 from flockana.base.checks import FloatArray
-from flockana.base.modules import modules
+from flockana.base.modules import modules, source_modules
 from flockana.measures.metrics import nets
 
 
@@ -92,4 +92,5 @@ class Measure:
 @cache
 def measures() -> Mapping[str, Measure]:
     """Return all measures by name, from the ``MEASURES`` of the files of this package."""
-    return {it.name: it for module in modules("flockana.measures") for it in getattr(module, "MEASURES", ())}
+    found = (*modules("flockana.measures"), *source_modules("measures"))
+    return {item.name: item for module in found for item in getattr(module, "MEASURES", ())}

@@ -1,24 +1,21 @@
 """Scene of the player: frames, links, obstacles, targets and series, as header and arrays.
 
-A law with a world of its own registers it (`world`), as it registers how a snapshot draws it (`plots.snapshot`).
+A source of a law with a world of its own names it in the `SCENE` of its scene module.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import singledispatch
+from functools import cache, singledispatch
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.modules import source_modules
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.vicsek import HeadingAveraging
 from flockana.player.codec import Packed, encode
 
 SHOWN = (
@@ -62,49 +59,15 @@ class World:
 
 @singledispatch
 def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the surroundings of a run's agents; a law registers its own with ``@world.register(Law)``."""
+    """Return the surroundings of a run's agents; a source gives those of its laws in `SCENE`."""
     pair, target = law.pair, law.target
     return World(
-        reach=_finite(None if pair is None else pair.range),
-        length=_finite(None if pair is None else pair.length),
-        stars=None if target is None else _paths([target], run.t[frames]),
+        reach=finite_or_none(None if pair is None else pair.range),
+        length=finite_or_none(None if pair is None else pair.length),
+        stars=None if target is None else target_paths([target], run.t[frames]),
         solids=tuple(law.obstacles),
         beta=0.0 if law.obstacle_field is None else float(law.obstacle_field.beta.r),
     )
-
-
-@world.register(MinimalFlocking)
-def _perceived(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    data = [law.edge_data(run.q[k]) for k in (frames if law.edges is None else frames[:1])]
-    return World(edges=tuple(np.column_stack([each.tail, each.head]).astype(np.int64) for each in data))
-
-
-@world.register(HeadingAveraging)
-def _circles(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    return World(edges=tuple(np.asarray(law.links(run.q[k]), dtype=np.int64) for k in frames))
-
-
-@world.register(LedDeadZoneFlocking)
-def _led(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    groups = np.zeros(run.n, dtype=int)
-    for number, own in enumerate(law.ties.members):
-        groups[own] = number
-    stars = _paths(law.leaders, run.t[frames])
-    return World(reach=1.1 * law.interaction.d1, stars=stars, groups=groups.tolist())
-
-
-@world.register(ZoneFlocking)
-def _zones(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    around = law.world
-    solids = tuple(each for each in around.obstacles if isinstance(each, Sphere))
-    outlines = [np.asarray(each.vertices) for each in around.obstacles if not isinstance(each, Sphere)]
-    if around.box is not None and run.m == 2:
-        (x0, y0), (x1, y1) = around.box.low, around.box.high
-        outlines.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
-    aliens = run.extra.get("alien")
-    crosses = None if aliens is None else aliens[frames].reshape(len(frames), -1, run.m)
-    reach = float(law.radii.reach[2])
-    return World(reach=_finite(reach), crosses=crosses, solids=solids, outlines=tuple(outlines))
 
 
 def scene(
@@ -117,6 +80,7 @@ def scene(
 ) -> bytes:
     """Return a run in the player's format."""
     frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
+    _register_scenes()
     around = world(run.law.continuous or run.law, run, frames)
     q, p = run.q[frames], run.p[frames]
     series = _series(run)
@@ -150,6 +114,14 @@ def scene(
     return encode(header, arrays)
 
 
+@cache
+def _register_scenes() -> None:
+    """Register the worlds of the sources' laws."""
+    for module in source_modules("scene"):
+        for law, draw in module.SCENE.items():
+            world.register(law, draw)
+
+
 def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
     """Return which samples to keep: first and last, and others evenly between.
 
@@ -177,11 +149,12 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
     return [each for each in found if np.isfinite(each[-1]).all()]  # a strip draws finite numbers only
 
 
-def _finite(value: Any) -> float | None:
+def finite_or_none(value: Any) -> float | None:
+    """Return a finite number as it is, None for anything else."""
     return float(value) if value is not None and np.ndim(value) == 0 and np.isfinite(value) else None
 
 
-def _paths(targets: Iterable[Any], times: FloatArray) -> FloatArray:
+def target_paths(targets: Iterable[Any], times: FloatArray) -> FloatArray:
     """Return positions of targets, shape (T, K, m)."""
     return np.array([[target.position(t) for target in targets] for t in times.tolist()])
 

@@ -2,11 +2,10 @@
 
 from collections import deque
 
-import lazy_loader
+from flockana.base.lazy import attach_stub
+from flockana.base.modules import source_modules
 
-from flockana.base.modules import modules
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-
-# All of them at once: a file here may register how the world of a law is drawn (`snapshot.draw_sample`).
-deque(modules(__name__), maxlen=0)
+# All of the sources' at once: they may register how the world of a law is drawn (`snapshot.draw_sample`).
+deque(source_modules("plots"), maxlen=0)

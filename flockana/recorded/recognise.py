@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flockana.base.errors import ArgumentError, FlockanaError, format_value
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.candidates import candidates
 from flockana.recorded.compare import Comparison, compare
 from flockana.recorded.recording import Recording, ensure_recording
 
@@ -63,7 +61,7 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
 
     Examples
     --------
-    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana import Algorithm1, simulate
     >>> from flockana.recorded.recording import recording_of
     >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
     >>> recognise(recording_of(run)).ranked[0][0]
@@ -71,7 +69,7 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
     """
     ensure_recording(rec)
     if laws is None:
-        laws = {"Algorithm 1": Algorithm1(), "dead-zone": DeadZoneFlocking(), "Cucker-Smale": CuckerSmale()}
+        laws = {name: candidate.law() for name, candidate in candidates().items()}
     if not isinstance(laws, Mapping) or not laws:
         raise ArgumentError(f"laws = {format_value(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
     found: list[tuple[str, Comparison]] = []

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.modules import modules
+from flockana.base.modules import source_modules
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.charts import Chart, Curve, panels
@@ -31,16 +31,16 @@ def drawn(caption: str, size: tuple[float, float], draw: Callable[..., object], 
 
 
 @cache
-def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], tuple[Picture, ...]]], ...]:
-    """Return (laws, function) of every ``*_figures`` module, for laws with figures of their own."""
-    return tuple((module.LAWS, module.pictures) for module in modules("flockana.report", ending="_figures"))
+def pictures_of_laws() -> dict[type, Callable[[Trajectory], tuple[Picture, ...]]]:
+    """Return the functions by law of the sources' `PICTURES`, for laws with figures of their own."""
+    return {law: draw for module in source_modules("figures") for law, draw in module.PICTURES.items()}
 
 
 def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
-    """Draw a run with its law's own ``*_figures`` module, or as any flock."""
+    """Draw a run with its law's own pictures, or as any flock."""
     drawn = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
-    owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
-    draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
+    own = (draw for law in drawn for kind, draw in pictures_of_laws().items() if isinstance(law, kind))
+    draw = next(own, flock_pictures)
     if not len(instants):
         return draw(trajectory)
     caption = f"The {len(instants)} instants that the source shows: the sample nearest to each. {_WORDS}"

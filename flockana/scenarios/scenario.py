@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from flockana.base.checks import FloatArray, ensure_known, ensure_seed
-from flockana.base.modules import modules
+from flockana.base.modules import source_modules
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import options_in_units
@@ -188,9 +188,9 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 @cache
 def catalogue() -> dict[str, Callable[..., Scenario]]:
-    """Return the builder of each scenario by name, from the `SCENARIOS` of every module of this package."""
+    """Return the builder of each scenario by name, from the `SCENARIOS` of every source."""
     builders: dict[str, Callable[..., Scenario]] = {}
-    for module in modules("flockana.scenarios"):
+    for module in source_modules("scenarios"):
         builders |= getattr(module, "SCENARIOS", {})
     return dict(sorted(builders.items()))
 

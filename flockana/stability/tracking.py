@@ -13,7 +13,7 @@ from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import CircleTarget, SineTarget
-from flockana.laws import Algorithm2, MSNDiscretisation
+from flockana.laws import Algorithm2
 from flockana.stability.centre_path import Motion, centre_path, motion, path_and_factor, steady_error, transient
 from flockana.stability.translational import CentreOfMass, map_gain
 
@@ -169,7 +169,7 @@ def tracking(run: Trajectory) -> Tracking:
     [6.2832, 6.2832]
     """
     law = ensure_run(run, "run").law
-    if type(law) not in (Algorithm2, MSNDiscretisation) or law.target is None:
+    if (type(law) is not Algorithm2 and law.centre_system() is None) or law.target is None:
         raise ArgumentError(f"{type(law).__name__}: expected a run of Algorithm 2 or of the MSN project's map of it")
     moving = motion(law.target)
     centre = CentreOfMass(law.gains, moving.factor)
@@ -191,7 +191,7 @@ def tracking(run: Trajectory) -> Tracking:
 def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quantity]:
     flock, agent, error = _swings(run)
     size = float(np.linalg.norm(agent))
-    discrete = isinstance(run.law, MSNDiscretisation)
+    discrete = run.law.centre_system() is not None
     gain = map_gain(run.law, moving.omega, factor=moving.factor) if discrete else abs(centre.response(moving.omega))
     ratio = Quantity("ratio of sizes", float(gain), float(np.linalg.norm(flock)) / size, error / size)
     if discrete:

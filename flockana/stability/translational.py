@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_series, real_array
+from flockana.base.checks import ensure_finite_scalar, ensure_series, real_array
 from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
-from flockana.laws import MSNDiscretisation, ensure_one_gain
+from flockana.laws import ensure_one_gain
+from flockana.laws.discrete import DiscreteLaw
 
 if TYPE_CHECKING:
-    from control import FrequencyResponseData, StateSpace, TimeResponseData, TransferFunction
+    from control import FrequencyResponseData, TimeResponseData, TransferFunction
 
 
 @dataclass(frozen=True)
@@ -152,25 +153,10 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
     return float(abs(CentreOfMass(gains, factor).response(ensure_finite_scalar("omega", omega))))
 
 
-def map_system(law: MSNDiscretisation) -> StateSpace:
-    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`."""
-    # Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
-    # agents obeys no equation of its own.
-    import control
-
-    if not isinstance(law, MSNDiscretisation) or law.target is None:
-        raise ArgumentError(f"law = {law!r}: expected an MSNDiscretisation of Algorithm 2")
-    h, f, c1, c2 = law.dt, law.position_factor, law.gains.c1_gamma, law.gains.c2_gamma
-    push = np.array([f * h * h, h])  # what one u does to (q, p)
-    feedback: FloatArray = np.array([c1, c2])
-    a = np.array([[1.0, h], [0.0, 1.0]]) - np.outer(push, feedback)
-    b = np.outer(push, feedback)
-    # the γ-agent has moved on to the end of the step: its input acts at once on the state that is put out
-    return control.StateSpace(a, b, a[:1], b[:1], h, inputs=["q_r", "p_r"], outputs="q_c", states=["q", "p"])
-
-
-def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> float:
-    """Return `predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|."""
-    omega = ensure_finite_scalar("omega", omega)
-    by_position, by_velocity = map_system(law)(np.exp(1j * omega * law.dt)).ravel()
+def map_gain(law: DiscreteLaw, omega: float, *, factor: float = 1.0) -> float:
+    """Return `predicted_gain` of a map with a linear centre of mass: |G_q(e^jωh) + factor jω G_p(e^jωh)|."""
+    omega, system = ensure_finite_scalar("omega", omega), law.centre_system()
+    if system is None:
+        raise ArgumentError(f"{type(law).__name__}: expected a map whose centre of mass follows a target linearly")
+    by_position, by_velocity = system(np.exp(1j * omega * law.dt)).ravel()
     return float(abs(by_position + factor * 1j * omega * by_velocity))

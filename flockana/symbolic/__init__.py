@@ -12,6 +12,6 @@ Examples
 (0, False)
 """
 
-import lazy_loader
+from flockana.base.lazy import attach_stub
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

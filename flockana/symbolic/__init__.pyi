@@ -1,6 +1,6 @@
-from . import bearing_distance as bearing_distance
-from . import dead_zone as dead_zone
-from . import spanning_trees as spanning_trees
+from ..sources.jond_2025.symbolic import spanning_trees as spanning_trees
+from ..sources.jond_2025.symbolic import zone_pair as bearing_distance
+from ..sources.li_dead_zone import symbolic as dead_zone
 from .concrete import ConcreteFlock as ConcreteFlock
 from .concrete import NumericLaw as NumericLaw
 from .concrete import numeric_law as numeric_law

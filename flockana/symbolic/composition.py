@@ -9,10 +9,10 @@ from itertools import combinations
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
-from flockana.symbolic.dead_zone import K_2
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.pair import energy_balance, vector, with_derivative
 
+K_2 = sp.Symbol("k_2", nonnegative=True)  # of velocity consensus
 THRUST, BRAKE, DAMPING = sp.symbols("alpha beta c", real=True)
 PULL, MATCH = sp.symbols("c_1 c_2", nonnegative=True)
 WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance

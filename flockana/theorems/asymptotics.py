@@ -8,9 +8,9 @@ from flockana.base.scales import Scales
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.basin import Basin
 from flockana.theorems.limits import decays_to_zero
-from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
 from types import ModuleType
@@ -12,7 +13,7 @@ import numpy as np
 
 from flockana.base.checks import ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
-from flockana.base.modules import modules
+from flockana.base.modules import modules, source_modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -33,9 +34,15 @@ _REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are j
 
 @cache
 def catalogue() -> dict[str, Theorem]:
-    """Return all theorems by id, from every module of this package."""
-    by_id = {item.id: item for module in modules("flockana.theorems") for item in theorems_in(module).values()}
+    """Return all theorems by id, from every module of this package and of the sources' theorems."""
+    by_id = {item.id: item for module in theorem_modules() for item in theorems_in(module).values()}
     return dict(sorted(by_id.items(), key=lambda pair: _natural(pair[0])))
+
+
+def theorem_modules() -> Iterator[ModuleType]:
+    """Import all modules that may define theorems."""
+    yield from modules("flockana.theorems")
+    yield from source_modules("theorems")
 
 
 def theorems_in(module: ModuleType) -> dict[str, Theorem]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.errata import SOURCES, printed
+from flockana.theorems.errata import erratum_of, printed
 from flockana.theorems.headline import does_not_hold, overall
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, Check, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
@@ -355,7 +355,7 @@ def erratum(
             source=source,
             kind="fixed",
             check=lambda tolerances: ([], check(tolerances)),
-            references=references or SOURCES.get(name[0], ("olfati-saber-2006",)),
+            references=references or getattr(erratum_of(name), "references", ("olfati-saber-2006",)),
             **{"corrected": tuple({"corrected"} & each.keys()), **fields},
         )
         by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)

@@ -11,13 +11,13 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
+from flockana.lattice.builders import fcc_star
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.theorems.claims import erratum, spectral, undecided
-from flockana.theorems.slides.e05 import fcc_star
 from flockana.theorems.toolkit import Checked, Claim, FloatArray, Observed, Tolerances, condition, run_theorem
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")

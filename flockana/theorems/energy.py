@@ -13,8 +13,8 @@ from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.claims import run_theorem
+from flockana.theorems.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
-from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, lengths, undecided
 
@@ -222,3 +222,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     rest, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
     balanced = balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof)
     return [*rest, *rates], [never_rises(seen, rest, proof=proof), balanced]
+
+
+STEPS = {
+    "energy": ("where no term adds energy, H rises in a step by no more than the scheme's own defect", lambda seen: 0)
+}

@@ -1,11 +1,13 @@
 """Errata of the sources: what each prints and what is right, with the status of both."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Literal, get_args
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.modules import source_files
 
 Sort = Literal["wrong", "incomplete", "vacuous", "confirmed"]
 
@@ -15,8 +17,6 @@ SORTS: dict[Sort, str] = {
     "vacuous": "true, but of no flock or of hardly any",
     "confirmed": "examined, and true as printed",
 }
-# sources by the first letter of an id
-SOURCES = {"E": ("geschwender-2016", "olfati-saber-2006"), "J": ("jond-2025",), "L": ("li-dead-zone",)}
 FOREWORD = (
     "E1 to E16 are in lecture slides and student projects on Olfati-Saber's paper of 2006. None is shown to be in the "
     "paper itself; the last column says where that was not looked up. The others are in the papers named."
@@ -44,6 +44,7 @@ class Erratum:
     right_claim: tuple[str, str]  # the same of the right statement
     sort: Sort
     in_paper: str  # whether the paper that the source presents is known to have it
+    references: tuple[str, ...] = ()  # keys of the bibliography: the source, and the paper that it presents
 
     def __post_init__(self) -> None:
         if self.sort not in get_args(Sort):
@@ -65,7 +66,7 @@ class Erratum:
 
 @cache
 def errata() -> tuple[Erratum, ...]:
-    """Return all errata of the sources, from the table beside this module.
+    """Return all errata of the sources, from their tables.
 
     Examples
     --------
@@ -74,16 +75,27 @@ def errata() -> tuple[Erratum, ...]:
     >>> {item.id for item in errata() if item.sort == "confirmed"} >= {"J14", "J17", "J18", "L6"}
     True
     """
-    _, *lines = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8").splitlines()
-    return tuple(_erratum(line) for line in lines)
+    items = (item for path in source_files("errata.csv") for item in _read_table(path))
+    return tuple(sorted(items, key=_order))
 
 
-def _erratum(line: str) -> Erratum:
-    cells = [cell.strip() for cell in line.split("|")]
-    if len(cells) != _COLUMNS:
-        raise ArgumentError(f"{cells[0]}: {len(cells)} columns, expected {_COLUMNS}")
-    name, printer, where, printed, is_, right, right_is, sort, in_paper = cells
-    return Erratum(name, printer, where, printed, _claim(is_), right, _claim(right_is), sort, in_paper)  # type: ignore[arg-type]  # checked by itself
+def _read_table(path: Path) -> Iterator[Erratum]:
+    """Yield the errata of a source's table: ``# references``, the names of the columns, then an erratum a line."""
+    references, _, *lines = path.read_text(encoding="utf-8").splitlines()
+    for line in lines:
+        cells = [cell.strip() for cell in line.split("|")]
+        if len(cells) != _COLUMNS:
+            raise ArgumentError(f"{cells[0]}: {len(cells)} columns, expected {_COLUMNS}")
+        name, printer, where, printed, is_, right, right_is, sort, in_paper = cells
+        claims = (printed, _claim(is_), right, _claim(right_is))
+        known = tuple(references.removeprefix("#").split())
+        yield Erratum(name, printer, where, *claims, sort, in_paper, known)  # type: ignore[arg-type]  # checked by itself
+
+
+def _order(item: Erratum) -> tuple[bool, str, int]:
+    """Return the sort key of an erratum: E2 before E10, numbered errata of a source before its other statements."""
+    letters = item.id.rstrip("0123456789")
+    return item.id[0].islower(), letters, int(item.id.removeprefix(letters) or 0)
 
 
 def _claim(text: str) -> tuple[str, str]:

@@ -55,11 +55,11 @@ class TubeAndBasin:
         return f"from t = {tube.t[0]:g} to {tube.t[-1]:g}; {self.doubt}{note}"
 
 
-def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
-    """Return a function that decides a theorem of `olfati_saber` from a tube, imported at its first call."""
+def enclosed_by(name: str, module: str) -> Callable[..., Checked]:
+    """Return a function of a module that decides a theorem from a tube, imported at its first call."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-        decide = getattr(import_module(f"flockana.theorems.olfati_saber.{module}"), name)
+        decide = getattr(import_module(module), name)
         return decide(tube, basin, tolerances)
 
     return check

@@ -5,7 +5,7 @@ from math import isfinite
 import numpy as np
 
 from flockana.measures.nets import links
-from flockana.theorems.olfati_saber.collisions import contacts_of
+from flockana.theorems.collisions import contacts_of
 from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, lengths
 
 

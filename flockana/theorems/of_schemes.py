@@ -5,29 +5,34 @@ identity and of Theorem 6 the library says more: the energy loses in each step w
 by the scheme's own defect; whether it falls nevertheless is seen.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
 from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
-from flockana.theorems.olfati_saber.os_6 import start_of_condition
 from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, judged
 
-ON_STEPS = {
-    "energy": "where no term adds energy, H rises in a step by no more than the scheme's own defect",
-    "os-6": "where its hypotheses hold of the law's flow, H rises in a step by no more than the scheme's own defect",
-}
 _FINE = 8  # times finer than usual the flow is integrated
+
+
+@cache
+def claims_on_steps() -> Mapping[str, tuple[str, Callable[[Observed], int]]]:
+    """Return, by theorem, what holds of a scheme's run and from which sample on, as its module's `STEPS` says."""
+    from flockana.theorems.catalogue import theorem_modules
+
+    return {name: said for module in theorem_modules() for name, said in getattr(module, "STEPS", {}).items()}
 
 
 def scheme_note(item: Theorem) -> str:
     """Return a sentence on what a theorem on motion yields for a scheme's run; empty for other theorems."""
     if item.kind != "trajectory":
         return ""
-    if item.id in ON_STEPS:
-        return f"For the run of a scheme: {ON_STEPS[item.id]}."
+    if item.id in claims_on_steps():
+        return f"For the run of a scheme: {claims_on_steps()[item.id][0]}."
     if item.law is None:
         return "For the run of a scheme: the same, as the theorem is about samples or has its law among its hypotheses."
     return "For the run of a scheme: nothing, as the theorem is about the law's flow, unless it names the scheme."
@@ -46,11 +51,11 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     law: Scheme = seen.law
     detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
-    if item.id not in ON_STEPS or len(seen.t) < 2:
+    if item.id not in claims_on_steps() or len(seen.t) < 2:
         return (missed,), item.vacuous_claims(missed)
     flow = _of_law(seen, law)
     needs, _ = item.check(flow, tolerances)
-    since = start_of_condition(flow) if item.id == "os-6" else 0
+    since = claims_on_steps()[item.id][1](flow)
     return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, since, list(needs), tolerances))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.progress import progress_bar
 from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
 from flockana.theorems.catalogue import catalogue, theorem, verify
-from flockana.theorems.of_schemes import ON_STEPS, is_about_steps
+from flockana.theorems.of_schemes import claims_on_steps, is_about_steps
 from flockana.theorems.theorem import Theorem, Verdict
 from flockana.theorems.toolkit import Observed, Tolerances, Trajectory, unmet
 
@@ -71,7 +71,11 @@ def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ..
 def _is_about(item: Theorem, seen: Observed) -> bool:
     if item.kind != "trajectory":
         return False
-    return item.law is None or item.law(seen).status != "unmet" or (item.id in ON_STEPS and is_about_steps(item, seen))
+    return (
+        item.law is None
+        or item.law(seen).status != "unmet"
+        or (item.id in claims_on_steps() and is_about_steps(item, seen))
+    )
 
 
 def _cut(text: str) -> str:

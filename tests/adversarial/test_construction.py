@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana import DirectedNet, FixedNetFlocking, LogPotential, ProximityFlocking, RationalWeight
-from flockana.laws.link_keeping import LinkKeeping
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.theorems import theorem, theorems, verify
 from tests.adversarial.cases import effort
 
@@ -34,7 +34,7 @@ def test_a_true_rate_is_never_refuted_however_long_and_loose_the_run(decay, unti
 
 
 def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before(monkeypatch):
-    from flockana.theorems.classics import alignment_bounds
+    from flockana.sources.cucker_smale_2007.theorems import alignment_bounds
     from flockana.theorems.observed import Observed
 
     monkeypatch.setattr(alignment_bounds, "_PROOF", "")

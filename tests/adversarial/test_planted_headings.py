@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from tests.adversarial import truth
 from tests.adversarial.cases import OPEN, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.laws.link_keeping import LinkKeeping
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds
 

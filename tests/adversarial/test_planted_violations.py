@@ -14,11 +14,11 @@ import pytest
 from flockana import Algorithm3, CuckerSmale, MinimalFlocking, RationalWeight, Sphere, compose, simulate, verify
 from flockana.environment.targets import CircleTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.theorems import Tolerances, second_runs, theorem, theorems
 from flockana.theorems.observed import Observed, with_doubt
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds, ways
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-import flockana.interactions.dead_zone
-import flockana.laws.bearing_distance
+import flockana.sources.jond_2025.laws.zone_flocking
+import flockana.sources.li_dead_zone.interactions
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
 from flockana.equilibria.rest import resting_state
@@ -95,7 +95,7 @@ def test_a_law_that_defines_the_source_anew_is_integrated_with_it():
 
 
 def test_what_is_said_to_follow_exists():
-    modules = (fl, flockana.laws.bearing_distance, flockana.interactions.dead_zone, flockana.interactions.weights)
+    modules = (fl, flockana.sources.li_dead_zone.interactions, flockana.interactions.weights)
     kinds = {kind for module in modules for kind in vars(module).values() if hasattr(kind, "derived_methods")}
     for kind in (*kinds, *(getattr(fl, name) for name in ("AlphaInteraction", "BetaInteraction", "Algorithm1"))):
         for source, names in kind.derived_methods.items():

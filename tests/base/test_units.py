@@ -9,7 +9,7 @@ from flockana import Capsule, MinimalFlocking, Polygon, rescale, symbolic
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.targets import CallableTarget, RescaledVelocity, SineTarget
-from flockana.laws.notebook import PushedAlgorithm2
+from flockana.sources.notebook_r2.laws import PushedAlgorithm2
 
 LENGTH, TIME = 1e-6, 1e3  # metres to megametres, seconds to milliseconds
 ROUNDING = 1e-12

@@ -10,7 +10,7 @@ from flockana.certified import energies as levels
 from flockana.certified.energies import structural_energy
 from flockana.certified.series import PairNumbers
 from flockana.equilibria.barrier import coincident_lattice, collision_bounds
-from flockana.theorems.olfati_saber.any_potential import disconnected_energy
+from flockana.sources.olfati_saber_2006.theorems.any_potential import disconnected_energy
 
 LONG = AlphaInteraction(r=9.8)  # κ = 1.4: cliques of 4 in the plane
 

@@ -9,9 +9,9 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CallableTarget, LinearTarget
 from flockana.equilibria.record import read_equilibrium
 from flockana.interactions import AlphaInteraction
-from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import Scenario
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 
 COMMAND = ("equilibrium",)
 

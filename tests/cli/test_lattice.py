@@ -64,7 +64,7 @@ def test_a_square_bends_and_its_diagonals_cross_once_they_are_links(call, found)
 
 
 def test_crossings_are_counted_up_to_what_the_theorems_check_lists(call, found, monkeypatch):
-    os_5 = importlib.import_module("flockana.theorems.olfati_saber.os_5")
+    os_5 = importlib.import_module("flockana.sources.olfati_saber_2006.theorems.theorem_5_planar_nets")
     counted = found("square:12x12", "--r", 20)
     assert (counted["crossings"], counted["crossings listed at most"]) == (15911, os_5.LISTED)
     assert "crossings 15911; each decided" in " ".join(call("square:12x12", "--r", 20)[1].split())

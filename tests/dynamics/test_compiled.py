@@ -20,11 +20,12 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
 from flockana.kernels.lift import lift
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.sources.li_dead_zone import DeadZoneInteraction
 
 TARGETS = [
     StaticTarget((5.0, -3.0), (0.3, 0.1)),

@@ -12,13 +12,14 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics import encounters
 from flockana.dynamics.encounters import SHARE, Encounters, State, StepChecks
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
-from flockana.interactions import BetaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import BetaInteraction, Gains
 from flockana.jit import callback_like, kernel
 from flockana.kernels.verlet import Pairs, no_pairs
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.notebook import PushedAlgorithm1
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1
 
 R, D = 8.4, 7.0
 FAR = SHARE * D

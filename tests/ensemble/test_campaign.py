@@ -230,8 +230,13 @@ def test_a_worker_with_other_mathematics_is_refused():
 def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeypatch):
     root = digests.Path(digests.__file__).resolve().parent.parent
     names = {path.relative_to(root).as_posix() for path in digests.source_files(root)}
-    assert {"kernels/alpha.py", "dynamics/driver.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
-    assert {"scenarios/msn.py", "measures/standard.py", "equilibria/strained13.json"} <= names
+    assert {
+        "kernels/alpha.py",
+        "dynamics/driver.py",
+        "sources/olfati_saber_2006/theorems/theorem_1_free_flock.py",
+        "base/errors.py",
+    } <= names
+    assert {"sources/isola_2024/scenarios/cases.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     silent = ("plots/", "plots.py", "figures", "report/", "player/", "explore/", "course/", "cli/", "falsify/")
     assert not any(part in name for part in silent for name in names)
     assert not {"ensemble/store.py", "base/references.py", "_version.py", "__init__.py"} & names

@@ -6,7 +6,7 @@ import pytest
 from flockana import Algorithm1, AlphaInteraction, find_equilibrium
 from flockana.equilibria.coincidence import hessian_trace, least_with_coincidence
 from flockana.lattice import hexagonal_spiral
-from flockana.theorems.slides.e03 import rhombus_with_double_agent
+from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent
 
 LAW = Algorithm1()
 

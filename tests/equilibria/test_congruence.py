@@ -5,7 +5,7 @@ import pytest
 
 from flockana.equilibria.congruence import congruent
 from flockana.lattice import hexagonal_spiral
-from flockana.theorems.slides.e03 import rhombus_with_double_agent
+from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])

@@ -14,7 +14,7 @@ from flockana.equilibria.solve import find_equilibrium, finish
 from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.slides.e03 import rhombus_with_double_agent
+from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent
 
 UNITS = [(1.0, 1.0), (1e-6, 1e3), (1e3, 1e-3)]
 LAW = Algorithm1()

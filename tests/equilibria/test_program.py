@@ -10,10 +10,11 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 
 SOME = Gains(c1_gamma=(1.0, 2.0, 0.5, 1.0, 3.0, 1.0, 1.0, 2.0, 0.1))
 OBSTACLES = Sphere((-3.0, 0.0), 2.0), Wall((0.0, -2.0), (0.0, 1.0)), Capsule((16.0, 0.0), (16.0, 20.0), 1.0)

@@ -14,8 +14,9 @@ from flockana.equilibria import solve as solve_module
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import finish
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
+from flockana.sources.li_dead_zone import DeadZoneInteraction
 
 ALPHA = AlphaInteraction()
 

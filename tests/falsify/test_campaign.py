@@ -13,10 +13,10 @@ from flockana.falsify import falsify, replay
 from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
 from flockana.falsify.space import search_space
+from flockana.sources.geschwender_2016.theorems.energy_printed import _printed_rate
 from flockana.theorems import Tolerances, theorem, verify
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.slides.energy_printed import _printed_rate
 from tests.falsify.conftest import HEAD_ON, OWN, THREE_AT_REST, fast
 from tests.programs import Starts, out_of_a_kernel
 

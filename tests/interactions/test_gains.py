@@ -18,7 +18,7 @@ from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
 from flockana.equilibria.terminal import terminal_state
 from flockana.lattice import hexagonal_patch
-from flockana.laws.msn import MSNDiscretisation
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 from tests.refused import refused
 
 RNG = np.random.default_rng(5)

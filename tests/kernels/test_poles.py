@@ -9,7 +9,7 @@ import flockana as fl
 from flockana.dynamics.encounters import Encounters, State
 from flockana.kernels.encounters import Ends
 from flockana.kernels.poles import crossing_listed
-from flockana.laws.link_keeping import LinkKeeping
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 
 METHODS = [
     {"rtol": 1e-4},

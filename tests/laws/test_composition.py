@@ -12,9 +12,10 @@ from flockana import Algorithm1, Algorithm2, Algorithm3, Composition, Sphere, Wa
 from flockana.base.errors import UnknownNameError
 from flockana.base.serialize import from_data, to_data
 from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.terms.along import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
+from flockana.sources.li_dead_zone import DeadZoneInteraction
 from tests.refused import refused
 
 LEADER = CircleTarget((3.0, -2.0), radius=4.0, frequency=0.1)

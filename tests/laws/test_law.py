@@ -12,7 +12,7 @@ from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.alpha import kernel
 from flockana.kernels.lift import lift
 from flockana.kernels.obstacles import lift_obstacle
-from flockana.laws.notebook import PushedAlgorithm1
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1
 from tests.refused import refused
 
 N = 9

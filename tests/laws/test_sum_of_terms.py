@@ -6,16 +6,17 @@ import pytest
 from flockana import Algorithm3, Copies, Navigation, PairTerm, PeerToPeer, Sphere, Spring, Wall, ZoneFlocking
 from flockana.environment.beta import ObstacleField
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
-from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
+from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.terms.obstacles import ObstacleTerm
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 
 TARGET = LinearTarget((9.0, 1.0), (1.0, -0.5))
 SOLIDS = (Sphere((20.0, 0.0), 3.0), Wall((0.0, -9.0), (0.0, 1.0)))

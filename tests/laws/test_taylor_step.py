@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana import AlphaInteraction, Gains, StaticTarget, TaylorStep, simulate
-from flockana.laws.notebook import PushedAlgorithm2
+from flockana.sources.notebook_r2.laws import PushedAlgorithm2
 from tests.refused import refused
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.0, c2_gamma=0.5)

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm3, Capsule, Gains, LinearTarget, Sphere, Wall, scenario, simulate
-from flockana.laws.minimal import MinimalFlocking
 from flockana.player.codec import decode
 from flockana.player.scene import kept, outlines, scene
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 
 Q = np.array([[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]])
 

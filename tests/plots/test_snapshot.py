@@ -10,12 +10,12 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 import flockana as fl
 from flockana import Algorithm1, Box, DirectedNet, Law, Sphere, Trajectory, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.plots.animation import film_view
 from flockana.plots.snapshot import draw_sample, in_view
+from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from tests.plots.artists import a_run, axes, frame, points, segments, title
 
 EDGES = ((0, 1), (1, 2), (2, 1))

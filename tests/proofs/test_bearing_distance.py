@@ -9,10 +9,10 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 
 import sympy as sp
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.symbolic.spanning_trees import S
-from flockana.theorems.bearing_distance.j03 import path_matrices
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.symbolic.spanning_trees import S
+from flockana.sources.jond_2025.theorems.j03_eigenvalue_pairs import path_matrices
 from proofs import bearing_distance, bearing_distance_printed, undirected_trees
 
 

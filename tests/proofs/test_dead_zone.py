@@ -8,8 +8,8 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 import sympy as sp
 
 from flockana import DeadZoneFlocking, DeadZoneInteraction, simulate
-from flockana.symbolic import dead_zone as symbolic
-from flockana.symbolic.dead_zone import D_1, D_2, K_1, R_D, RHO, R
+from flockana.sources.li_dead_zone import symbolic
+from flockana.sources.li_dead_zone.symbolic import D_1, D_2, K_1, R_D, RHO, R
 from proofs import dead_zone, dead_zone_pairs, dead_zone_parting
 from proofs.evaluate import enclosed
 from tests.proofs.steps import failing

@@ -14,8 +14,8 @@ from flockana.certified.balls import AlphaParameters, BetaParameters
 from flockana.certified.intervals import psi_alpha, psi_beta
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.jit import register_jitable
-from flockana.kernels import dead_zone as kernel
 from flockana.kernels import elementary, scalars
+from flockana.sources.li_dead_zone.kernels import pair as kernel
 from flockana.symbolic.named import Phi, PhiAbove, PhiIntegral, SigmaNorm
 from proofs import library_formulas, library_potentials
 from proofs.dead_zone_pairs import zones

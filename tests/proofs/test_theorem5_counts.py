@@ -14,8 +14,8 @@ import sympy as sp
 import z3
 
 from flockana.lattice import crossings, hexagonal_spiral, links
+from flockana.sources.geschwender_2016.theorems import e05_planarity_in_space as e5
 from flockana.theorems import verify
-from flockana.theorems.slides import e05 as e5
 from proofs import nonplanar_fcc, theorem5_counts, theorem5_crossings
 from proofs.proof import names
 

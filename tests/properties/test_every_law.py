@@ -17,12 +17,12 @@ from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, 
 from flockana.base.modules import modules
 from flockana.base.serialize import from_data, to_data
 from flockana.laws.law import LawOfMotion
-from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.stepped import Stepped
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.wrapped import Wrapper
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
+from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 
 N, SPREAD, TIME = 9, 12.0, 0.7
 ORIGIN = fl.StaticTarget((0.0, 0.0))

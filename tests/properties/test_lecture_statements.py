@@ -7,7 +7,7 @@ import numpy as np
 import flockana as fl
 from flockana.course import build
 from flockana.course.pages import number_of
-from flockana.scenarios.one_start import ENTRIES
+from flockana.scenarios.one_start import entries
 
 TEXT = {
     number_of(source): " ".join(source.read_text(encoding="utf-8").replace("\n# ", " ").split())
@@ -80,7 +80,7 @@ def test_the_bound_on_links_asks_for_three_agents():
 
 
 def test_neighbours_of_the_zones_are_others_and_the_strength_is_named():
-    from flockana.symbolic import spanning_trees
+    from flockana.sources.jond_2025.symbolic import spanning_trees
 
     assert "$\\mathcal R_i = \\{j \\ne i : d_{ij} \\le z_c\\}$" in TEXT["08"]
     assert "\\mu" in spanning_trees.spacing_spectrum(2).result._repr_latex_()
@@ -93,7 +93,7 @@ def test_matching_under_the_dead_zone_is_called_measured_wherever_the_theorem_is
     run = fl.simulate(law, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
     assert fl.verify("dead-zone-1-corrected", run).claim("components").proof is None
     assert "(measured, not proved;" in fl.theorem("dead-zone-1-corrected").statement
-    promise = next(entry.promise for entry in ENTRIES if entry.theorem == "dead-zone-1-corrected")
+    promise = next(entry.promise for entry in entries() if entry.theorem == "dead-zone-1-corrected")
     assert "is measured, not proved" in promise
 
 

@@ -13,10 +13,10 @@ import sympy as sp
 from flint import arb, ctx
 
 from flockana.interactions import Gains
+from flockana.sources.jond_2025.theorems.j07_speed_bound import dragged_speed
 from flockana.stability.delay import scalar_margin
 from flockana.stability.norms import h2_norm, hinf_norm
 from flockana.stability.translational import predicted_gain
-from flockana.theorems.bearing_distance.j07 import dragged_speed
 from proofs import (
     constant_acceleration,
     net_measures,

@@ -8,10 +8,10 @@ import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.scenarios import Report, scenario
 from flockana.scenarios.findings import finding, in_source_units
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
 from flockana.theorems import Tolerances, theorems
 
 OWN = [

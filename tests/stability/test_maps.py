@@ -6,12 +6,13 @@ import pytest
 
 from flockana import ExplicitEuler, MinimalFlocking, StaticTarget, TaylorStep, ZoneFlocking, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
-from flockana.interactions import Gains, ZoneNoise, ZoneWeights
+from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.jond_2025 import ZoneNoise, ZoneWeights
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_patch(1, 7.0)).q

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from flockana import Algorithm1, Algorithm2, CircleTarget, Gains, SineTarget, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity
-from flockana.laws.msn import MSNDiscretisation
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.tracking import response_ratio, tracking
-from flockana.stability.translational import CentreOfMass, map_gain, map_system, predicted_gain
+from flockana.stability.translational import CentreOfMass, map_gain, predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import S, damping_ratio, natural_frequency, transfer_function
 
@@ -80,7 +80,7 @@ def test_the_maps_system_is_the_maps(position_factor):
     for k in range(8):
         q, p, _, _ = law.step(0.1 * k, q, p, {})
         seen.append(float(q[0, 0]))
-    system = map_system(law)
+    system = law.centre_system()
     out = control.forced_response(system, 0.1 * np.arange(8), paths[1:].T).outputs.ravel()
     np.testing.assert_allclose(seen, out, rtol=1e-12)
 
@@ -169,7 +169,10 @@ def test_the_printed_map_in_numbers():
         (lambda: CentreOfMass(gains(1.0, 1.0)).frequency_response(["x"]), r"omega = \['x'\]: expected a series"),
         (lambda: CentreOfMass(gains(1.0, 1.0)).step_response("x"), "t = 'x': expected a series"),
         (lambda: tracking(3), r"run = 3: expected a run, as simulate\(...\) gives it"),
-        (lambda: map_system(MSNDiscretisation(Algorithm1(), dt=0.1)), "expected an MSNDiscretisation of Algorithm 2"),
+        (
+            lambda: map_gain(MSNDiscretisation(Algorithm1(), dt=0.1), 1.0),
+            "expected a map whose centre of mass follows a target",
+        ),
         (
             lambda: tracking(simulate(Algorithm1(), [[0.0]], [[0.0]], (0, 1))),
             "Algorithm1: expected a run of Algorithm 2",

@@ -8,8 +8,8 @@ import pytest
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, simulate
 from flockana.base.scales import Scales
 from flockana.theorems.asymptotics import lattice_limit, settled, velocities_match
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.attraction import final_basin
 
 TOLERANCES = Tolerances()
 

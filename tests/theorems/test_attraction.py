@@ -12,10 +12,10 @@ import flockana as fl
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, rescale
 from flockana.equilibria.gradient_flow import structural_force
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
+from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent
+from flockana.theorems.attraction import _action, attraction, lipschitz_within
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.olfati_saber.attraction import _action, attraction, lipschitz_within
 from flockana.theorems.rounding import pair_force_error
-from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
 LAW1 = Algorithm1()
 LAW2 = Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
@@ -119,7 +119,7 @@ def test_agents_that_coincide_at_a_strict_minimum_and_one_agent_are_caught():
 
 
 def test_a_flock_too_large_for_a_dense_hessian_is_left_open(monkeypatch):
-    monkeypatch.setattr(sys.modules["flockana.theorems.olfati_saber.attraction"], "DENSE_LIMIT", 12)
+    monkeypatch.setattr(sys.modules["flockana.theorems.attraction"], "DENSE_LIMIT", 12)
     assert margin(LAW1, hexagonal_patch(1, 7.0)) == -1.0
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from flockana import CircleTarget, LinearTarget, Sphere, StaticTarget, compose, simulate, verify
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction
-from flockana.theorems.composed.cohesion import bound
+from flockana.interactions import AlphaInteraction
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.theorems.cohesion import bound
 from flockana.theorems.enclosure import Enclosure
 from tests.theorems.made_up import hexagon, statuses
 

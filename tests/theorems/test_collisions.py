@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from flockana import Algorithm1, Algorithm2, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.measures.path_bounds import contacts
-from flockana.theorems.olfati_saber import collisions
-from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
+from flockana.theorems import collisions
+from flockana.theorems.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
 from flockana.theorems.toolkit import Enclosure, Observed
 from tests.theorems.made_up import judged, statuses
 

@@ -12,7 +12,7 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.theorems.olfati_saber.gamma_agent import consistent, declared_rate_is_true, slip, target_rests
+from flockana.theorems.gamma_agent import consistent, declared_rate_is_true, slip, target_rests
 
 HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
 

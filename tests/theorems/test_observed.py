@@ -8,12 +8,12 @@ import pytest
 
 import flockana as fl
 from flockana import RationalWeight, SemiImplicitEuler
-from flockana.laws.link_keeping import LinkKeeping
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.theorems import Claim, Theorem, verify
 from flockana.theorems import second_runs as module
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.claims import judged
 from flockana.theorems.observed import Observed, by_both_runs, observed, with_doubt
-from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.second_runs import failure
 
 SPRING = fl.Algorithm2(gains=fl.Gains(0.0, 0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,)))

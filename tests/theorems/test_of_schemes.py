@@ -5,7 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.theorems.catalogue import catalogue
-from flockana.theorems.of_schemes import ON_STEPS, scheme_note
+from flockana.theorems.of_schemes import claims_on_steps, scheme_note
 from tests.recorded.written import LAW, P0, Q0
 
 
@@ -55,4 +55,4 @@ def test_every_theorem_on_motion_says_what_it_says_of_schemes():
     for item in catalogue().values():
         assert (scheme_note(item) != "") == (item.kind == "trajectory")
     assert "definition" not in scheme_note(catalogue()["energy"])
-    assert set(ON_STEPS) <= set(catalogue())
+    assert set(claims_on_steps()) <= set(catalogue())

@@ -7,7 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.lattice import hexagonal_patch
-from flockana.laws.msn import MSNDiscretisation
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.theorems import sampling
 from flockana.theorems.observed import Observed
 

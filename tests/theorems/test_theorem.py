@@ -7,8 +7,8 @@ import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.scenarios.scenario import differences
+from flockana.sources.olfati_saber_2006.theorems.theorem_5_planar_nets import CLAIMS
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
-from flockana.theorems.olfati_saber.os_5 import CLAIMS
 
 UNMET = Hypothesis("connected", "unmet")
 NOT = "'connected' does not hold"

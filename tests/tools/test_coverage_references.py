@@ -13,7 +13,7 @@ from tools.coverage_references import faults, locate
         ("function", "flockana.Algorithm1.surfaces", "flockana/laws/law.py"),  # an inherited property
         ("function", "flockana.measures.reynolds.Reynolds.stress", "flockana/measures/reynolds.py"),  # a field
         ("function", "flockana.falsify", "flockana/falsify/campaign.py"),  # a function and a folder
-        ("function", "flockana.laws.notebook.MIN_DISTANCE", "flockana/laws/notebook.py"),  # a number
+        ("function", "flockana.sources.notebook_r2.laws.MIN_DISTANCE", "flockana/laws/notebook.py"),  # a number
         ("plot", "flockana.plots.action", "flockana/plots/pair.py"),
         ("scenario", "msn-case1-printed", "flockana/scenarios/msn.py"),
         ("theorem", "os-5-terminal", "flockana/theorems/olfati_saber/os_5.py"),
@@ -31,7 +31,7 @@ def test_where_names_lead(kind, name, file):
     ("kind", "name", "nearest"),
     [
         ("function", "flockana.Algorithm4", "flockana.Algorithm"),
-        ("function", "flockana.laws.notebok", "flockana.laws.notebook"),
+        ("function", "flockana.laws.notebok", "flockana.sources.notebook_r2.laws"),
         ("function", "numpy.zeros", "flockana."),
         ("plot", "flockana.plots.actions", "flockana.plots.action"),
         ("scenario", "paper-floking", "paper-flocking"),

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from flockana.base.errors import ArgumentError
+from flockana.base.modules import source_files
 from flockana.base.references import bibliography
 
 Standing = Literal["held", "weaker", "absent", "prose"]
@@ -75,7 +76,7 @@ class Source:
 
 def coverage() -> tuple[Source, ...]:
     """Return all coverage tables, the longest first, items without a source last."""
-    tables = [read_table(path) for path in sorted(Path(__file__).parent.glob("*.csv"))]
+    tables = [read_table(path) for path in source_files("coverage/*.csv")]
     return tuple(sorted(tables, key=lambda source: (source.key == OURS, -len(source.rows))))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_flag, ensure_kind, normalise
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
+from flockana.laws.candidates import Candidate
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.alignment import AlignmentTerm
@@ -62,3 +63,6 @@ class CuckerSmale(SumOfTerms):
             "position_spread": ("√Σ‖q_i − q̄‖² (length)", np.sqrt(2.0 * spreads(q))),
             "velocity_spread": ("√Σ‖p_i − p̄‖² (length/time)", np.sqrt(2.0 * spreads(p))),
         }
+
+
+CANDIDATES = {"Cucker-Smale": Candidate(CuckerSmale, length=1.0)}

@@ -3,8 +3,9 @@
 import numpy as np
 
 from flockana.interactions.weights import RationalWeight
-from flockana.laws import CuckerSmale
 from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.one_start import RANGE, LawEntry
+from flockana.sources.cucker_smale_2007.laws import CuckerSmale
 
 _REFERENCES = ("cucker-smale-2007", "ha-liu-2009", "flockana")
 _N = 12
@@ -51,3 +52,19 @@ SCENARIOS = {
     "cucker-smale-critical-below": _pair("cucker-smale-critical-below", 0.76, _BELOW),
     "cucker-smale-critical-above": _pair("cucker-smale-critical-above", 0.81, _ABOVE),
 }
+
+
+ONE_START = (
+    LawEntry(
+        "Cucker and Smale",
+        lambda q, p: CuckerSmale(RationalWeight(strength=0.5, decay=0.25, length=RANGE)),
+        "cucker-smale",
+        "every agent aligns with all others, with a weight that falls slowly (β < ½): a flock from any start",
+    ),
+    LawEntry(
+        "Ha and Liu",
+        lambda q, p: CuckerSmale(RationalWeight(strength=4.0, decay=1.0, length=RANGE), mean=True),
+        "ha-liu",
+        "the weight falls fast (β > ½): a flock if the spread of velocities is below an integral of it",
+    ),
+)

@@ -7,10 +7,10 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.taylor_step import TaylorStep
+from flockana.sources.isola_2024 import MSNDiscretisation
+from flockana.sources.jond_2025 import MinimalFlocking
 from flockana.stability.linearise import linearise
 from flockana.stability.sampling import CLOSE, sampling_margin
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, spectral

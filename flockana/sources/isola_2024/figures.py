@@ -3,12 +3,11 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import MSNDiscretisation
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, flock_pictures
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 
-LAWS = (MSNDiscretisation,)
 _SAMPLES = 271  # every other of the project's 540 iterations
 
 
@@ -30,3 +29,6 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             panels([Chart("connectivity, three ways", run.t[shown], curves)]),
         ),
     )
+
+
+PICTURES = {MSNDiscretisation: pictures}

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -10,11 +10,14 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, 
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.sources.isola_2024.kernels import advance_alpha, neighbour_lists
+
+if TYPE_CHECKING:
+    from control import StateSpace
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
 CONSTANT_ACCELERATION = 0.5
@@ -58,6 +61,22 @@ class MSNDiscretisation(DiscreteLaw):
     def gains(self) -> Gains:
         """The gains."""
         return self.law.gains
+
+    def centre_system(self) -> "StateSpace | None":
+        """Return the map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`."""
+        # Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
+        # agents obeys no equation of its own.
+        if self.target is None:
+            return None
+        import control
+
+        h, f, c1, c2 = self.dt, self.position_factor, self.gains.c1_gamma, self.gains.c2_gamma
+        push = np.array([f * h * h, h])  # what one u does to (q, p)
+        feedback: FloatArray = np.array([c1, c2])
+        a = np.array([[1.0, h], [0.0, 1.0]]) - np.outer(push, feedback)
+        b = np.outer(push, feedback)
+        # the γ-agent has moved on to the end of the step: its input acts at once on the state that is put out
+        return control.StateSpace(a, b, a[:1], b[:1], h, inputs=["q_r", "p_r"], outputs="q_c", states=["q", "p"])
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one iteration, unchecked; no memory, as the net follows from q."""

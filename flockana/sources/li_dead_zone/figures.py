@@ -3,10 +3,8 @@
 from dataclasses import replace
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import LedDeadZoneFlocking
 from flockana.report.figures import Picture, flock_pictures
-
-LAWS = (LedDeadZoneFlocking,)
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
@@ -17,3 +15,6 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
         "player gives each agent the colour of its leader."
     )
     return (replace(first, caption=caption), *others)
+
+
+PICTURES = {LedDeadZoneFlocking: pictures}

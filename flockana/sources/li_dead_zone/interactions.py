@@ -12,9 +12,9 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonneg
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, Tabulated, evaluate
-from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.tables import integral_panels, on_panels
+from flockana.sources.li_dead_zone.kernels import pair as kernel
 
 _ACTION = lift_scalar(kernel.action)
 _FORCE = lift_scalar(kernel.force)

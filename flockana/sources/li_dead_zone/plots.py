@@ -12,11 +12,11 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import DeadZoneInteraction
-from flockana.laws import LedDeadZoneFlocking
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
 from flockana.plots.snapshot import configuration, draw_sample, in_view
 from flockana.plots.style import ensure_axes, finish, frame_space, in_plane, mark, over_time, star, write_title
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 
 _SAMPLES = 300
 _GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and their agents, again from the first

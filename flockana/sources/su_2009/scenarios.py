@@ -1,5 +1,6 @@
 """Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
+from dataclasses import replace
 from functools import partial
 from math import pi
 from typing import Any
@@ -11,9 +12,10 @@ from flockana.environment import CircleTarget, LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws import Algorithm2, compose
-from flockana.measures.followers import following
 from flockana.scenarios.entry import Builder, Scenario, Start, entry, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import ROUNDING, Claim, Tolerances, Trajectory, finding, report
+from flockana.scenarios.one_start import LawEntry, follower_of
+from flockana.sources.su_2009.measures import following
 
 _C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler
 
@@ -159,3 +161,19 @@ SCENARIOS: dict[str, Builder] = {
     "leader-known": _varying("leader-known", _KNOWN, feedforward=True),
     "leader-unknown": _varying("leader-unknown", _UNKNOWN, feedforward=False),
 }
+
+
+def _informing(some: int, n: int) -> Gains:
+    """Return the default gains, with those to the γ-agent for the first agents only."""
+    gains, felt = Gains(), np.arange(n) < some
+    return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
+
+
+ONE_START = (
+    LawEntry(
+        "Few informed",
+        lambda q, p: Algorithm2(gains=_informing(3, len(q)), target=follower_of(q, p)),
+        "su-informed",
+        "three of ten feel the γ-agent: they adopt its velocity, and so do agents that stay linked to them",
+    ),
+)

@@ -14,13 +14,13 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.log_potential import LogPotential, net_derivatives, net_forces
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import ensure_apart
 from flockana.laws.terms.term import Derivatives
 from flockana.measures.frame import moving_frame
 from flockana.measures.perception import ensure_in_flock, ensure_net
+from flockana.sources.tanner_2007.interactions import LogPotential, net_derivatives, net_forces
 
 _NEAR, _FAR = 0, 1
 Ends = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]

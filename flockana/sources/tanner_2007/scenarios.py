@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.interactions.log_potential import LogPotential
+from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.laws import FixedNetFlocking, ProximityFlocking
 from flockana.scenarios.entry import Scenario, Status, inconclusive, vacuous, verified
+from flockana.scenarios.one_start import RANGE, LawEntry, net_of
+from flockana.sources.tanner_2007.interactions import LogPotential
+from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
 
 
 def _scenario(
@@ -71,3 +73,20 @@ def _parting(seed: int = 0) -> Scenario:
 
 
 SCENARIOS = {"tanner-fixed": _fixed, "tanner-switching": _switching, "tanner-switching-parts": _parting}
+
+
+_STRENGTH, _CONSENSUS = 40.0, 1.0  # of forces of the size of k/d near d
+ONE_START = (
+    LawEntry(
+        "Tanner, fixed net",
+        lambda q, p: FixedNetFlocking(net_of(q), LogPotential(_STRENGTH, AlphaInteraction().d), k2=_CONSENSUS),
+        "tanner-fixed",
+        "the links of the start pull at all times: velocities agree, and no two linked agents collide",
+    ),
+    LawEntry(
+        "Tanner, switching",
+        lambda q, p: ProximityFlocking(LogPotential(_STRENGTH, AlphaInteraction().d), r=RANGE, k2=_CONSENSUS),
+        "tanner-switching",
+        "only agents within r pull: the same holds if the net stays connected",
+    ),
+)

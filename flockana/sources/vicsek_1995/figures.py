@@ -3,14 +3,13 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import HeadingAveraging
 from flockana.measures.windows import windows_of
 from flockana.report.charts import Chart, panels
 from flockana.report.figures import Picture, measured, spread
 from flockana.report.stills import stills
 from flockana.scenarios.findings import has_metric
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
-LAWS = (HeadingAveraging,)
 _SETTLED = 1e-3  # of the first span of headings: until it falls below there is something to see
 
 
@@ -47,3 +46,6 @@ def _until(run: Trajectory) -> float:
     windows = windows_of(run)[:4]
     last = max([int(late[-1]) if late.size else 0, *(stop for _, stop in windows), 1])
     return float(run.t[min(last, len(run.t) - 1)])
+
+
+PICTURES = {HeadingAveraging: pictures}

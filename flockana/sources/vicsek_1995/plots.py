@@ -7,10 +7,10 @@ from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import HeadingAveraging
 from flockana.plots.palette import INK
 from flockana.plots.snapshot import configuration, draw_sample
 from flockana.plots.style import line_width_and_opacity, over_time
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
 
 @over_time("heading (radians)")

@@ -3,10 +3,11 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.laws import HeadingAveraging
 from flockana.scenarios.entry import Builder, Report, Start, Status, entry, vacuous, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, limit_report, report
-from flockana.theorems.classics.averaging import permanently_connected, permanently_separated
+from flockana.scenarios.one_start import RANGE, SPEED, LawEntry
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
+from flockana.sources.vicsek_1995.theorems.averaging import permanently_connected, permanently_separated
 
 _REFERENCES = ("jadbabaie-lin-morse-2003", "flockana")
 _SIZE = 0.7  # spacing of a group's agents over r
@@ -70,3 +71,14 @@ SCENARIOS = {
     "headings-meet": _build("headings-meet", _MEETING, 1.2, 400, _MEET, _apart_at_first, _agrees),
     "headings-part": _build("headings-part", _PARTING, 2.0, 100, _PART, _never_agrees),
 }
+
+
+ONE_START = (
+    LawEntry(
+        "Averaged headings",
+        lambda q, p: HeadingAveraging(range=RANGE, speed=SPEED, dt=0.1),
+        "jlm-headings",
+        "headings agree if the nets are jointly connected over one bounded window of time after the other",
+        "verified",
+    ),
+)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from flockana.laws import LinkKeeping
 from flockana.scenarios.entry import Builder, Scenario, vacuous, verified
+from flockana.scenarios.one_start import RANGE, LawEntry, net_of
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 
 _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
 
@@ -37,3 +38,14 @@ def _pairs(seed: int = 0) -> Scenario:
 
 
 SCENARIOS: dict[str, Builder] = {"links-kept": _chain, "links-parted": _pairs}
+
+
+ONE_START = (
+    LawEntry(
+        "Links kept",
+        lambda q, p: LinkKeeping(net_of(q), r=RANGE),
+        "links-kept",
+        "a tension without bound at r: no link reaches it, so that a connected net stays connected; nothing keeps "
+        "agents apart, and here they meet",
+    ),
+)

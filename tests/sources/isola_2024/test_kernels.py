@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.kernels.inplace import neighbour_lists
+from flockana.sources.isola_2024.kernels import neighbour_lists
 
 
 @pytest.mark.parametrize("function", [neighbour_lists, neighbour_lists.py_func])

@@ -7,8 +7,8 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, StaticTarget
-from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.notebook import PushedAlgorithm1
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1
 from tests.refused import refused
 
 D, R, EPS, H, A, B = 3.0, 3.6, 0.1, 0.1, 3.0, 4.0

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana.interactions import DeadZoneInteraction
-from flockana.symbolic import dead_zone as dead
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone import symbolic as dead
 
 NAMES = {"d_1": "d1", "d_2": "d2", "k_1": "k1", **{name: name for name in ("r", "r_d", "k_r", "k_delta", "eta")}}
 

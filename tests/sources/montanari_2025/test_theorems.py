@@ -7,7 +7,8 @@ import pytest
 
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.theorems import Tolerances, heterogeneous_gains, theorem
+from flockana.sources.montanari_2025 import theorems as heterogeneous_gains
+from flockana.theorems import Tolerances, theorem
 
 OPTIONS = [("printed", 12, {"rotation": "counted"}), ("apart", 12, {"rotation": "apart"}),
            ("simplified", 30, {"form": "simplified"})]  # fmt: skip

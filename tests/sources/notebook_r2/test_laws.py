@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
-from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2, extra_push
+from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2, extra_push
 from tests.refused import refused
 
 ALPHA = AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
+from flockana.sources.olfati_saber_murray_2004 import theorems as delayed_consensus
+from flockana.sources.olfati_saber_murray_2004.theorems import root_enclosure
 from flockana.stability import consensus_system, delay_margin
 from flockana.theorems import Tolerances, theorem
-from flockana.theorems.classics import delayed_consensus
-from flockana.theorems.classics.delayed_consensus import root_enclosure
 
 EPS = np.finfo(float).eps
 TOPS = {"path of 3": 3.0, "ring of 6": 4.0, "star of 5": 5.0, "complete net of 4": 4.0}

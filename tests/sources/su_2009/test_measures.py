@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana import Algorithm2, CircleTarget, Trajectory
-from flockana.measures.followers import following
 from flockana.measures.measure import measures
+from flockana.sources.su_2009.measures import following
 
 
 def test_only_who_moves_as_the_leader_at_the_end_follows_it():

@@ -1,4 +1,4 @@
-from flockana.scenarios.informed import informed_survey
+from flockana.sources.su_2009.scenarios import informed_survey
 
 
 def test_the_first_few_agents_know_the_leader():

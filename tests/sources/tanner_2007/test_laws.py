@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 import flockana as fl
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
+from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
 from flockana.symbolic.composition import WEIGHT, matching_identity
 from flockana.symbolic.pair import vector
 from tests.refused import refused

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.laws.link_keeping import LinkKeeping
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from tests.refused import refused
 
 CHAIN = LinkKeeping(((1, 0), (1, 2)), r=2.0, k=0.5, c=0.25)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.laws.link_keeping import LinkKeeping
-from flockana.theorems.classics.links_kept import theorem
+from flockana.sources.zavlanos_2007.laws import LinkKeeping
+from flockana.sources.zavlanos_2007.theorems import theorem
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import statuses
 

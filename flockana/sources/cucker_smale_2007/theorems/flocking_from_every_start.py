@@ -2,8 +2,8 @@
 
 from math import sqrt
 
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.theorems.classics.alignment_bounds import Guarantee
+from flockana.sources.cucker_smale_2007.laws import CuckerSmale
+from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem
 
 

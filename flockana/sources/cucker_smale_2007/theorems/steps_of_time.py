@@ -2,11 +2,11 @@
 
 from math import sqrt
 
-from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.explicit_euler import ExplicitEuler
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.taylor_step import TaylorStep
-from flockana.theorems.classics.alignment_bounds import Guarantee
+from flockana.sources.cucker_smale_2007.laws import CuckerSmale
+from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
 from flockana.theorems.hypotheses import condition, positive_room
 from flockana.theorems.toolkit import Checked, Enclosure, Hypothesis, Observed, Tolerances, run_theorem
 

@@ -10,9 +10,9 @@ from flockana.laws import Algorithm2, PeerToPeer
 from flockana.scenarios.entry import OURS, Builder, Start, entry, verified
 from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, report
 from flockana.theorems import Claim, Tolerances
+from flockana.theorems.energy import balance
+from flockana.theorems.gamma_agent import consistent
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.olfati_saber.gamma_agent import consistent
 
 _N = 8
 _DRIFT = 4.0  # by which the copies of the two halves differ from the true velocity, across the way

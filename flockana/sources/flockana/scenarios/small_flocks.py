@@ -10,7 +10,7 @@ from flockana.interactions import Gains
 from flockana.laws import Algorithm1, Algorithm3, paper_pair
 from flockana.scenarios.entry import OURS, Builder, Scenario, Status, entry, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.start import lazy_array
-from flockana.theorems.slides.e03 import rhombus_with_double_agent
+from flockana.sources.geschwender_2016 import rhombus_with_double_agent
 
 
 def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Builder:

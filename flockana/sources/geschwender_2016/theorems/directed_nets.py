@@ -9,8 +9,8 @@ from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.sources.geschwender_2016.theorems.claims_on_energy import rises
 from flockana.theorems.claims import erratum, judged, of_state
-from flockana.theorems.slides.claims_on_energy import rises
 from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps

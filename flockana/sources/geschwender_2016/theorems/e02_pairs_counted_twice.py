@@ -3,8 +3,8 @@
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_claim
-from flockana.theorems.slides.energy_printed import pair_energy
+from flockana.sources.geschwender_2016.theorems.claims_on_energy import PROOF, run_claim, state_claim
+from flockana.sources.geschwender_2016.theorems.energy_printed import pair_energy
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 

@@ -16,7 +16,7 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.nets import components, links
-from flockana.theorems.olfati_saber.attraction import attraction
+from flockana.theorems.attraction import attraction
 from flockana.theorems.shares import CONFIDENCE
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, always, erratum, judged, of_state
 

@@ -7,7 +7,8 @@ from math import sqrt
 import numpy as np
 
 from flockana.lattice import is_planar, kuratowski, planar_bound
-from flockana.theorems.olfati_saber.os_5 import check
+from flockana.lattice.builders import fcc_star
+from flockana.sources.olfati_saber_2006 import check
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, of_state
 
 _D, _R = 7.0, 8.4
@@ -19,11 +20,6 @@ STAR: tuple[Site, ...] = ((0, 0, 0), *_STEPS)
 EIGHT: tuple[Site, ...] = ((0, 0, 0), (1, 0, 1), (2, 1, 1), (1, 1, 0), (2, 2, 0), (2, 1, -1), (1, 0, -1), (2, 0, 0))
 _FRAGMENT = 6
 _PROOF = "nonplanar-fcc"
-
-
-def fcc_star(d: float) -> FloatArray:
-    """A site of the face-centred cubic lattice and its twelve neighbours."""
-    return d / sqrt(2.0) * np.array(STAR, dtype=float)
 
 
 def fcc_eight(d: float) -> FloatArray:

@@ -15,9 +15,9 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.claims import judged, run_theorem, undecided
 from flockana.theorems.errata import printed
-from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.olfati_saber.energy import cancelling, never_rises, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import target_rests
-from flockana.theorems.slides.claims_on_energy import run_claim
+from flockana.sources.geschwender_2016.theorems.claims_on_energy import run_claim
+from flockana.theorems.energy import cancelling, never_rises, stays_outside
+from flockana.theorems.gamma_agent import target_rests
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, lengths, run_theorem
 
 

@@ -13,10 +13,11 @@ import numpy as np
 from flockana.base.checks import ensure_finite_scalar, ensure_positive
 from flockana.environment import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law, MSNDiscretisation
+from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law
 from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import in_source_units
-from flockana.scenarios.msn_reports import CENTRE, DT, REPORTS, STATIC
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.isola_2024.scenarios.reports import CENTRE, DT, REPORTS, STATIC
 
 UPDATES = 539  # range(540), whose first iteration moves nobody
 CAPTURES = (0, 90, 180, 270, 360, 450)  # iterations: every 540/6

@@ -11,11 +11,11 @@ import numpy as np
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import Gains
-from flockana.laws import MSNDiscretisation
 from flockana.measures.metrics import coincident_pairs, connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.scenarios.entry import Report
 from flockana.scenarios.findings import finding, fragmented, report, rerun, same_accuracy
+from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.theorems import Claim, Tolerances
 
 DT = 0.009  # of an iteration

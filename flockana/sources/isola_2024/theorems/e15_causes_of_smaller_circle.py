@@ -10,10 +10,10 @@ from flockana.base.checks import FloatArray
 from flockana.environment.targets import CircleTarget, RescaledVelocity
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
 from flockana.stability.translational import CentreOfMass, predicted_gain
-from flockana.theorems.slides.e12 import measured_ratio
 from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, equal, erratum, judged, observed, stacked
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's

@@ -9,8 +9,8 @@ from flockana.equilibria.collapse import perturbed, pulled_law
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.theorems.olfati_saber.attraction import attraction
-from flockana.theorems.slides.e11 import resting_place
+from flockana.sources.geschwender_2016 import resting_place
+from flockana.theorems.attraction import attraction
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, stacked
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's

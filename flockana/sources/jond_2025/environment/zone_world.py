@@ -11,8 +11,8 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, freez
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
-from flockana.kernels.zones import World
+from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
+from flockana.sources.jond_2025.kernels.zones import World
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,10 @@
 """Figures of a run of the minimal model: the common ones, and the profiles of Jond's Fig. 10."""
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.report.charts import Chart, panels
 from flockana.report.figures import Picture, flock_pictures, measured, speeds
-from flockana.report.zone_figures import profile_curves
-
-LAWS = (MinimalFlocking, DiscreteMinimalFlocking)
+from flockana.sources.jond_2025.figures.zones import profile_curves
+from flockana.sources.jond_2025.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
@@ -18,3 +16,6 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     apart = Chart("distances of pairs (length)", trajectory.t, profile_curves(trajectory))
     charts = [apart, speeds(trajectory), measured(trajectory, "coordination")]
     return (*flock_pictures(trajectory), Picture(caption, panels(charts)))
+
+
+PICTURES = {MinimalFlocking: pictures, DiscreteMinimalFlocking: pictures}

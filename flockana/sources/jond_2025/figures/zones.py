@@ -3,14 +3,13 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import ZoneFlocking
 from flockana.measures.profiles import pair_distance_profile
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, effort, measured, speeds
 from flockana.report.stills import stills
 from flockana.scenarios.findings import component_counts, has_metric
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 
-LAWS = (ZoneFlocking,)
 _DANGER = "distance to obstacle, wall, alien (length)"
 _DANGERS = (("obstacle_clearance_bound", "obstacle"), ("wall_distance", "wall"), ("alien_distance", "alien"))
 
@@ -67,3 +66,6 @@ def _middle(run: Trajectory) -> int:
         return int(counts.argmax())
     near = has_metric(run, "obstacle_clearance")
     return int(run.metric("obstacle_clearance").argmin()) if near else len(run.t) // 2
+
+
+PICTURES = {ZoneFlocking: pictures}

@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.jit import kernel, register_jitable
-from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.noise import noise
 from flockana.kernels.sums import square_between
-from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
+from flockana.sources.jond_2025.kernels.candidates import gather, sort_into_cells
+from flockana.sources.jond_2025.kernels.zone_obstacles import obstacle_terms, to_boundary
 
 FloatArray = npt.NDArray[np.float64]
 COHESION, ALIGNMENT, SEPARATION, STRATEGIC, OBSTACLE, SPEED = range(6)
@@ -59,7 +59,7 @@ class Settings(NamedTuple):
 
 
 class Choices(NamedTuple):
-    """Readings of the paper: 0 is the recommended one, the others as in `flockana.laws.bearing_distance`."""
+    """Readings of the paper: 0 is the recommended one, the others as in `laws.zone_flocking`."""
 
     form: int
     order: int

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, PerAgent
-from flockana.interactions.zones import Table
+from flockana.sources.jond_2025.interactions.zones import Table
 
 
 class EdgeData(NamedTuple):

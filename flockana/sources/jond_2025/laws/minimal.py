@@ -15,10 +15,7 @@ from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
 from flockana.base.units import Powers, scaled_fields, times
 from flockana.base.vectors import lengths
-from flockana.interactions.zones import Table, per_pair
-from flockana.kernels import minimal as kernel
 from flockana.laws.discrete import DiscreteLaw, States
-from flockana.laws.edges import EdgeData, weighed_edges
 from flockana.laws.law import Arrays, Law
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.terms.term import Derivatives
@@ -26,6 +23,9 @@ from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
 from flockana.measures.profiles import pair_distance_profile
+from flockana.sources.jond_2025.interactions.zones import Table, per_pair
+from flockana.sources.jond_2025.kernels import minimal as kernel
+from flockana.sources.jond_2025.laws.edges import EdgeData, weighed_edges
 
 _EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
 

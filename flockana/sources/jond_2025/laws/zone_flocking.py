@@ -17,12 +17,13 @@ from flockana.base.checks import FloatArray, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.environment.zone_world import ZoneWorld
-from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
-from flockana.kernels import zones as compiled
-from flockana.kernels.zone_counts import fragments, populations
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
+from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
+from flockana.sources.jond_2025.interactions.zone_noise import ZoneNoise
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.kernels import zones as compiled
+from flockana.sources.jond_2025.kernels.zone_counts import fragments, populations
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "form": ("position", "bearing"),

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import MinimalFlocking
 from flockana.plots.snapshot import configuration, draw_sample, drawn_law, snapshot
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 
 
 def perception(

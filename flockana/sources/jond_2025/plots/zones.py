@@ -14,8 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment import Sphere, ZoneWorld
-from flockana.laws import ZoneFlocking
+from flockana.environment import Sphere
 from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
@@ -23,6 +22,8 @@ from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, PURPL
 from flockana.plots.series import pair_distances
 from flockana.plots.snapshot import configuration, draw_sample, in_view, nearest_sample, velocity_arrows
 from flockana.plots.style import curves, ensure_axes, frame_space, hairlines, levels, lines, over_time, write_title
+from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 
 _AS_LINES = 5000  # pairs
 

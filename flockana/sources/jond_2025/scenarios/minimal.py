@@ -10,12 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from flockana.laws import MinimalFlocking
 from flockana.measures.metrics import coordination
 from flockana.measures.perception import both_ways, random_out_tree
 from flockana.scenarios.entry import Builder, Scenario, entry, refuted, vacuous, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, in_source_units, report
-from flockana.theorems.bearing_distance.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems.j11_minimal_model_runs import (
+    ALIGNED,
+    DT,
+    DURATION,
+    LONGER,
+    RECOMMENDED,
+    minimal_start,
+)
 
 _SETTLED = 0.1  # largest relative change of a distance over the last tenth of the run that counts as at rest
 _REFERENCES = ("jond-2025",)

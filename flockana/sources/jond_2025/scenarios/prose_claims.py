@@ -10,10 +10,14 @@ import numpy as np
 from flockana.base.checks import ensure_count
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
-from flockana.environment import Alien, ZoneWorld
-from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
-from flockana.laws import ZoneFlocking
-from flockana.scenarios.bearing_distance import (
+from flockana.scenarios.entry import Builder, Scenario, Start, verified
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_counts, finding, report, rerun
+from flockana.scenarios.start import lazy_state
+from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
+from flockana.sources.jond_2025.interactions.zone_noise import ZoneNoise
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.scenarios.published_runs import (
     BOX,
     FREE,
     GAP,
@@ -28,10 +32,7 @@ from flockana.scenarios.bearing_distance import (
     keeps_speed,
     zone_entry,
 )
-from flockana.scenarios.entry import Builder, Scenario, Start, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_counts, finding, report, rerun
-from flockana.scenarios.start import lazy_state
-from flockana.theorems.bearing_distance.random_starts import crowd_start, zone_start
+from flockana.sources.jond_2025.theorems.random_starts import crowd_start, zone_start
 
 _UNBOUNDED = 1e6  # an input bound that never acts
 _INFORMED = 2

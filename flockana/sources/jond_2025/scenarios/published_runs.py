@@ -16,16 +16,17 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment import Alien, Box, SimplePolygon, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws import ZoneFlocking
 from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.entry import Builder, Report, Start, Status, entry, refuted, verified
 from flockana.scenarios.findings import component_counts, finding, in_source_units, report
 from flockana.scenarios.start import lazy_state
+from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon
+from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import zone_start
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.bearing_distance.random_starts import zone_start
 
 N, AREA, SPEED = 10, 10.0, 3.0
 SAFE, IN_ORDER = 1.5, 0.99  # m; what counts as C = 1

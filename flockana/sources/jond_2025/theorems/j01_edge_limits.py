@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, edge_vectors, random_out_tree
-from flockana.theorems.bearing_distance.tree_case import TreeCase, tree_case
-from flockana.theorems.bearing_distance.tree_limits import kept, settles
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase, tree_case
+from flockana.sources.jond_2025.theorems.tree_limits import kept, settles
 from flockana.theorems.observed import End, Observed, observed
 from flockana.theorems.shares import CONFIDENCE, interval
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, limit_claim

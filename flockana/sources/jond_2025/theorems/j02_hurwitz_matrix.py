@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, undecided
 
 
@@ -16,7 +16,7 @@ def _two_agents_abscissa(ratio: float) -> float:
 
 def _positive_definite() -> Claim:
     """The edge matrices of a spanning tree whose root has one child, with five children of its own."""
-    from flockana.symbolic.spanning_trees import symmetric_part
+    from flockana.sources.jond_2025.symbolic.spanning_trees import symmetric_part
 
     name, five_children = "positive-definite", symmetric_part(5)
     if not five_children.holds:
@@ -48,7 +48,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     import sympy as sp
 
-    from flockana.symbolic.spanning_trees import frozen_eigenvalues
+    from flockana.sources.jond_2025.symbolic.spanning_trees import frozen_eigenvalues
 
     eigenvalues = {ratio: frozen_eigenvalues(sp.Rational(ratio)) for ratio in ("1/2", "1", "2")}
     abscissas = {ratio: sp.re(values[0]) for ratio, values in eigenvalues.items()}

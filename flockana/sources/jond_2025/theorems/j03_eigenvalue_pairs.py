@@ -4,8 +4,8 @@ from itertools import permutations
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, exact, spectral
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
@@ -56,7 +56,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     triangular in one order, and it is right; on an undirected path it is not, and A_cl can be unstable though every
     edge is longer than desired.
     """
-    from flockana.symbolic.spanning_trees import tree_characteristic
+    from flockana.sources.jond_2025.symbolic.spanning_trees import tree_characteristic
 
     residuals = {str(edges): tree_characteristic(edges).residuals[0] for edges in _TREE_SHAPES}
     error, abscissa = _pairing(400.0)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors, incidence, receivers
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, of_state
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -13,7 +13,7 @@ _SAME, _ROUNDING = 1e-9, 1e-13  # relative: forces that differ by less are the s
 
 def _identity(name: str, stated: str, detail: str, **backed: str) -> Claim:
     """An identity of the separation forces on a directed tree of five, by algebra."""
-    from flockana.symbolic.spanning_trees import separation_forms
+    from flockana.sources.jond_2025.symbolic.spanning_trees import separation_forms
 
     residuals = separation_forms(_TREE)[name].residuals
     return equal(name, residuals, stated=stated, detail=detail, **backed)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, incidence
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, erratum, judged, lengths, observed, stacked
 
 _STARTS, _END = 20, 60.0

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.bearing_distance import zone_1_corrected
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems import theorem_1_corrected as zone_1_corrected
 from flockana.theorems.claims import counted, erratum
 from flockana.theorems.observed import observed, with_resolution
 from flockana.theorems.theorem import Claim, Tolerances, Verdict

@@ -4,8 +4,8 @@ from math import tanh
 
 import numpy as np
 
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import runs_from_random_starts
 from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, lengths, mostly, of_map, spectral
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
-from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, zone_start
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import SEEDS, runs_from_random_starts, zone_start
 from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, mostly, of_state
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.bearing_distance.random_starts import DURATION, runs_from_random_starts
+from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import DURATION, runs_from_random_starts
 from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, observed, of_map
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps of one agent

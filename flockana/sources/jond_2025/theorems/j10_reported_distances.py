@@ -2,10 +2,15 @@
 
 import numpy as np
 
-from flockana.interactions import ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
-from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, separated_start, zone_start
+from flockana.sources.jond_2025.interactions.zones import ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import (
+    SEEDS,
+    runs_from_random_starts,
+    separated_start,
+    zone_start,
+)
 from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, erratum, mostly, of_state
 
 _STARTS = 2000

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, mostly, observed
 
 N, SIDE, DT = 60, 30.0, 0.1

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.environment.zone_obstacles import Box
-from flockana.environment.zone_world import ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.sources.jond_2025.environment.zone_obstacles import Box
+from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps

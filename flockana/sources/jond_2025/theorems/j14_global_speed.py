@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.bearing_distance.random_starts import separated_start
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import separated_start
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, mostly, observed, of_map
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: speeds that differ by less are the same; of a few hundred steps

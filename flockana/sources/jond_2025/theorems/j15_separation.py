@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import min_distance
-from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import runs_from_random_starts, separated_start
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, of_map
 
 _SAME, _ROUNDING = 1e-6, 1e-11  # relative: distances that differ by less are the same; of a thousand steps

@@ -3,9 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_map
 
 _DETECTION, _PURSUIT, _SPEED, _AT = 9.0, 1.5, 3.0, 20.0

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from flockana.interactions import ZoneRadii
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components, links
-from flockana.theorems.bearing_distance.random_starts import crowd_start
+from flockana.sources.jond_2025.interactions.zones import ZoneRadii
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
+from flockana.sources.jond_2025.theorems.random_starts import crowd_start
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, mostly, observed, of_map
 
 _LAW = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0))

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
+from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.theorems.toolkit import FloatArray, Trajectory, observed
 
 SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, observed, stacked
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5

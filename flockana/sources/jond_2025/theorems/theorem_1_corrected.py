@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
-from flockana.theorems.bearing_distance.tree_energy import edge_claim, energy_claim, proof_of, root_claim
-from flockana.theorems.bearing_distance.tree_limits import settles, velocity_claim
-from flockana.theorems.bearing_distance.tree_spectrum import Spectrum, tree_spectrum
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase, minimal_law, tree_hypotheses
+from flockana.sources.jond_2025.theorems.tree_energy import edge_claim, energy_claim, proof_of, root_claim
+from flockana.sources.jond_2025.theorems.tree_limits import settles, velocity_claim
+from flockana.sources.jond_2025.theorems.tree_spectrum import Spectrum, tree_spectrum
 from flockana.theorems.claims import run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Observed, condition, evidence, limit_claim, spectral

@@ -4,8 +4,8 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
-from flockana.theorems.bearing_distance.tree_limits import kept, state, velocity_claim
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase, minimal_law, tree_hypotheses
+from flockana.sources.jond_2025.theorems.tree_limits import kept, state, velocity_claim
 from flockana.theorems.claims import run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, Observed, judged, limit_claim

@@ -6,7 +6,7 @@ bound of an energy larger by the tolerance on energies, which leaves half of tha
 
 import numpy as np
 
-from flockana.theorems.bearing_distance.tree_case import TreeCase
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase
 from flockana.theorems.claims import judged, undecided, vacuous
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, positive_room, stacked
 

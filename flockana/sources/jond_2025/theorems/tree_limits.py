@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from flockana.measures.perception import edge_vectors
-from flockana.theorems.bearing_distance.tree_case import TreeCase
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase
 from flockana.theorems.limits import Certificate, decays_to_zero
 from flockana.theorems.observed import End
 from flockana.theorems.rounding import frame_error

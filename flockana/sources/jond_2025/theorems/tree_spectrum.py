@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.theorems.bearing_distance.tree_case import TreeCase, characteristic_residual
+from flockana.sources.jond_2025.theorems.tree_case import TreeCase, characteristic_residual
 from flockana.theorems.toolkit import EPS, FloatArray
 
 POLYNOMIAL = 1e-6  # largest relative difference of two characteristic polynomials that counts as none

@@ -10,17 +10,19 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_kind, ensure_state, normalise
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import ensure_gain
-from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
-from flockana.kernels.dead_zone_steps import semi_implicit_steps
+from flockana.laws.candidates import Candidate
 from flockana.laws.discrete import IndexArray
-from flockana.laws.law import Arrays
+from flockana.laws.law import Arrays, Block
+from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 from flockana.measures.nets import links
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.kernels.pair import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
+from flockana.sources.li_dead_zone.kernels.steps import semi_implicit_steps
 
 SLIDES = 1e-6  # of d1: a pair driven back from both sides that swings no farther than this counts as held
 
@@ -104,6 +106,19 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         kept = np.arange(1, steps + 1) if wanted is None else wanted
         return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, kept)
 
+    def block(self, solver: Any) -> Block | None:
+        """Return many semi-implicit Euler steps in one compiled loop; None for other solvers, or for a subclass.
+
+        Parameters
+        ----------
+        solver : SemiImplicitEuler, or another solver
+            Which steps the law.
+        """
+        known = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
+        if not known or not isinstance(solver, SemiImplicitEuler):
+            return None
+        return lambda q, p, steps, wanted=None: self.semi_implicit(q, p, solver.dt, steps, wanted)
+
     @property
     def located(self) -> bool:
         """Whether the force jumps at the dead zone (no ramp), so that switches are located."""
@@ -134,3 +149,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 def contact_scales(interaction: DeadZoneInteraction) -> Scales:
     """Return d₁, and the time in which the force of a contact moves an agent by d₁."""
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
+
+
+CANDIDATES = {"dead-zone": Candidate(DeadZoneFlocking)}

@@ -11,14 +11,14 @@ from flockana.base.checks import FloatArray, ensure_index, ensure_kind, normalis
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import ensure_gain
-from flockana.laws.dead_zone import contact_scales
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.leaders import Leaders, known_path
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import contact_scales
 
 
 @dataclass(frozen=True)

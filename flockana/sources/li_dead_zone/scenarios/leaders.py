@@ -4,10 +4,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.environment import LinearTarget
-from flockana.laws import LedDeadZoneFlocking, SemiImplicitEuler
-from flockana.scenarios.dead_zone import DT, describe_choices
+from flockana.laws import SemiImplicitEuler
 from flockana.scenarios.entry import Scenario, refuted, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
+from flockana.sources.li_dead_zone.scenarios.published_run import DT, describe_choices
 
 _N, _PINNED, _BOX, _SPEED, _END = 30, 10, 25.0, 1.0, 60.0
 

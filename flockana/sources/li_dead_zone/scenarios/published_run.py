@@ -6,12 +6,15 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_positive
-from flockana.interactions import DeadZoneInteraction
-from flockana.laws import DeadZoneFlocking, DiscreteLaw, LedDeadZoneFlocking, SemiImplicitEuler
+from flockana.laws import DiscreteLaw, SemiImplicitEuler
 from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
-from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
-from flockana.theorems.dead_zone.range_limits import thinned
+from flockana.scenarios.one_start import LawEntry
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import dead_zone_law, final_components, velocities_match
+from flockana.sources.li_dead_zone.theorems.range_limits import thinned
 from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
 
@@ -189,3 +192,14 @@ SCENARIOS = {
         flow=True,
     ),
 }
+
+
+ONE_START = (
+    LawEntry(
+        "Dead zone",
+        lambda q, p: DeadZoneFlocking(),
+        "dead-zone-1-corrected",
+        "the saturated energy falls and distances stay above an explicit bound; that velocities agree within each "
+        "component is measured, not proved",
+    ),
+)

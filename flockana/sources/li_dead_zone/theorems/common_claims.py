@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
-from flockana.theorems.dead_zone.parting import Components, components_of
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.components import Components, components_of
+from flockana.theorems.collisions import least_distance
 from flockana.theorems.limits import Certificate, decays_to_zero
-from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
 PROOF = "dead-zone"

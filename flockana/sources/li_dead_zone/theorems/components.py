@@ -9,7 +9,7 @@ things keep a component together:
   nobody gets farther from the centre than B = r (n - 1 + M)/n. With k₂ > 0 its velocities then match: the net's least
   eigenvalue but 0 stays above a positive number, so ∫K dt is finite, and dK/dt is bounded as no two agents come closer
   than an explicit distance (Barbalat's lemma).
-* a strict minimum of its potential (`flockana.theorems.dead_zone.hold`): nobody then gets farther than now, but for
+* a strict minimum of its potential (`local_basin`): nobody then gets farther than now, but for
   the little way to it. That holds of a map of semi-implicit Euler steps as well, whose energy may rise.
 
 Two components never meet if their centres, at constant velocities, never come closer than r + B + B'. Of a map that
@@ -24,10 +24,10 @@ from math import floor, inf, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import components, links
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.local_basin import hold
 from flockana.theorems.basin import Basin
-from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole one

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, of_state
 
 _SAME = 1e-9  # relative: two forces that differ by less are the same

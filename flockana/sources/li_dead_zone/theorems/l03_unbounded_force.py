@@ -1,6 +1,6 @@
 """Erratum L3: φ_z, called a bounded potential, is a force that is unbounded as 1/ρ² where agents meet."""
 
-from flockana.theorems.dead_zone.case import PROOF
+from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
@@ -12,7 +12,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     # φ_z grows as 1/ρ² and its potential as −ln ρ where two agents meet: by algebra.
     import sympy as sp
 
-    from flockana.symbolic.dead_zone import K_R, RHO, derive_potential, repulsion
+    from flockana.sources.li_dead_zone.symbolic import K_R, RHO, derive_potential, repulsion
 
     growth = sp.limit(RHO**2 * repulsion(), RHO, 0, "+")
     potential = derive_potential()

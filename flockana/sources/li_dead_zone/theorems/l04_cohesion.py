@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import connectivity, min_distance
-from flockana.theorems.dead_zone.case import PROOF, final_components
-from flockana.theorems.dead_zone.motions import advance, parting_pair
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import PROOF, final_components
+from flockana.sources.li_dead_zone.theorems.shared_runs import advance, parting_pair
 from flockana.theorems.shares import INTERVAL_ERROR, interval
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, limit_claim, observed, of_map
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.olfati_saber.energy import balance
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
+from flockana.theorems.energy import balance
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, judged, observed
 
 
@@ -20,7 +20,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     dH̄/dt = -k₂ pᵀL̂p across all switches.
     """
     # The energy of neighbours and the saturated energy along a run in which two agents come into range.
-    from flockana.symbolic.dead_zone import saturated_energy_identity
+    from flockana.sources.li_dead_zone.symbolic import saturated_energy_identity
 
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))  # so that the switch is located
     seen = observed(law, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0))

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone.case import PROOF, distance_bound
-from flockana.theorems.olfati_saber.collisions import least_distance
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import PROOF, distance_bound
+from flockana.theorems.collisions import least_distance
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, judged, observed, stacked
 
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}

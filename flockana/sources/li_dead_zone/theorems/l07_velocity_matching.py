@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import spreads
-from flockana.theorems.dead_zone.case import final_components, settling
-from flockana.theorems.dead_zone.hold import hold
-from flockana.theorems.dead_zone.motions import advance, parting_pair
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import final_components, settling
+from flockana.sources.li_dead_zone.theorems.local_basin import hold
+from flockana.sources.li_dead_zone.theorems.shared_runs import advance, parting_pair
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, limit_claim, observed, of_map
 
 _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts they differ by 7 %

@@ -1,7 +1,7 @@
 """Erratum L8: not all pairs of a flock can be at one distance, and contacts sit at r_b - δ, not at r_b."""
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.dead_zone.case import PROOF
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, spectral
 
 _ROUNDING = 1e-11  # m: of the root of a force

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from flockana.environment.targets import CircleTarget, LinearTarget
-from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.lattice import hexagonal_patch
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.components import components_of
 from flockana.theorems.claims import by_count, equal, erratum, of_map
-from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, limit_claim, observed
 
 _CLOSE = 0.02  # of a leader's speed: within it an agent's velocity is its leader's

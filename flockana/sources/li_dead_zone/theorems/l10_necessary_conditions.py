@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import min_distance
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems.common_claims import final_components
+from flockana.sources.li_dead_zone.theorems.components import Component
+from flockana.sources.li_dead_zone.theorems.shared_runs import parting_pair
 from flockana.theorems.claims import erratum, exact, undecided
-from flockana.theorems.dead_zone.case import final_components
-from flockana.theorems.dead_zone.motions import parting_pair
-from flockana.theorems.dead_zone.parting import Component
 from flockana.theorems.toolkit import EPS, Certificate, Claim, FloatArray, Tolerances, limit_claim, observed
 
 _TIMES = 2.0  # as much energy as can put the pair out of range
@@ -33,7 +33,7 @@ def _is_finite_apart() -> bool | None:
     # None if sympy cannot tell.
     import sympy as sp
 
-    from flockana.symbolic.dead_zone import ETA_POSITIVE, K_DELTA, K_R, repulsive_primitive
+    from flockana.sources.li_dead_zone.symbolic import ETA_POSITIVE, K_DELTA, K_R, repulsive_primitive
 
     s = sp.Symbol("s", positive=True)
     values = [repulsive_primitive(s, eta=eta).subs({K_R: 1, K_DELTA: 1}) for eta in (ETA_POSITIVE, sp.Integer(0))]

@@ -17,9 +17,9 @@ from math import inf, sqrt
 import numpy as np
 
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import link_lengths, links
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.theorems import basin as basins
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray
 

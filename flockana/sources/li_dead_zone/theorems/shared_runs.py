@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 
 
 def parting_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:

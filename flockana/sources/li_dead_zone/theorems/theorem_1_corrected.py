@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from flockana.sources.li_dead_zone.theorems import common_claims as case
+from flockana.sources.li_dead_zone.theorems.components import Components
 from flockana.theorems.claims import by_count, vacuous
-from flockana.theorems.dead_zone import case
-from flockana.theorems.dead_zone.parting import Components
-from flockana.theorems.olfati_saber.energy import balance
+from flockana.theorems.energy import balance
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, limit_claim, run_theorem, unmet
 
 

@@ -1,11 +1,11 @@
 """Theorem 1 of the dead-zone paper as printed: one flock within r, an energy that falls, one velocity, no collision."""
 
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
+from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
+from flockana.sources.li_dead_zone.theorems import common_claims as case
+from flockana.sources.li_dead_zone.theorems.components import Components
+from flockana.sources.li_dead_zone.theorems.range_limits import first_entry
 from flockana.theorems.claims import run_theorem
-from flockana.theorems.dead_zone import case
-from flockana.theorems.dead_zone.parting import Components
-from flockana.theorems.dead_zone.range_limits import first_entry
 from flockana.theorems.rounding import frame_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, Certificate, Enclosure, Observed, counted, limit_claim

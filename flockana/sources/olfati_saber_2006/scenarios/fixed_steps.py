@@ -15,7 +15,7 @@ from flockana.scenarios.findings import (
     report,
     rerun,
 )
-from flockana.scenarios.olfati_saber import random_start
+from flockana.sources.olfati_saber_2006.scenarios.free_space import random_start
 
 _N, _END = 40, 40.0
 _SETTLED = 1e-6  # of K̃ at the start

@@ -13,7 +13,8 @@ from flockana.laws import Algorithm3
 from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, vacuous, verified
 from flockana.scenarios.findings import in_source_units
-from flockana.scenarios.obstacle_claims import (
+from flockana.scenarios.start import lazy_state
+from flockana.sources.olfati_saber_2006.scenarios.obstacle_claims import (
     constrained,
     gets_past,
     rejoins,
@@ -24,7 +25,6 @@ from flockana.scenarios.obstacle_claims import (
     touches,
     traps,
 )
-from flockana.scenarios.start import lazy_state
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
 # 2√1.1 that is 0.5: a flock of spread 50 would need some 300 time units to gather. With c1γ = 30 agents coincide.

@@ -133,7 +133,7 @@ def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked
     "alpha-flocking",
     title="The run is α-flocking (Definition 5)",
     source="Olfati-Saber 2006, Definition 5",
-    enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
+    enclosed=enclosed_by("alpha_flocking", f"{__package__}.alpha_flocking_enclosed"),
     claims=("giant", "cohesive", "deviation", "mismatch"),
     leads={"giant": bridge},
 )
@@ -148,7 +148,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     "alpha-flocking-strict",
     title="The run is strictly α-flocking (Definition 5)",
     source="Olfati-Saber 2006, Definition 5, strict form",
-    enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
+    enclosed=enclosed_by("alpha_flocking_strict", f"{__package__}.alpha_flocking_enclosed"),
     claims=("flock", "deviation", "mismatch"),
     leads={"flock": bridge},
 )

@@ -3,11 +3,11 @@
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.theorems.collisions import below_multiple, energy_at_start, no_collision
+from flockana.theorems.energy import nothing_adds_energy
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is, positive
 from flockana.theorems.meeting import least_is_known, meeting
-from flockana.theorems.olfati_saber.collisions import below_multiple, energy_at_start, no_collision
-from flockana.theorems.olfati_saber.energy import nothing_adds_energy
 from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
@@ -28,7 +28,7 @@ def _needs(run: Observed) -> list[Hypothesis]:
     title="No collision below c*; above it there are some",
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, composed=True),
-    enclosed=enclosed_by("collision_energy"),
+    enclosed=enclosed_by("collision_energy", f"{__package__}.theorems_1_and_3_enclosed"),
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
     ours=("twice",),

@@ -2,15 +2,15 @@
 
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.sources.olfati_saber_2006.theorems import any_potential
 from flockana.theorems.asymptotics import lattice_limit, velocities_match
+from flockana.theorems.attraction import final_basin
+from flockana.theorems.collisions import below_the_barrier, energy_at_start, no_collision
+from flockana.theorems.energy import proved
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.olfati_saber import any_potential
-from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.olfati_saber.collisions import below_the_barrier, energy_at_start, no_collision
-from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
@@ -33,7 +33,7 @@ def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesi
     title="Algorithm 1: lattice, matched velocities, no collision",
     source="Olfati-Saber 2006, Theorem 1",
     law=law_is("Algorithm 1", Algorithm1, formulas=True),
-    enclosed=enclosed_by("os_1"),
+    enclosed=enclosed_by("os_1", f"{__package__}.theorems_1_and_3_enclosed"),
     claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
     ours=("iii-barrier",),

@@ -3,13 +3,14 @@
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.sources.olfati_saber_2006.theorems import any_potential
+from flockana.theorems import collisions
 from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.attraction import final_basin
 from flockana.theorems.claims import run_theorem
 from flockana.theorems.from_tube import enclosed_by
+from flockana.theorems.gamma_agent import consistent
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.olfati_saber import any_potential, collisions
-from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.olfati_saber.gamma_agent import consistent
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
 
@@ -48,7 +49,7 @@ def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list
     title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
     source="Olfati-Saber 2006, Theorem 3",
     law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
-    enclosed=enclosed_by("os_3"),
+    enclosed=enclosed_by("os_3", f"{__package__}.theorems_1_and_3_enclosed"),
     claims=("i", "ii", "ii-converges", "ii-semidefinite", "iii", *_COLLISIONS),
     leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
     corrected=("ii-semidefinite", "iv-instant"),

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
+from flockana.lattice.crossings import LISTED
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
@@ -22,7 +23,6 @@ from flockana.theorems.toolkit import EPS, FloatArray, Observed, by_count, condi
 
 _OURS = ("ii-sharp", "extension", "extension-lengths", "extension-links", "extension-quantitative")
 CLAIMS = ("i", "i-graph", "ii", "ii-sharp", "iii", *_OURS[1:])
-LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
 _CROSSINGS, _COUNTS = "theorem5-crossings", "theorem5-counts"  # executable proofs

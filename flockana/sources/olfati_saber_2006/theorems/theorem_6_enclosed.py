@@ -10,9 +10,9 @@ from flockana.certified.energies import BITS, powers_during, total_energy, work
 from flockana.certified.flow import Flow, flow_of
 from flockana.certified.series import Piece
 from flockana.certified.tube import Tube, up
+from flockana.theorems.energy import proved
 from flockana.theorems.from_tube import decided
 from flockana.theorems.hypotheses import common_gains
-from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ import numpy as np
 
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.claims import run_theorem
+from flockana.theorems.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.from_tube import enclosed_by
+from flockana.theorems.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.hypotheses import common_gains
-from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
-from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.theorem import Checked, Hypothesis, Tolerances
 from flockana.theorems.toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths
 
@@ -47,12 +47,20 @@ def start_of_condition(seen: Observed) -> int:
     return min(_condition(seen)[1], len(seen.t) - 2)
 
 
+STEPS = {
+    "os-6": (
+        "where its hypotheses hold of the law's flow, H rises in a step by no more than the scheme's own defect",
+        start_of_condition,
+    )
+}
+
+
 @run_theorem(
     "os-6",
     title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
     source="Olfati-Saber 2006, Theorem 6",
     law=law_is("Algorithm 3", Algorithm3, one_gain=True),
-    enclosed=enclosed_by("os_6", "obstacles_enclosed"),
+    enclosed=enclosed_by("os_6", f"{__package__}.theorem_6_enclosed"),
     claims=("rate", "balance"),
 )
 def theorem(seen: Observed, tolerances: Tolerances) -> Checked:

@@ -4,11 +4,11 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.classics import leader_frame
-from flockana.theorems.composed.cohesion import stays_within
+from flockana.sources.su_2009.theorems import leader_frame
+from flockana.theorems.cohesion import stays_within
+from flockana.theorems.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
+from flockana.theorems.energy import never_rises
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.olfati_saber.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
-from flockana.theorems.olfati_saber.energy import never_rises
 from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, law_is, positive, run_theorem, unmet
 
 PROOF = "informed-agents"

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.laws.tanner import FixedNetFlocking
 from flockana.measures.nets import components
-from flockana.theorems.classics.tanner_claims import MATCHED, comes_to_rest, no_collision
-from flockana.theorems.olfati_saber.energy import balance
+from flockana.sources.tanner_2007.laws import FixedNetFlocking
+from flockana.sources.tanner_2007.theorems.common_claims import MATCHED, comes_to_rest, no_collision
+from flockana.theorems.energy import balance
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
 
 

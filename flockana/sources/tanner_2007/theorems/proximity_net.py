@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from flockana.laws.tanner import ProximityFlocking
 from flockana.measures.nets import components, links
-from flockana.theorems.classics.tanner_claims import comes_to_rest, no_collision, out_of_range
+from flockana.sources.tanner_2007.laws import ProximityFlocking
+from flockana.sources.tanner_2007.theorems.common_claims import comes_to_rest, no_collision, out_of_range
+from flockana.theorems.energy import balance
 from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.toolkit import EPS, Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 

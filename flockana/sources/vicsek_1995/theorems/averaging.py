@@ -7,8 +7,8 @@ from math import inf
 import numpy as np
 import numpy.typing as npt
 
-from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.nets import LinkArray, components
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 _DIRECTIONS = 360  # along which two groups may be seen to part

@@ -9,7 +9,7 @@ import pytest
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.measures.metrics import spreads
-from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate, Guarantee
+from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import QUADRATURE, AlignmentRate, Guarantee
 from flockana.theorems.observed import Observed
 
 

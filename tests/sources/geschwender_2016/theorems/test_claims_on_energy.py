@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Trajectory
-from flockana.theorems.slides.claims_on_energy import rises, run_claim
+from flockana.sources.geschwender_2016.theorems.claims_on_energy import rises, run_claim
 from flockana.theorems.toolkit import Enclosure, Hypothesis, Observed, observed
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, DirectedNet, Tolerances
+from flockana.sources.geschwender_2016.theorems import directed_nets
 from flockana.theorems.observed import Observed, observed
-from flockana.theorems.slides import directed_nets
 
 LAW = Algorithm1()
 

@@ -7,7 +7,12 @@ from scipy.stats import beta
 from flockana import Algorithm1, Gains, Tolerances, min_distance
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import terminal_state
-from flockana.theorems.slides.e03 import _is_lattice, _Limit, random_disc, rhombus_with_double_agent
+from flockana.sources.geschwender_2016.theorems.e03_strained_limits import (
+    _is_lattice,
+    _Limit,
+    random_disc,
+    rhombus_with_double_agent,
+)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 from flockana import AlphaInteraction
 from flockana.equilibria import barrier as bounds
 from flockana.lattice import harborth
-from flockana.theorems.slides import e04
+from flockana.sources.geschwender_2016.theorems import e04_collision_barrier as e04
 
 ALPHA = AlphaInteraction()
 

@@ -8,7 +8,15 @@ import pytest
 
 from flockana.lattice import crossings, links
 from flockana.measures.metrics import min_distance
-from flockana.theorems.slides.e05 import EIGHT, STAR, fcc_eight, fcc_star, fragments, non_planar_fragments, site_links
+from flockana.sources.geschwender_2016.theorems.e05_planarity_in_space import (
+    EIGHT,
+    STAR,
+    fcc_eight,
+    fcc_star,
+    fragments,
+    non_planar_fragments,
+    site_links,
+)
 
 D, R = 7.0, 8.4
 
@@ -62,6 +70,6 @@ def test_fragments_are_enumerated_without_gaps_or_repeats():
 
 
 def test_the_counter_of_non_planar_fragments_sees_them(monkeypatch):
-    module = sys.modules["flockana.theorems.slides.e05"]
+    module = sys.modules["flockana.sources.geschwender_2016.theorems.e05_planarity_in_space"]
     monkeypatch.setattr(module, "fragments", lambda size: iter([EIGHT, EIGHT[::-1]]))
     assert non_planar_fragments(8) == (2, 2)

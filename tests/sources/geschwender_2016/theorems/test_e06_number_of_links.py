@@ -1,8 +1,8 @@
 """Erratum E6: the condition n >= 3 of the bound on links, and the sharp bound."""
 
 from flockana.lattice import harborth
-from flockana.theorems.slides import e06
-from flockana.theorems.slides.e06 import link_counts
+from flockana.sources.geschwender_2016.theorems import e06_number_of_links as e06
+from flockana.sources.geschwender_2016.theorems.e06_number_of_links import link_counts
 from flockana.theorems.theorem import Tolerances
 
 

@@ -8,9 +8,9 @@ from flockana.base.errors import SolverError
 from flockana.equilibria.collapse import natural_ratio, threshold
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
+from flockana.sources.geschwender_2016.theorems import e11_lattice_under_target as module
+from flockana.sources.geschwender_2016.theorems.e11_lattice_under_target import collapse_threshold
 from flockana.theorems.observed import Observed
-from flockana.theorems.slides import e11 as module
-from flockana.theorems.slides.e11 import collapse_threshold
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, Tolerances, Trajectory
-from flockana.scenarios.msn_reports import DT, REPORTS, STATIC
+from flockana.sources.isola_2024.scenarios.reports import DT, REPORTS, STATIC
 
 LAW = Algorithm2(AlphaInteraction(d=15.0, r=18.0), Gains(), StaticTarget((0.0, 0.0)))
 

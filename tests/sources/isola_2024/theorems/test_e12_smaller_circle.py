@@ -9,13 +9,13 @@ import pytest
 from flockana import Algorithm2, Gains, Tolerances, scenario, simulate, theorem, verify
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
-from flockana.laws.msn import MSNDiscretisation
+from flockana.sources.isola_2024.laws import MSNDiscretisation
+from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
 from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
 from flockana.theorems.observed import Observed, observed
-from flockana.theorems.slides.e12 import measured_ratio
 from tests.theorems.made_up import statuses
 
 

@@ -8,7 +8,7 @@ import shapely
 
 from flockana import Alien, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
 from flockana.base.errors import ArgumentError
-from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
+from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
 from tests.refused import refused
 
 C, BASE = 3.0, 0.5

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flockana import ZoneFlocking, ZoneRadii
-from flockana.kernels.candidates import gather, sort_into_cells
-from flockana.kernels.zone_counts import fragments, populations
+from flockana.sources.jond_2025.kernels.candidates import gather, sort_into_cells
+from flockana.sources.jond_2025.kernels.zone_counts import fragments, populations
 
 REACH = 5.0
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana.kernels.minimal import edge_forces
-from flockana.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.kernels.minimal import edge_forces
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 
 RNG = np.random.default_rng(5)
 RADII, BETAS, SPACINGS = (tuple(RNG.uniform(low, high, 40)) for low, high in ((3.0, 9.0), (0.1, 0.3), (1.0, 3.0)))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from flockana import Alien, Box, SimplePolygon, ZoneNoise, ZoneRadii, ZoneWeights, ZoneWorld, simulate
-from flockana.kernels.candidates import sort_into_cells
-from flockana.kernels.zone_counts import fragments, populations
-from flockana.kernels.zones import saturation
-from flockana.laws.bearing_distance import BEHAVIOURS, ZoneFlocking
+from flockana.sources.jond_2025.kernels.candidates import sort_into_cells
+from flockana.sources.jond_2025.kernels.zone_counts import fragments, populations
+from flockana.sources.jond_2025.kernels.zones import saturation
+from flockana.sources.jond_2025.laws.zone_flocking import BEHAVIOURS, ZoneFlocking
 from tests.kernels.test_noise import uniform
 
 R, C, A, S = 1.5, 3.0, 5.0, 6.0

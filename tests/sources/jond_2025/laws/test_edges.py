@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import ensure_edges
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from tests.refused import refused
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from flockana import DiscreteLaw, DiscreteMinimalFlocking, MinimalFlocking, Trajectory, simulate
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
-from flockana.kernels.minimal import perceived_edges
 from flockana.measures.perception import both_ways
+from flockana.sources.jond_2025.kernels.minimal import perceived_edges
 from tests.refused import refused
 
 R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from flockana import Alien, Box, DiscreteLaw, SimplePolygon, Trajectory, ZoneWorld, coordination, rescale, simulate
-from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
-from flockana.symbolic import bearing_distance as symbolic
+from flockana.sources.jond_2025 import ZoneNoise, ZoneRadii, ZoneWeights
+from flockana.sources.jond_2025.laws.zone_flocking import CHOICES, ZoneFlocking
+from flockana.sources.jond_2025.symbolic import zone_pair as symbolic
 from tests.refused import refused
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)

@@ -6,7 +6,7 @@ from matplotlib.patches import Circle
 from flockana import Algorithm1, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
 from flockana.report.figures import pictures
-from flockana.theorems.bearing_distance.random_starts import crowd_start
+from flockana.sources.jond_2025.theorems.random_starts import crowd_start
 from tests.plots.artists import axes
 
 

@@ -9,7 +9,7 @@ import pytest
 from flockana import rescale
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import scenario
-from flockana.scenarios.zone_prose import SCENARIOS
+from flockana.sources.jond_2025.scenarios.prose_claims import SCENARIOS
 
 
 @cache

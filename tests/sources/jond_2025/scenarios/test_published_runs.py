@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from flockana import components, links, simulate
-from flockana.laws.bearing_distance import CHOICES
 from flockana.scenarios import scenario
-from flockana.scenarios.bearing_distance import passed
 from flockana.scenarios.findings import component_counts
+from flockana.sources.jond_2025.laws.zone_flocking import CHOICES
+from flockana.sources.jond_2025.scenarios.published_runs import passed
 
 SHORT = ("zone-51", "zone-51-printed", "zone-gap", "zone-gap-buffer")
 

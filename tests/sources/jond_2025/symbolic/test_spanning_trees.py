@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import incidence, random_out_tree, receivers
-from flockana.symbolic import spanning_trees as trees
-from flockana.theorems.bearing_distance.tree_case import tree_case
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.symbolic import spanning_trees as trees
+from flockana.sources.jond_2025.theorems.tree_case import tree_case
 
 CHAIN, STAR, MIXED = ((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from flockana import ZoneFlocking, ZoneRadii, ZoneWeights
-from flockana.kernels.zones import saturation as compiled_saturation
-from flockana.symbolic import bearing_distance as symbolic
+from flockana.sources.jond_2025.kernels.zones import saturation as compiled_saturation
+from flockana.sources.jond_2025.symbolic import zone_pair as symbolic
 
 PLAIN = ZoneWeights(separation=1.0, cohesion_gain=1.0, alignment_gain=1.0)
 

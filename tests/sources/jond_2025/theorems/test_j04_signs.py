@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import MinimalFlocking, Tolerances, theorem
-from flockana.theorems.bearing_distance import j04
+from flockana.sources.jond_2025.theorems import j04_signs as j04
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems import j06_corrected_theorem as j06
 from flockana.theorems import Claim, Tolerances, theorem
-from flockana.theorems.bearing_distance import j06
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 LAWS = {

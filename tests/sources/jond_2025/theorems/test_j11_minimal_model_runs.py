@@ -1,7 +1,7 @@
 import numpy as np
 
-from flockana.laws.minimal import MinimalFlocking
-from flockana.theorems.bearing_distance.j11 import perceived_components
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems.j11_minimal_model_runs import perceived_components
 
 
 def test_an_agent_out_of_sight_is_a_component_of_its_own():

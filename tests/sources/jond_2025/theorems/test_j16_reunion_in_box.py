@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Box, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
-from flockana.theorems.bearing_distance import j16
+from flockana.sources.jond_2025.theorems import j16_reunion_in_box as j16
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0)
 

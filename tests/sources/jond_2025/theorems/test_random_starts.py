@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana import ZoneFlocking, components, links, min_distance, simulate
-from flockana.theorems.bearing_distance import random_starts
+from flockana.sources.jond_2025.theorems import random_starts
 
 
 def test_starts_are_what_they_say():

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from flockana import Tolerances, theorem
-from flockana.theorems.bearing_distance import zone_separation
+from flockana.sources.jond_2025.theorems import separation_alone as zone_separation
 from flockana.theorems.observed import observed
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from flockana import Algorithm2, MinimalFlocking, StaticTarget, Tolerances, simulate, theorem, verify
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
-from flockana.theorems.bearing_distance import zone_1_corrected
-from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
-from flockana.theorems.bearing_distance.tree_limits import edge_shares, state
-from flockana.theorems.bearing_distance.tree_spectrum import Spectrum
+from flockana.sources.jond_2025.theorems import theorem_1_corrected as zone_1_corrected
+from flockana.sources.jond_2025.theorems.tree_case import characteristic_residual, tree_case
+from flockana.sources.jond_2025.theorems.tree_limits import edge_shares, state
+from flockana.sources.jond_2025.theorems.tree_spectrum import Spectrum
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import statuses
 

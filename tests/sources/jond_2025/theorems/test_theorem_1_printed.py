@@ -5,8 +5,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 EPS, MU, A = np.finfo(float).eps, 3.0, 0.7

@@ -5,7 +5,7 @@ import pytest
 
 from flockana import MinimalFlocking, linearise
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
-from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
+from flockana.sources.jond_2025.theorems.tree_case import characteristic_residual, tree_case
 
 STAR, CHAIN, MIXED = ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (2, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -10,9 +10,9 @@ import pytest
 
 from flockana import MinimalFlocking, rescale, simulate
 from flockana.measures.perception import both_ways, random_out_tree
-from flockana.theorems.bearing_distance.tree_case import tree_case
-from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles, state
-from flockana.theorems.bearing_distance.tree_spectrum import POLYNOMIAL, tree_spectrum
+from flockana.sources.jond_2025.theorems.tree_case import tree_case
+from flockana.sources.jond_2025.theorems.tree_limits import edge_shares, settles, state
+from flockana.sources.jond_2025.theorems.tree_spectrum import POLYNOMIAL, tree_spectrum
 from tests.theorems.made_up import said
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

@@ -5,10 +5,10 @@ from math import cos, pi, sqrt
 import numpy as np
 import pytest
 
-from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.bearing_distance.tree_case import tree_case
-from flockana.theorems.bearing_distance.tree_spectrum import tree_spectrum
+from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
+from flockana.sources.jond_2025.theorems.tree_case import tree_case
+from flockana.sources.jond_2025.theorems.tree_spectrum import tree_spectrum
 
 EPS = np.finfo(float).eps
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from flockana.base.errors import ArgumentError
-from flockana.interactions import DeadZoneInteraction
-from flockana.kernels.dead_zone import zone_forces, zone_margins, zones
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.kernels.pair import zone_forces, zone_margins, zones
 
 CASES = [
     {},

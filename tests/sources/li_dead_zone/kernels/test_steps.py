@@ -5,8 +5,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana.interactions import DeadZoneInteraction
-from flockana.kernels.dead_zone_steps import _square_of_range, semi_implicit_steps
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.kernels.steps import _square_of_range, semi_implicit_steps
 
 
 def euler_step_in_python(q, p, pair, k2, dt):

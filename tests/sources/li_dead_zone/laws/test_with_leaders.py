@@ -9,8 +9,8 @@ import pytest
 
 from flockana import CircleTarget, LedDeadZoneFlocking, LinearTarget, RescaledVelocity, StaticTarget, simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.terms.leaders import known_path
+from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.symbolic.composition import led_energy_identity
 from tests.refused import refused
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
-from flockana.theorems.dead_zone import case
+from flockana.sources.li_dead_zone.theorems import common_claims as case
 from flockana.theorems.toolkit import Enclosure, Observed
 from tests.theorems.made_up import made_up as made_up_run
 

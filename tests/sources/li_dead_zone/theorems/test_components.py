@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import DeadZoneFlocking, scenario, simulate, verify
-from flockana.theorems.dead_zone.parting import components_of
+from flockana.sources.li_dead_zone.theorems.components import components_of
 
 
 def test_parts_tell_receding_from_approaching():

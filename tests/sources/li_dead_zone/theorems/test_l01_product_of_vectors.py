@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import DeadZoneFlocking, Tolerances, theorem
-from flockana.theorems.dead_zone import l01
+from flockana.sources.li_dead_zone.theorems import l01_product_of_vectors as l01
 
 PLACES = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])
 TURN = np.array([[0.6, -0.8], [0.8, 0.6]])

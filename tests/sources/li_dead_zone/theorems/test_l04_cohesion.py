@@ -1,6 +1,6 @@
 """Erratum L4: the number of flocks that end connected falls with the box that they start in."""
 
-from flockana.theorems.dead_zone.l04 import connected_count
+from flockana.sources.li_dead_zone.theorems.l04_cohesion import connected_count
 
 
 def test_share_of_connected_flocks_falls_with_the_box():

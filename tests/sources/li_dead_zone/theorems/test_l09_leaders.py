@@ -5,7 +5,7 @@ import numpy as np
 from flockana import LinearTarget, plots, rescale, scenario
 from flockana.plots.snapshot import in_view
 from flockana.report.figures import pictures
-from flockana.theorems.dead_zone.l09 import led_run
+from flockana.sources.li_dead_zone.theorems.l09_leaders import led_run
 from tests.plots.artists import axes
 
 

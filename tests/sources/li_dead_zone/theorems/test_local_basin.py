@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from flockana import DeadZoneFlocking, DeadZoneInteraction
-from flockana.theorems.dead_zone.hold import hold
+from flockana.sources.li_dead_zone.theorems.local_basin import hold
 
 LAW = DeadZoneFlocking()
 CONTACT = 3.49973  # within 1e-5 of where repulsion and the pull k₁ balance, on the inner ramp

@@ -8,10 +8,10 @@ import pytest
 from scipy.optimize import brentq
 
 from flockana import DeadZoneFlocking, SemiImplicitEuler, cohesion_radius, simulate
-from flockana.interactions import DeadZoneInteraction
-from flockana.theorems.dead_zone.hold import hold
-from flockana.theorems.dead_zone.parting import components_of
-from flockana.theorems.dead_zone.range_limits import first_entry
+from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana.sources.li_dead_zone.theorems.components import components_of
+from flockana.sources.li_dead_zone.theorems.local_basin import hold
+from flockana.sources.li_dead_zone.theorems.range_limits import first_entry
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import said
 

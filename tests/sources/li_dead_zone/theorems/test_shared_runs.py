@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.theorems.dead_zone.motions import advance, parting_pair
+from flockana.sources.li_dead_zone.theorems.shared_runs import advance, parting_pair
 
 
 @pytest.mark.parametrize(("dt", "t_end", "steps"), [(0.01, 10.0, 1000), (0.01, 13.0, 1500), (0.004, 4.0, 1000)])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import DeadZoneFlocking, DeadZoneInteraction, simulate, verify
-from flockana.theorems.dead_zone.theorem_1_corrected import _rate
+from flockana.sources.li_dead_zone.theorems.theorem_1_corrected import _rate
 from tests.theorems.made_up import statuses
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import DeadZoneFlocking, DeadZoneInteraction
-from flockana.theorems.dead_zone.hold import hold
+from flockana.sources.li_dead_zone.theorems.local_basin import hold
 from tests.theorems.made_up import judged, made_up
 
 LAW = DeadZoneFlocking()

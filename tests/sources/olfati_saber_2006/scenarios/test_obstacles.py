@@ -8,8 +8,8 @@ import pytest
 from flockana import Algorithm3, Sphere, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.scenarios import scenario
 from flockana.scenarios.findings import component_counts
-from flockana.scenarios.obstacle_claims import blocked, rests
-from flockana.scenarios.obstacles import GAINS, SCENARIOS, free_start
+from flockana.sources.olfati_saber_2006.scenarios.obstacle_claims import blocked, rests
+from flockana.sources.olfati_saber_2006.scenarios.obstacles import GAINS, SCENARIOS, free_start
 
 FINDS = Tolerances()
 

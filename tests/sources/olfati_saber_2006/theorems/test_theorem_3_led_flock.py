@@ -6,8 +6,8 @@ import pytest
 from flockana import Algorithm2, Gains, Tolerances, simulate, verify
 from flockana.base.seals import sealed
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
+from flockana.theorems.collisions import pairs_at_one_instant
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.collisions import pairs_at_one_instant
 from tests.theorems.made_up import hexagon, hypothesis, judged, made_up, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import Algorithm1, Law, Tolerances, lattice, simulate, verify
-from flockana.theorems.olfati_saber import os_5
-from flockana.theorems.olfati_saber.os_5 import CLAIMS, Net, uncrossed
+from flockana.sources.olfati_saber_2006.theorems import theorem_5_planar_nets as os_5
+from flockana.sources.olfati_saber_2006.theorems.theorem_5_planar_nets import CLAIMS, Net, uncrossed
 from flockana.theorems.theorem import Hypothesis
 from tests.theorems.made_up import statuses
 

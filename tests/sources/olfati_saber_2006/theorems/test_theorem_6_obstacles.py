@@ -7,8 +7,8 @@ import pytest
 
 from flockana import Algorithm3, Gains, Sphere, Wall, simulate, verify
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
+from flockana.sources.olfati_saber_2006.theorems.theorem_6_obstacles import condition_76
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.os_6 import condition_76
 from tests.theorems.made_up import hypothesis, judged, made_up
 
 OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))

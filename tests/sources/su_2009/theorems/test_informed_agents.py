@@ -9,8 +9,8 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Trajectory, compose, simulate, verify
 from flockana.environment.targets import CircleTarget, LinearTarget
-from flockana.theorems.classics import leader_frame
-from flockana.theorems.classics.su_varying import convergence_rate
+from flockana.sources.su_2009.theorems import leader_frame
+from flockana.sources.su_2009.theorems.varying_velocity import convergence_rate
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import hexagon, hypothesis, statuses
 

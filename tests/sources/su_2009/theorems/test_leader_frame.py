@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, LinearTarget, StaticTarget, compose
-from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, gains_of, some_informed
+from flockana.sources.su_2009.theorems.leader_frame import as_the_leader_sees, comes_to_rest, gains_of, some_informed
 from flockana.theorems.toolkit import Certificate, Observed
 from tests.theorems.made_up import made_up
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, FixedNetFlocking, LogPotential, simulate, verify
-from flockana.theorems.classics.tanner_claims import _energy_error
+from flockana.sources.tanner_2007.theorems.common_claims import _energy_error
 from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import least_distance, spread_over
 

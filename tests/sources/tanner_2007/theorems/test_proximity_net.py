@@ -5,7 +5,7 @@ from math import log
 import numpy as np
 import pytest
 
-from flockana.laws.tanner import ProximityFlocking
+from flockana.sources.tanner_2007.laws import ProximityFlocking
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 LAW = ProximityFlocking(r=1.6)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flockana import HeadingAveraging, simulate, verify
-from flockana.theorems.classics import averaging
-from flockana.theorems.classics.headings import _contraction
+from flockana.sources.vicsek_1995.theorems import averaging
+from flockana.sources.vicsek_1995.theorems.joint_connectivity import _contraction
 
 LAW = HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
 
@@ -129,7 +129,7 @@ def test_nothing_is_certain_where_rounding_hides_how_fast_the_net_averages(monke
     """With numbers so coarse that 1 − ρ of a path of three is within (3 + 4) ε: ρ = ½."""
     q, heading = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), np.full(3, 1.5)
     for eps, certainly in ((1e-6, True), (0.51 / 7.0, False), (0.9 / 7.0, False)):
-        monkeypatch.setattr(sys.modules["flockana.theorems.classics.averaging"], "EPS", eps)
+        monkeypatch.setattr(sys.modules["flockana.sources.vicsek_1995.theorems.averaging"], "EPS", eps)
         found = averaging.permanently_connected(LAW, q, heading)
         assert certain(found) is certainly
         assert ("rounding hides" in found.text) is not certainly

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana.laws.vicsek import HeadingAveraging
+from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 LAW = HeadingAveraging(range=1.0, speed=0.01, dt=0.5)

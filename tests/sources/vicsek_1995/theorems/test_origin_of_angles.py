@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from flockana.theorems.classics.headings_cut import averaged
+from flockana.sources.vicsek_1995.theorems.origin_of_angles import averaged
 
 
 def test_the_witness_is_the_pair_whose_mean_is_turned_round(verdict_of):

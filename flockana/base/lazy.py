@@ -1,0 +1,36 @@
+"""Public names of a package from its stub file, each imported when it is first used."""
+
+import ast
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import resolve_name
+from pathlib import Path
+from typing import Any
+
+import lazy_loader
+
+
+def attach_stub(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return `__getattr__`, `__dir__` and `__all__` of a package whose ``.pyi`` imports its public names.
+
+    As lazy_loader's function of this name, and names from outside the package as well, under other names if so said.
+    """
+    inside: dict[str, list[str]] = {}
+    outside: dict[str, tuple[str, str]] = {}  # by public name, a module and the name in it
+    for node in ast.parse(Path(file).with_suffix(".pyi").read_text("utf-8")).body:
+        if isinstance(node, ast.ImportFrom) and node.level == 1:
+            inside.setdefault(node.module or "", []).extend(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            module = resolve_name("." * node.level + (node.module or ""), package)
+            outside |= {alias.asname or alias.name: (module, alias.name) for alias in node.names}
+    get_inside, _, names = lazy_loader.attach(package, inside.pop("", ()), inside)
+    every = sorted((*names, *outside))
+
+    def get(name: str) -> Any:
+        if name not in outside:
+            return get_inside(name)
+        module, attribute = outside[name]
+        owner = import_module(module)
+        return getattr(owner, attribute) if hasattr(owner, attribute) else import_module(f"{module}.{attribute}")
+
+    return get, lambda: [*every], every

@@ -1,0 +1,1 @@
+"""Flockana's own scenarios and theorems about the laws of several sources."""

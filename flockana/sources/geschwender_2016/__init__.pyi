@@ -1,0 +1,2 @@
+from .theorems.e03_strained_limits import rhombus_with_double_agent as rhombus_with_double_agent
+from .theorems.e11_lattice_under_target import resting_place as resting_place

@@ -1,0 +1,10 @@
+from .environment.zone_obstacles import Box as Box
+from .environment.zone_obstacles import SimplePolygon as SimplePolygon
+from .environment.zone_world import Alien as Alien
+from .environment.zone_world import ZoneWorld as ZoneWorld
+from .interactions.zone_noise import ZoneNoise as ZoneNoise
+from .interactions.zones import ZoneRadii as ZoneRadii
+from .interactions.zones import ZoneWeights as ZoneWeights
+from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
+from .laws.minimal import MinimalFlocking as MinimalFlocking
+from .laws.zone_flocking import ZoneFlocking as ZoneFlocking

@@ -1,0 +1,1 @@
+from .theorems.theorem_5_planar_nets import check as check

@@ -1,0 +1,1 @@
+"""Olfati-Saber and Murray (2004): consensus under a delay."""

@@ -1,1 +1,0 @@
-"""Bearing-distance flocking (Jond): Theorem 1 as printed and as corrected, errata J1 to J18."""

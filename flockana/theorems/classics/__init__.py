@@ -1,1 +1,0 @@
-"""Theorems of the field's classics, one file each."""

@@ -1,1 +1,0 @@
-"""Theorems about every composition of terms, one file each."""

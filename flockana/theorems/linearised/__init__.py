@@ -1,1 +1,0 @@
-"""Theorems about predictions of the linearisation for a run."""

@@ -1,1 +1,0 @@
-"""The theorems of Olfati-Saber (2006) and what follows from them."""

@@ -1,1 +1,0 @@
-"""Errata E1 to E13, one file each, and the energies that the slides print."""
