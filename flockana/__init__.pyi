@@ -67,7 +67,6 @@ from .laws.explicit_euler import ExplicitEuler as ExplicitEuler
 from .laws.law import Law as Law
 from .laws.lossy import Lossy as Lossy
 from .laws.measured import Measured as Measured
-from .laws.net_consensus import NetConsensus as NetConsensus
 from .laws.olfati_saber import Algorithm1 as Algorithm1
 from .laws.olfati_saber import Algorithm2 as Algorithm2
 from .laws.peer_to_peer import PeerToPeer as PeerToPeer
@@ -126,6 +125,7 @@ from .sources.tanner_2007 import FixedNetFlocking as FixedNetFlocking
 from .sources.tanner_2007 import LogPotential as LogPotential
 from .sources.tanner_2007 import ProximityFlocking as ProximityFlocking
 from .sources.vicsek_1995 import HeadingAveraging as HeadingAveraging
+from .sources.yu_chen_cao_2010 import NetConsensus as NetConsensus
 from .sources.zavlanos_2007 import LinkKeeping as LinkKeeping
 from .stability.linearisation import Linearisation as Linearisation
 from .stability.linearise import linearise as linearise

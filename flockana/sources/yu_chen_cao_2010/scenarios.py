@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from flockana.laws.net_consensus import NetConsensus
 from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
 
 _AGREES = verified("net-consensus", "net-consensus:consensus") | vacuous("net-consensus:some-start")
 _NEVER = vacuous("net-consensus:consensus") | verified("net-consensus", "net-consensus:some-start")

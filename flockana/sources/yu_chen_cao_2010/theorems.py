@@ -9,7 +9,7 @@ from flockana.certified.second_order import (
     stable_off_agreement,
     velocity_threshold,
 )
-from flockana.laws.net_consensus import NetConsensus
+from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.toolkit import (
     Checked,
