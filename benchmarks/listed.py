@@ -12,7 +12,7 @@ from flockana.base.checks import FloatArray
 from flockana.jit import njit
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.listed import Listed
-from flockana.kernels.verlet import SKIN, covers, list_pairs, listed_anew, no_pairs, spatial_order
+from flockana.kernels.verlet import SKIN, covers, fill, no_pairs, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
 REACH = (1.0 + SKIN) * R
@@ -22,9 +22,9 @@ def listed_evaluation(
     law: Algorithm2, q: FloatArray, p: FloatArray
 ) -> tuple[Callable[[], tuple[FloatArray, float]], Any]:
     """An evaluation over a list that is kept, in one call: agents in the order of cells, which is given too."""
-    order, few = spatial_order(q, REACH), np.empty(1, np.uint32)
+    order = spatial_order(q, REACH)
     x, v, own = q[order].copy(), p[order].copy(), np.arange(len(q), dtype=np.uint64)
-    first, second, count = list_pairs(x, REACH, few, few)
+    first, second, *_, (count, _) = fill(no_pairs(*x.shape), x, REACH)
     rate = _rate(law)
 
     def call() -> tuple[FloatArray, float]:
@@ -68,8 +68,8 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
         for _ in range(evaluations):
             x += dt * v
             if not covers(pairs, x, R):
-                pairs = listed_anew(x, REACH, pairs)
-            rate(x, v, u, *pairs[:3], own)
+                pairs = fill(pairs, x, REACH)
+            rate(x, v, u, pairs.first, pairs.second, pairs.counts[0], own)
         moved[order], felt[order] = x, u
         return felt
 

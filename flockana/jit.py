@@ -109,11 +109,20 @@ class Kernel:
             types = tuple(numba.typeof(each) for each in arguments)
             with compiling(_mark(self.function, types) if self.kept else None):
                 _opened(made).compile(types)
+            _ensure_plain(self.function.__name__, made.overloads[types].signature.return_type)
         self._compiled = made
 
     def __reduce__(self) -> Any:
         """Pickle a module's own function by its name."""
         return self.__qualname__ if _named(self) else (type(self), (self.function, self.kept, self.options))
+
+
+def _ensure_plain(name: str, result: Any) -> None:
+    """Raise if a kernel called from Python gives it named tuples: an alarm while numba makes one kills the process."""
+    if hasattr(result, "instance_class"):
+        raise TypeError(f"{name} returns {result}: expected numbers, as kernels that Python calls write into arrays")
+    for part in getattr(result, "types", ()):
+        _ensure_plain(name, part)
 
 
 class Inlined(Kernel):
@@ -179,7 +188,7 @@ def callback(kernel: Kernel, signature: Any) -> Any:
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
 
 
-def callback_like(kernel: Kernel, result: tuple[Any, ...], *arguments: Any) -> Any:
+def callback_like(kernel: Kernel, result: Any, *arguments: Any) -> Any:
     """Return `callback` for the signature of an example result and example arguments."""
     numba = load_numba()
     if numba.config.DISABLE_JIT:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -49,6 +50,20 @@ def test_only_what_numba_publishes_is_used():
     found = [f"{path}: {hit[0]}" for path in files if (hit := private.search(path.read_text("utf-8")))]
     assert len(files) > 500
     assert not found
+
+
+class Pair(NamedTuple):
+    """Of two numbers."""
+
+    one: float
+    other: float
+
+
+@pytest.mark.parametrize("function", [lambda x: Pair(x, x), lambda x: (1, (2.0, Pair(x, x)))])
+def test_no_kernel_gives_named_tuples_to_python(function):
+    """An alarm that raises while numba makes one kills the process."""
+    with pytest.raises(TypeError, match=r"returns .*Pair.*: expected numbers, as kernels that Python calls write"):
+        njit()(function)(1.0)
 
 
 def test_processes_that_compile_at_once_compute_what_they_should(tmp_path):

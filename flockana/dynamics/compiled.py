@@ -5,24 +5,23 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.sample import Start
 from flockana.dynamics.stepper import Stepper
 from flockana.jit import thawed
-from flockana.kernels.advance import advance
-from flockana.kernels.march import CROWDED, NOT_FINITE, SINGULAR, TOO_SMALL, Block, Room
+from flockana.kernels.advance import Advanced, advance
+from flockana.kernels.march import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
 from flockana.kernels.runge_kutta import Method
 from flockana.kernels.tableaus import tableau
-from flockana.kernels.verlet import Pairs, list_pairs, no_pairs, spatial_order
+from flockana.kernels.verlet import COUNT, MADE, fill, no_pairs, spatial_order, with_room
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _LISTS = 8  # lists made after which agents are sorted by cell again
-_UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
+_BLOCKS = "scipy-DOP853"  # which looks at pairs in blocks
 _SMALL = "Required step size is less than spacing between numbers."  # scipy's words
 
 
@@ -41,7 +40,8 @@ class Engine(Stepper):
         self.block = Block(*(np.empty((rows, *shape)) for shape in ((), y.shape, y.shape, ())))
         for each, value in zip(self.block, (frame.t0, y, f, np.nan), strict=True):
             each[0] = value
-        self._system = form.system(frame.view, n, m)
+        self._system, self._sampled = form.system(frame.view, n, m), 0
+        self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * frame.size))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
@@ -50,20 +50,23 @@ class Engine(Stepper):
         self._method = Method(*given)
 
     def advance(self, checks: StepChecks) -> int:  # noqa: D102
-        if self._reach and self.pairs.made >= self._sorted + _LISTS:
+        if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
             self._sort()
         judged = checks.judged(self.order)
-        with defer_sigint():  # raised while numba makes the result of a kernel, it crashes the process
-            made = advance(
-                self._system, self._method, self.block, self._room, self._h, (self.pairs, checks.near), self.stops,
-                self.due, judged,
-            )  # fmt: skip
-        self._h, self.pairs, checks.near, self._samples = made.h, made.pairs, made.near, (made.states, made.work)
+        lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
+        made = Advanced(
+            *advance(self._system, self._method, self.block, self._room, self._h, lists, self.stops, samples, judged)
+        )
+        self._h, self._sampled = made.h, made.samples if made.steps else 0
         self.evaluations, self.redone = self.evaluations + made.evaluations, self.redone + made.redone
         t = float(self.block.t[made.steps])
-        if made.status == CROWDED:
-            self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'"
-        elif made.status == SINGULAR and not checks.switch_to_blocks():
+        if made.status == FULL and not made.steps:
+            self._samples = self._room_for(made.samples)
+        elif made.status == UNLISTED and (pairs := with_room(self.pairs)) is not None:
+            self.pairs = pairs
+        elif made.status == UNLISTED:
+            self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_BLOCKS}'"
+        elif made.status == SINGULAR and not checks.make_room():
             self.failure = at_a_pole(t)
         elif made.status in (TOO_SMALL, NOT_FINITE):
             why = _SMALL if made.status == TOO_SMALL else "the state is no longer finite"
@@ -74,9 +77,8 @@ class Engine(Stepper):
         """List the pairs of the start; return whether they fit into memory."""
         if self._reach:
             self._sort()
-            first, second, count = list_pairs(self._places, self._reach, self.pairs.first, self.pairs.second)
-            self.pairs = Pairs(first, second, count, self._places.copy(), self._reach, 1)
-        return self.pairs.count >= 0
+            self.pairs = fill(self.pairs, self._places, self._reach)
+        return bool(self.pairs.counts[COUNT] >= 0)
 
     @property
     def _places(self) -> FloatArray:
@@ -91,12 +93,16 @@ class Engine(Stepper):
             both[:] = both.take(order.view(np.int64), axis=1)
         self.order = self.order[order]
         self._system = self._system._replace(order=self.order)
-        self.pairs = self.pairs._replace(places=np.empty((0, m)))
-        self._sorted = self.pairs.made
+        self.pairs.reach[0] = 0.0  # it lists other agents
+        self._sorted = int(self.pairs.counts[MADE])
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:  # noqa: D102
         states, work = self._samples
-        return self.due[: len(work)], states, work
+        return self.due[: self._sampled], states[: self._sampled], work[: self._sampled]
+
+    def _room_for(self, samples: int) -> tuple[FloatArray, FloatArray]:
+        """Return room for the states and the work of samples."""
+        return np.empty((samples, 3, *self.frame.shape)), np.empty(samples)
 
 
 def engine_of(law: Law, start: Start, plan: Plan) -> Engine | None:

@@ -35,7 +35,7 @@ from flockana.kernels.encounters import Around, Ends
 from flockana.kernels.laws import guard_of
 from flockana.kernels.march import Block
 from flockana.kernels.shares import TOO_MANY
-from flockana.kernels.verlet import Pairs, lister, no_pairs
+from flockana.kernels.verlet import COUNT, Pairs, lister, no_pairs, with_room
 from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
@@ -85,9 +85,11 @@ class Encounters:
         """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
-        still, none, around = (0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m), self.around(np.arange(n), 1.0)
-        found = float(self.compiled(crowd=False)(0.0, ends, around, still, none, none)[0])
-        return found if found > TOO_MANY else float(self.compiled(crowd=True)(0.0, ends, around, still, none, none)[0])
+        around, given = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
+        crowd, near = False, no_pairs(n, m)
+        while (share := float(self.compiled(crowd=crowd)(0.0, ends, around, *given, near))) <= TOO_MANY:
+            crowd, near = share == TOO_MANY, with_room(near) or near
+        return share
 
     def compiled(self, *, crowd: bool) -> Kernel:
         """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
@@ -142,19 +144,22 @@ class StepChecks:
             around, share = self._encounters.around(order, self._toward), self._encounters.compiled(crowd=self._crowd)
             if compiled:
                 ends = Ends(0.0, *6 * (np.empty((0, self._shape[1])),))
-                share = callback_like(share, (0.0, self.near), 0.0, ends, around, self._view, self.near, self.near)
+                share = callback_like(share, 0.0, 0.0, ends, around, self._view, self.near, self.near)
             self._judged = Judged(around, self._rules, self._ledger, share)
         return self._judged
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
         judged = self.judged(order, compiled=False)
-        shorter, singular, self.near = checked(block, 0, judged, self._view, kept, self.near)
-        return self.examine(block, order, kept) if singular and self.switch_to_blocks() else (shorter, singular)
+        shorter, singular = checked(block, 0, judged, self._view, kept, self.near)
+        return self.examine(block, order, kept) if singular and self.make_room() else (shorter, singular)
 
-    def switch_to_blocks(self) -> bool:
-        """Check pairs block by block from now on if they do not fit into a list; return whether that is new."""
-        if self._crowd or self.near.count >= 0:
+    def make_room(self) -> bool:
+        """Return whether pairs did not fit into the list; give it more room, or check pairs block by block from now."""
+        if (near := with_room(self.near)) is not None:
+            self.near = near
+            return True
+        if self._crowd or self.near.counts[COUNT] >= 0:
             return False
         self._crowd, self._order = True, np.empty(0)
         return True

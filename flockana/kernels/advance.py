@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from flockana.jit import inlined, kernel
 from flockana.kernels.checks import IN_VAIN, PATIENCE, checked
-from flockana.kernels.march import RUNNING, SINGULAR, march, step_of
+from flockana.kernels.march import FULL, RUNNING, SINGULAR, UNLISTED, march, step_of
 from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
-from flockana.kernels.sums import put
+from flockana.kernels.verlet import COUNT
 
 
 class Advanced(NamedTuple):
-    """Result of a call of `advance`."""
+    """What `advance` returns."""
 
-    steps: Any  # number of accepted steps
-    status: Any  # status of the last step, which says why the block ends
-    h: Any  # length of the next step, or of the one that failed
-    pairs: Any  # list of the integrator
-    near: Any  # list of the checks
-    evaluations: Any
-    redone: Any  # number of steps that were made again
-    states: Any  # samples at the times that were due
-    work: Any  # NaN where a step ended
+    steps: int  # number of accepted steps
+    status: int  # status of the last step, which says why the block ends
+    h: float  # length of the next step, or of the one that failed
+    evaluations: int
+    redone: int  # number of steps that were made again
+    samples: int  # number of the times due that are passed, or that need room if no step had it
 
 
 @inlined
@@ -53,52 +50,39 @@ def record(block, order, view, states, work):
 
 
 @inlined
-def _with_room(kept, needed):
-    """Return an array with room for so many samples, holding those kept so far."""
-    if needed <= len(kept):
-        return kept
-    more = np.empty((max(needed, 2 * len(kept)), *kept.shape[1:]))
-    put(kept.reshape(kept.size), more.reshape(more.size))
-    return more
-
-
-@inlined
 def _sampled(step, due, method, states, work, system, pairs):
-    """Write samples (q, p, u) at the times due within a step, in the agents' own order; return the pairs."""
+    """Write samples (q, p, u) at the times due within a step, in the agents' own order."""
     slope = np.empty(step.y.size)
-    pairs = stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
+    stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):
         interpolated((due[k] - step.t) / step.h, step, method)
-        pairs = rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
+        rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
         work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
-    return pairs
 
 
 @kernel
-def advance(system, method, block, room, h, lists, stops, due, judged):
-    """Fill a block with accepted steps up to the last of `stops`, from its first row; return `Advanced`.
+def advance(system, method, block, room, h, lists, stops, samples, judged):
+    """Fill a block with accepted steps up to the last of `stops`, from its first row; return the fields of `Advanced`.
 
     The first step has the length h, or, if that is 0, one that is chosen here. `lists` are those of the integrator and
-    of the checks; samples are of the times that are due.
+    of the checks; samples are (times that are due, states, work), work being NaN where a step ends.
     """
-    pairs, near = lists
-    n, m, energetic = system.order.size, system.frame.shape[1], judged.rules.energetic
-    states, work = np.empty((0, 3, n, m)), np.empty(due.size)
-    evaluations, redone, status, stop, sampled = 0, 0, RUNNING, 0, 0
+    (pairs, near), (due, states, work) = lists, samples
+    energetic, evaluations, redone, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
     made = np.int64(0)  # typed: of a literal, all that is called would be compiled once more
     while made + 1 < block.t.size and stop < stops.size:
         now = march(block, made, h, (stops[stop], stops[-1]), system, method, room, pairs)
-        status, pairs, evaluations, at = now.status, now.pairs, evaluations + now.evaluations, block.t[made + 1]
+        status, evaluations, at = now.status, evaluations + now.evaluations, block.t[made + 1]
         if status != RUNNING:
-            h = now.h
+            h = h if status == UNLISTED else now.h
             break
         if energetic and judged.ledger[IN_VAIN] < PATIENCE:
             for row in range(made, made + 2):
                 if row > made or np.isnan(block.energy[row]):
                     block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
-        shorter, singular, near = checked(block, made, judged, system.seen_from, pairs, near)
+        shorter, singular = checked(block, made, judged, system.seen_from, pairs, near)
         if singular:
-            status = SINGULAR
+            h, status = now.h, SINGULAR
             break
         if shorter > 0.0:
             h, redone = shorter, redone + 1
@@ -108,13 +92,19 @@ def advance(system, method, block, room, h, lists, stops, due, judged):
             sampled += 1
         known = sampled
         while known < due.size and due[known] == at:
-            work[known], known = np.nan, known + 1  # the step itself is the sample
-        states = _with_room(states, known)
+            known += 1  # the step itself is the sample
+        if known > len(states):
+            h, status, sampled = now.h, FULL, (before if made else known)
+            break
+        work[sampled:known] = np.nan
         if sampled > before:
             step, inside = step_of(block, made, room), due[before:sampled]
-            pairs = _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
+            _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
             evaluations += len(method.rows) - method.stages - 1 + sampled - before
+            if pairs.counts[COUNT] < 0:
+                h, status, sampled = now.h, UNLISTED, before
+                break
         sampled = known
         stop += at == stops[stop]
         h, made = now.later, made + 1
-    return Advanced(made, status, h, pairs, near, evaluations, redone, states[:sampled], work[:sampled])
+    return made, status, h, evaluations, redone, sampled

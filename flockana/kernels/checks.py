@@ -85,13 +85,13 @@ def ends_of(block, k, n, m):
 
 @inlined
 def checked(block, k, judged, view, kept, near):
-    """Return (length to repeat step k with, 0 if it is accepted; whether the run ends at a pole; the checks' list)."""
+    """Return (length to repeat step k with, 0 if it is accepted; whether the run ends at a pole or pairs lack room)."""
     around, rules, ledger, share_allowed = judged
     t, at, share = block.t[k], block.t[k + 1], 1.0
     h = at - t
     if rules.paths:
         ends = ends_of(block, k, around.radii.shape[0], view[1].size)
-        share, near = share_allowed(t, ends, around, view, kept, near)
+        share = share_allowed(t, ends, around, view, kept, near)
     if share == 1.0 and rules.energetic and ledger[IN_VAIN] < PATIENCE:
         work = block.y[k + 1, -1] - block.y[k, -1]
         share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)
@@ -100,5 +100,5 @@ def checked(block, k, judged, view, kept, near):
     if rules.fixed:  # down to what no shorter step ends before: half of one rounding may round up to the whole
         shorter, least = max(shorter, h / GROWTH), 0.0
     if share == 1.0 or shorter <= least or not t < t + shorter < at:
-        return 0.0, singular, near
-    return shorter, False, near
+        return 0.0, singular
+    return shorter, False

@@ -6,11 +6,12 @@ import numpy as np
 
 from flockana.jit import kernel
 from flockana.kernels.runge_kutta import rate_of
+from flockana.kernels.verlet import COUNT
 
 
 @kernel
 def euler_maruyama_steps(t, h, y, kicks, wanted, system, pairs, out):
-    """Write (q, p, u) after the steps wanted, numbered from 1; returns whether the pairs fit into a list.
+    """Write (q, p, u) after the steps wanted, numbered from 1; returns whether the pairs fit into the list.
 
     `kicks` has a row of changes of the velocities for each step. y is overwritten; once it is not finite it stays so.
     """
@@ -21,8 +22,8 @@ def euler_maruyama_steps(t, h, y, kicks, wanted, system, pairs, out):
         for i in range(2 * size):
             finite = finite and np.isfinite(y[i])
         if finite:
-            pairs = rate_of(t + k * h, y, f, system, pairs)
-            if pairs.count < 0:
+            rate_of(t + k * h, y, f, system, pairs)
+            if pairs.counts[COUNT] < 0:
                 return False
         else:
             f[:] = np.nan

@@ -12,6 +12,7 @@ import numpy as np
 from flockana.jit import inlined
 from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
 from flockana.kernels.sums import finite, put
+from flockana.kernels.verlet import COUNT
 
 
 class Block(NamedTuple):
@@ -31,16 +32,15 @@ class Room(NamedTuple):
 
 
 class Marched(NamedTuple):
-    """Result of a step: status, lengths of this step and of the next, pairs, evaluations."""
+    """Result of a step: status, lengths of this step and of the next, evaluations."""
 
     status: Any
     h: Any
     later: Any
-    pairs: Any
     evaluations: Any
 
 
-RUNNING, TOO_SMALL, NOT_FINITE, CROWDED, SINGULAR = range(5)
+RUNNING, TOO_SMALL, NOT_FINITE, UNLISTED, SINGULAR, FULL = range(6)  # UNLISTED: pairs, FULL: samples have no room
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
 GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
@@ -79,19 +79,19 @@ def march(block, k, h, ends, system, method, room, pairs):
     if h == 0.0 and fixed:
         h = np.inf
     elif h == 0.0:
-        h, pairs = first_step(ends[1] - t, Step(t, h, y[k], y[k + 1], room.rates, room.trial), method, system, pairs)
+        h = first_step(ends[1] - t, Step(t, h, y[k], y[k + 1], room.rates, room.trial), method, system, pairs)
         tried = 1
     shortest, rejected = 10.0 * spacing(t), False
     h = min(h, stop - t) if fixed else max(min(h, method.longest), shortest)
     while True:
         if h < shortest and not fixed:
-            return Marched(TOO_SMALL, h, h, pairs, tried)
+            return Marched(TOO_SMALL, h, h, tried)
         block.t[k + 1] = stop if h == stop - t else min(t + h, stop)
         step = step_of(block, k, room)
-        pairs = stages_of(step, method, first, past, system, pairs)
+        stages_of(step, method, first, past, system, pairs)
         tried += method.stages
-        if pairs.count < 0:
-            return Marched(CROWDED, step.h, h, pairs, tried)
+        if pairs.counts[COUNT] < 0:
+            return Marched(UNLISTED, step.h, h, tried)
         later, passes = np.inf if block.t[k + 1] == stop else GROWTH * step.h, True
         if not fixed:
             later, passes = _controlled(step.h, error_of(step, method), method.exponent, rejected)
@@ -101,4 +101,4 @@ def march(block, k, h, ends, system, method, room, pairs):
     end = room.rates[method.rows[method.stages]]
     put(end, block.f[k + 1])
     known = finite(step.reached) and finite(end)
-    return Marched(RUNNING if known else NOT_FINITE, step.h, later, pairs, tried)
+    return Marched(RUNNING if known else NOT_FINITE, step.h, later, tried)

@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.jit import inlined, kernel
 from flockana.kernels.sums import column_squares, squared_deviations
-from flockana.kernels.verlet import covers
+from flockana.kernels.verlet import COUNT, covers
 
 
 class Method(NamedTuple):
@@ -89,20 +89,19 @@ def frame_at(t, view, frame):
 
 @kernel
 def rate_of(t, y, f, system, pairs):
-    """Write the rate of the vector y into f; return the pairs, listed anew unless the list holds all within reach."""
+    """Write the rate of the vector y into f; pairs are listed anew unless the list holds all within reach."""
     n, m, law, frame, (reach, skin) = system.order.size, system.frame.shape[1], system.law, system.frame, system.reach
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     if reach > 0.0 and not covers(pairs, x, reach):
-        pairs = system.listed(x, reach + skin, pairs)
+        system.listed(x, reach + skin, pairs)
     frame_at(t, system.seen_from, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     f[2 * size] = system.force(
-        t, x, v, u, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.count, system.order,
-        system.near, system.room,
+        t, x, v, u, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.counts[COUNT],
+        system.order, system.near, system.room,
     )  # fmt: skip
-    return pairs
 
 
 @kernel
@@ -117,8 +116,8 @@ def energy_of(t, y, system, pairs):
         for c in range(m):
             total += 0.5 * column_squares(v, c, -frame[1, c])
     return total + system.energy(
-        t, x, v, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.count, system.order,
-        system.near, system.room,
+        t, x, v, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.counts[COUNT],
+        system.order, system.near, system.room,
     )  # fmt: skip
 
 
@@ -129,8 +128,7 @@ def stages_of(step, method, begin, end, system, pairs):
     for s in range(begin, end):
         into = step.reached if s == method.stages else step.trial
         combine(step.y, step.h, method.a[s], rates, rows, s, into)
-        pairs = rate_of(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
-    return pairs
+        rate_of(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
 
 
 @inlined
@@ -187,7 +185,7 @@ def _weighed(a, b, y, method):
 
 @inlined
 def first_step(span, step, method, system, pairs):
-    """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
+    """The first step, as scipy's solvers choose it; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
     rest = np.empty(y.size)
     rest[:] = 0.0
@@ -195,7 +193,7 @@ def first_step(span, step, method, system, pairs):
     ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
         trial[k] = y[k] + ahead * rates[0, k]
-    pairs = rate_of(step.t + ahead, trial, rates[1], system, pairs)
+    rate_of(step.t + ahead, trial, rates[1], system, pairs)
     d2 = _weighed(rates[1], rates[0], y, method) / ahead
     h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
-    return min(min(100.0 * ahead, h), span), pairs
+    return min(min(100.0 * ahead, h), span)

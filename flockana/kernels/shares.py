@@ -14,7 +14,7 @@ from flockana.kernels.neighbours import fill_from_grid
 from flockana.kernels.paths import bernstein
 from flockana.kernels.poles import crossing_listed
 from flockana.kernels.runge_kutta import frame_at
-from flockana.kernels.verlet import SKIN, covers
+from flockana.kernels.verlet import COUNT, CROWDED, SKIN, covers
 
 # Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list.
 BODIES = True  # bound
@@ -22,7 +22,7 @@ PAIRS = True  # bound
 POLES = True  # bound
 CROWD = True  # bound
 
-POLE, TOO_MANY = -0.5, -2.0  # a step that crossed a pole is halved, and the sign says why; too many pairs for a list
+POLE, TOO_MANY, NO_ROOM = -0.5, -2.0, -3.0  # a step that crossed a pole is halved; pairs are too many for any list
 _BLOCK = 2**16  # pairs looked at together where a list of all would not fit into memory
 
 
@@ -72,7 +72,7 @@ def _share_of_crowd(ends, whole, around, share):
 
 @kernel
 def share_of_step(t, ends, around, view, kept, near):
-    """Return (accepted fraction of a step, list of pairs); the fraction is negative if it is POLE or TOO_MANY.
+    """Return the accepted fraction of a step; it is negative if it is POLE, TOO_MANY or NO_ROOM.
 
     The list `kept` is the integrator's, `near` that of these checks, which is made anew where neither holds all pairs
     that may meet.
@@ -89,19 +89,22 @@ def share_of_step(t, ends, around, view, kept, near):
         if POLES and around.few:
             beside = steepest(common[1]), ways[0] + ways[1]
             if crossing_listed(ends, beside, around.poles, around.toward, around.first, around.second):
-                return POLE, near
+                return POLE
             if not around.radii.size:
-                return share, near
+                return share
         held = kept
         if not covers(kept, ends.q0, between[1]):
             if not covers(near, ends.q0, between[1]):
-                near = around.listed(ends.q0, (1.0 + SKIN) * between[1], near)
+                around.listed(ends.q0, (1.0 + SKIN) * between[1], near)
             held = near
-        if held.count >= 0:
-            first, second = held.first[: held.count], held.second[: held.count]
+        count = held.counts[COUNT]
+        if count >= 0:
+            first, second = held.first[:count], held.second[:count]
             share = _share_of(ends, (common, ways, between), around, first, second, share)
+        elif count < CROWDED:
+            share = NO_ROOM
         elif CROWD:
             share = _share_of_crowd(ends, (common, ways, between), around, share)
         else:
             share = TOO_MANY
-    return share, near
+    return share

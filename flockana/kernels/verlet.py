@@ -1,7 +1,7 @@
 """Verlet list: the pairs within a range and a skin, valid until relative displacements exceed the skin.
 
-A list is a half list of two index arrays with room to spare. Agents sorted by cell keep what a pair needs close in
-memory.
+A list is a half list of two index arrays with room to spare, which kernels fill in place. Agents sorted by cell keep
+what a pair needs close in memory.
 """
 
 from __future__ import annotations
@@ -11,25 +11,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import callback_like, inlined, kernel
+from flockana.jit import callback_like, kernel
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.sums import put, slope_along
 
 
 class Pairs(NamedTuple):
-    """List of pairs: the first `count` of two arrays, with the places, reach and number of its making.
+    """List of pairs, which kernels fill: two index arrays, places and reach of its making, and counts."""
 
-    A count of −1 says that there are too many for memory.
-    """
-
-    first: Any
+    first: Any  # uint32
     second: Any
-    count: Any
-    places: Any
-    reach: Any
-    made: Any
+    places: Any  # (n, m): where the agents were
+    reach: Any  # (1,): the pairs closer than this are listed; 0 of an empty list
+    counts: Any  # (2,), int64: of pairs, or as `list_pairs` returns it where they do not fit; of lists made so far
 
 
+COUNT, MADE = range(2)  # of the counts
+CROWDED = -1  # a count: more pairs than memory holds
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
 MOST = 2**27  # room for pairs, at most: a gigabyte
@@ -40,24 +38,15 @@ def spatial_order(q: Any, side: float) -> Any:
     return sort_into_grid(q, side)[0]
 
 
-@inlined
-def _grown(first, second, needed):
-    """Return the same pairs with room for at least `needed`, and twice as many as before."""
-    room = max(np.int64(needed), 2 * first.size)
-    more_first, more_second = np.empty(room, np.uint32), np.empty(room, np.uint32)
-    put(first, more_first)
-    put(second, more_second)
-    return more_first, more_second
-
-
 @kernel
 def list_pairs(q, reach, first, second):
-    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
+    """Write the pairs closer than `reach` into two arrays; return their count.
 
-    The count is −1, and nothing is listed, where there are too many for memory.
+    It is CROWDED if there are too many for memory, and minus the room that is needed, or below, if that is more than
+    the arrays have.
     """
     if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
-        return first, second, 0
+        return 0
     order, start, rows = sort_into_grid(q, reach)
     m = q.shape[1]
     x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
@@ -73,12 +62,10 @@ def list_pairs(q, reach, first, second):
             there = np.int64(cell) + np.int64(rows[row])
             candidates += np.int64(start[there + 2] - start[there - 1])
         if rows.size > 0 and count + candidates * np.int64(end - begin) > MOST:  # cells as wide as the reach
-            return first, second, -1
+            return CROWDED
         for i in range(begin, end):
             if count + candidates > first.size:
-                if count + candidates > MOST:
-                    return first, second, -1
-                first, second = _grown(first, second, count + candidates)
+                return CROWDED if count + candidates > MOST else -(count + candidates + 2)
             for row in range(-1, np.int64(rows.size)):
                 low, high = i + np.uint64(1), start[cell + 2]
                 if row >= 0:
@@ -91,7 +78,7 @@ def list_pairs(q, reach, first, second):
                         square += gap * gap
                     first[count], second[count] = order[i], order[j]
                     count += square < limit
-    return first, second, count
+    return count
 
 
 @kernel
@@ -103,7 +90,7 @@ def covers(pairs, q, within):
     Only where the first does not do is the second asked: a flock drawn together by its target.
     """
     reference, m = pairs.places, q.shape[1]
-    for stretched in range(2 if reference.size > 0 else 0):
+    for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
         square, least = 0.0, np.inf
         for c in range(0, m, 2):  # two coordinates at once: they lie side by side
             d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
@@ -117,26 +104,45 @@ def covers(pairs, q, within):
                 low_d, high_d = way_d if way_d < low_d else low_d, way_d if way_d > high_d else high_d
             square += (high_c - low_c) ** 2 + ((high_d - low_d) ** 2 if d > c else 0.0)
             least = min(least, min(along_c, along_d))
-        if np.sqrt(square) <= least * pairs.reach - within:
+        if np.sqrt(square) <= least * pairs.reach[0] - within:
             return True
     return False
 
 
 @kernel
 def listed_anew(q, reach, pairs):
-    """Return a new list of pairs, stored in the arrays of an old one."""
-    first, second, count = list_pairs(q, reach, pairs.first, pairs.second)
-    return Pairs(first, second, count, q.copy(), reach, pairs.made + 1)
+    """List the pairs closer than `reach` in place of an old list; return their count, as `list_pairs` does."""
+    count = list_pairs(q, reach, pairs.first, pairs.second)
+    put(q, pairs.places)
+    pairs.reach[0] = reach if count >= CROWDED else 0.0
+    pairs.counts[COUNT] = count
+    pairs.counts[MADE] += 1
+    return count
 
 
 @cache
 def lister() -> Any:
     """Return `listed_anew` as a callback for compiled code."""
     pairs = no_pairs(1, 1)
-    return callback_like(listed_anew, pairs, np.empty((1, 1)), 0.0, pairs)
+    return callback_like(listed_anew, 0, np.empty((1, 1)), 0.0, pairs)
 
 
 def no_pairs(n: int, m: int) -> Pairs:
     """Return an empty list of pairs, to be filled later."""
     first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return Pairs(first, second, 0, np.empty((0, m)), 0.0, 0)
+    return Pairs(first, second, np.empty((n, m)), np.zeros(1), np.zeros(2, np.int64))
+
+
+def with_room(pairs: Pairs) -> Pairs | None:
+    """Return an empty list with the room that the last one lacked, or twice as much; None if it lacked none."""
+    if (needed := -int(pairs.counts[COUNT])) <= -CROWDED:
+        return None
+    room = max(needed, 2 * pairs.first.size)
+    return pairs._replace(first=np.empty(room, np.uint32), second=np.empty(room, np.uint32))
+
+
+def fill(pairs: Pairs, q: Any, reach: float) -> Pairs:
+    """List the pairs closer than `reach`; return the list, with as much room as they need unless they are CROWDED."""
+    while listed_anew(q, reach, pairs) < CROWDED:
+        pairs = with_room(pairs) or pairs
+    return pairs

@@ -11,7 +11,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_fits, ensure_kind
 from flockana.base.errors import ArgumentError
 from flockana.kernels.euler_maruyama import euler_maruyama_steps
-from flockana.kernels.verlet import no_pairs
+from flockana.kernels.verlet import no_pairs, with_room
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import IndexArray, States
 from flockana.laws.disturbed import Disturbed
@@ -145,11 +145,12 @@ class Stepped(Scheme):
             return None
         system = form.system((t, np.zeros(m), np.zeros(m)), n, m)
         kicks = sum((one._kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
-        y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
-        if not euler_maruyama_steps(
-            t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, no_pairs(n, m), out
-        ):
-            return None
+        start, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
+        pairs, given = no_pairs(n, m), (kicks.reshape(steps, n * m), np.asarray(wanted), system)
+        while not euler_maruyama_steps(t, self.dt, start.copy(), *given, pairs, out):
+            if (larger := with_room(pairs)) is None:
+                return None
+            pairs = larger
         held, past = np.full((1, len(self._wrappers), n, m), np.nan), np.empty((1, 0, 4, n, m))
         return out[0], out[1], out[2], {"step": np.array([float(first + steps)]), "held": held, "past": past}
 

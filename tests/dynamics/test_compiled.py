@@ -1,5 +1,7 @@
 """Compiled runs: the same law to rounding, the same decisions as step by step, and only where both are the same."""
 
+import subprocess
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,8 +26,10 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
 from flockana.kernels.lift import lift
+from flockana.kernels.verlet import no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.sources.li_dead_zone import DeadZoneInteraction
+from tests.programs import posix
 
 TARGETS = [
     StaticTarget((5.0, -3.0), (0.3, 0.1)),
@@ -263,14 +267,55 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
-    monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
+    full = no_pairs(*q.shape)
+    full.counts[0] = -1
+    monkeypatch.setattr(compiled, "fill", lambda *_: full)
     assert engine(Algorithm1(), q, p, Plan("DOP853", np.array([0.01]), np.empty(0))) is None
     monkeypatch.undo()
     advance = compiled.advance
-    monkeypatch.setattr(compiled, "advance", lambda *given: advance(*given)._replace(status=compiled.CROWDED))
+
+    def crowded(*given):
+        given[5][0].counts[0] = -1
+        return compiled.Advanced(*advance(*given))._replace(status=compiled.UNLISTED)
+
+    monkeypatch.setattr(compiled, "advance", crowded)
     told = simulate(Algorithm1(), q, p, (0.0, 0.01))
     assert told.status == "failed"
     assert "than a list has room for: try method='scipy-DOP853'" in told.message
+
+
+ALARMS = """
+import signal, sys
+import numpy as np
+from flockana import Algorithm2, StaticTarget, simulate
+
+class Alarm(Exception):
+    pass
+
+def ring(number, frame):
+    raise Alarm
+
+law, rng = Algorithm2(target=StaticTarget((0.0, 0.0))), np.random.default_rng(0)
+q, p = rng.uniform(-60.0, 60.0, (150, 2)), rng.normal(size=(150, 2))
+samples = np.linspace(0.0, 1e4, 1000)
+simulate(law, q, p, (0.0, 100.0), t_eval=samples[:10])  # compiles
+signal.signal(signal.SIGALRM, ring)
+clean = 0
+for k in range(12):
+    signal.setitimer(signal.ITIMER_REAL, 0.05 + 0.01 * k)
+    try:
+        simulate(law, q, p, (0.0, 1e4), t_eval=samples)
+    except Alarm:
+        clean += 1
+print(clean)
+"""
+
+
+@posix
+def test_an_alarm_during_a_compiled_run_raises_its_own_exception():
+    """In a process of its own, which a kernel that gives Python more than numbers may kill."""
+    ended = subprocess.run([sys.executable, "-c", ALARMS], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "12\n"), ended.stderr
 
 
 def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_the_same():

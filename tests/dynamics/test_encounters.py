@@ -14,7 +14,8 @@ from flockana.dynamics.encounters import SHARE, Encounters, State, StepChecks
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
 from flockana.interactions import BetaInteraction, Gains
 from flockana.jit import callback_like, kernel
-from flockana.kernels.verlet import Pairs, no_pairs
+from flockana.kernels.sums import put
+from flockana.kernels.verlet import COUNT, CROWDED, no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.li_dead_zone import DeadZoneInteraction
@@ -378,8 +379,11 @@ class TestFarAway:
 
 @kernel
 def no_room(q, reach, pairs):
-    """A list that holds nothing, as there are too many pairs."""
-    return Pairs(pairs.first, pairs.second, -1, q.copy(), reach, pairs.made + 1)
+    """List nothing, as there are too many pairs."""
+    put(q, pairs.places)
+    pairs.reach[0] = reach
+    pairs.counts[COUNT] = CROWDED
+    return CROWDED
 
 
 @pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853"])
@@ -388,10 +392,10 @@ def test_pairs_too_many_for_a_list_cut_the_same_steps(method, monkeypatch):
     q, p = np.array([[0.0, 0.0], [30.0, 1.0], [0.0, 40.0]]), np.array([[0.0, 0.0], [-9.0, 0.0], [0.0, 0.0]])
     listed = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
     pairs, looked = no_pairs(1, 2), []
-    callback = callback_like(no_room, pairs, np.empty((1, 2)), 0.0, pairs)
+    callback = callback_like(no_room, 0, np.empty((1, 2)), 0.0, pairs)
     monkeypatch.setattr(encounters, "lister", lambda: callback)
-    at_crowd = StepChecks.switch_to_blocks
-    monkeypatch.setattr(StepChecks, "switch_to_blocks", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
+    at_crowd = StepChecks.make_room
+    monkeypatch.setattr(StepChecks, "make_room", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
     crowd = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
     assert True in looked
     assert crowd.status == "complete"

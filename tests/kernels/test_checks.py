@@ -84,8 +84,8 @@ def test_a_fixed_step_is_asked_for_again_only_if_it_then_ends_earlier(share, ste
         at = t + steps * np.spacing(t)
         block = Block(np.array([t, at]), np.zeros((2, 3)), np.zeros((2, 3)), np.zeros(2))
         rules = Rules(True, False, (0.0, np.inf), True)
-        judged = Judged(SimpleNamespace(radii=np.empty((1, 0))), rules, empty_ledger(), lambda *_: (share, None))
-        shorter, singular, _ = checked.py_func(block, 0, judged, (0.0, np.zeros(1), np.zeros(1)), None, None)
+        judged = Judged(SimpleNamespace(radii=np.empty((1, 0))), rules, empty_ledger(), lambda *_: share)
+        shorter, singular = checked.py_func(block, 0, judged, (0.0, np.zeros(1), np.zeros(1)), None, None)
         if not shorter:
             break
         assert t < t + shorter < at

@@ -158,22 +158,25 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
     """Pairs are searched for unless the list holds all that may meet; of too many to list, some at a time."""
     states, radii, view = ends(40, m, 12.0), np.full((40, 2), [R / 2, R]), (0.0, np.zeros(m), np.zeros(m))
     i, j = (each.astype(np.uint32) for each in pair_list(states.q0, 1e6))
-    searched, search = [], listed_anew.py_func
+    searched = []
 
     def found(q, within, near):
         searched.append(within)
-        return search(q, within, near)._replace(**({"count": -1} if listed == "too many for memory" else {}))
+        listed_anew(q, within, near)
+        if listed == "too many for memory":
+            near.counts[0] = -1
 
     monkeypatch.setattr(shares, "_BLOCK", 50)
     monkeypatch.setattr(shares, "BODIES", False)
     monkeypatch.setattr(shares, "POLES", False)
-    kept = no_pairs(40, m)
+    kept, near = no_pairs(40, m), no_pairs(200, m)._replace(places=np.empty((40, m)))
     if listed in ("all", "too few"):
-        kept = Pairs(i, j, i.size if listed == "all" else 0, states.q0, 1e6 if listed == "all" else R, 1)
+        count, reach = (i.size, 1e6) if listed == "all" else (0, R)
+        kept = Pairs(i, j, states.q0, np.array([reach]), np.array([count, 1]))
     given = around(radii)._replace(listed=found)
-    share, near = shares.share_of_step.py_func(0.0, states, given, view, kept, no_pairs(40, m))
+    share = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")
-    again, _ = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
+    again = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert (again, len(searched)) == (share, listed != "all")  # a list that was made is kept

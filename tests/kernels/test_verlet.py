@@ -6,11 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.verlet import covers, list_pairs, listed_anew, no_pairs, spatial_order
+from flockana.kernels.verlet import COUNT, CROWDED, covers, fill, list_pairs, listed_anew, no_pairs, spatial_order
 
 
 def listed(q, reach, room=1):
-    first, second, count = list_pairs(q, reach, np.empty(room, np.uint32), np.empty(room, np.uint32))
+    few = np.empty(room, np.uint32), np.empty(room, np.uint32)
+    first, second, *_, (count, _) = fill(no_pairs(*q.shape)._replace(first=few[0], second=few[1]), q, reach)
     return sorted((min(i, j), max(i, j)) for i, j in zip(first[:count].tolist(), second[:count].tolist(), strict=True))
 
 
@@ -31,7 +32,7 @@ def test_agents_in_one_place_and_one_agent_alone():
 
 
 def kept(q, made):
-    return listed_anew(q, made, no_pairs(*q.shape))
+    return fill(no_pairs(*q.shape), q, made)
 
 
 def outdated(q, reach, pairs):
@@ -58,7 +59,7 @@ def test_a_list_that_holds_lacks_no_pair(seed, n, m, factor, noise, turned):
         later = later @ np.linalg.qr(rng.normal(size=(m, m)))[0]
     gaps, apart = (np.linalg.norm(x[:, None] - x[None], axis=2) for x in (q, later))
     missing = apart[gaps >= 1.5].min(initial=np.inf)  # the nearest of those that a list made for 1.5 lacks
-    pairs = no_pairs(n, m)._replace(places=q, reach=1.5)
+    pairs = no_pairs(n, m)._replace(places=q, reach=np.array([1.5]))
     for within in (0.3, 0.8, 1.2, 1.45):
         assert not (covers(pairs, later, within) and missing < within * (1.0 - 1e-12))
 
@@ -67,7 +68,7 @@ def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
     assert outdated(q, 9.0, no_pairs(4, 2))
     pairs = kept(q, 10.0)
-    assert pairs.count == 2  # both within range and skin
+    assert pairs.counts[COUNT] == 2  # both within range and skin
 
     moved = q + np.array([100.0, -50.0])
     assert not outdated(moved, 9.0, pairs)  # a common motion is none
@@ -75,8 +76,7 @@ def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     assert not outdated(moved, 9.0, pairs)
     moved[2] -= [0.04, 0.0]
     assert outdated(moved, 9.0, pairs)
-    pairs = listed_anew(moved, 10.0, pairs)
-    assert pairs.count == 1
+    assert listed_anew(moved, 10.0, pairs) == 1
     assert not outdated(moved, 9.0, pairs)
 
 
@@ -110,7 +110,7 @@ def test_a_flock_on_a_line_is_drawn_together_along_it():
 
 def test_too_many_pairs_are_told_before_memory_is_full():
     few = np.empty(1, np.uint32)
-    assert list_pairs(np.zeros((12_000, 2)), 1.0, few, few)[2] == -1
+    assert list_pairs(np.zeros((12_000, 2)), 1.0, few, few) == CROWDED
 
 
 def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
@@ -124,8 +124,8 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
-    pairs = listed_anew(q, 1.1, no_pairs(3, 1))
-    assert pairs.count == 1
+    pairs = kept(q, 1.1)
+    assert pairs.counts[COUNT] == 1
     assert not outdated(q, 1.0, pairs)
 
 
@@ -133,4 +133,4 @@ def test_a_law_without_pairs_needs_no_list():
     few = np.empty(1, np.uint32)
     for n, m in ((1, 1), (2, 2), (40, 3)):
         q = np.random.default_rng(n).normal(size=(n, m))
-        assert list_pairs(q, 0.0, few, few)[2] == 0
+        assert list_pairs(q, 0.0, few, few) == 0

@@ -27,28 +27,28 @@ def all_within(q, reach):
 @pytest.mark.parametrize(("n", "m", "spacing"), [(400, 1, 1.0), (600, 2, 2.5), (4000, 3, 2.5)])
 def test_all_within_reach_are_found_in_rising_order_and_nobody_else(n, m, spacing):
     q, _ = flock(n, m, spacing=spacing)
-    cells = sort_into_cells(q, REACH)
+    cells = sort_into_cells.py_func(q, REACH)
     assert cells.start.size > 0
     assert near_each(q, cells, REACH) == all_within(q, REACH)
 
 
 def test_nobody_is_missed_after_all_moved_by_half_of_what_the_cells_reach_further():
     q, p = flock(600, 2)
-    cells = sort_into_cells(q, REACH + 1.0)
+    cells = sort_into_cells.py_func(q, REACH + 1.0)
     moved = q + 0.499 * p / np.linalg.norm(p, axis=1, keepdims=True)
     assert near_each(moved, cells, REACH) == all_within(moved, REACH)
 
 
 def test_few_agents_or_a_crowd_are_looked_through_one_by_one():
     for q in (flock(64, 2)[0], flock(500, 2, spacing=0.2)[0]):
-        cells = sort_into_cells(q, REACH)
+        cells = sort_into_cells.py_func(q, REACH)
         assert cells.start.size == 0
         assert near_each(q, cells, REACH)[7] == list(range(len(q)))
 
 
 def test_a_sparse_flock_has_wider_cells():
     q = np.concatenate([flock(300, 2)[0], flock(300, 2, seed=1)[0] + 400.0])
-    cells = sort_into_cells(q, 0.01)
+    cells = sort_into_cells.py_func(q, 0.01)
     assert 0 < cells.start.size < 10_000
     assert near_each(q, cells, 0.01) == all_within(q, 0.01)
 
@@ -74,8 +74,8 @@ def test_steps_are_those_over_all_pairs_to_the_last_bit(m, order, form):
     radii = ZoneRadii(1.5, c=3.0, a=tuple(np.random.default_rng(3).uniform(4.0, 5.0, 300).tolist()))
     with_far = ZoneRadii(1.5, c=3.0, a=(*radii.a, 1e30))
     far_q, far_p = np.vstack([q, np.full(m, 1e40)]), np.vstack([p, np.ones(m)])
-    assert sort_into_cells(q, REACH).start.size > 0
-    assert np.unique(sort_into_cells(far_q, 1e30).cell[:300]).size <= 1
+    assert sort_into_cells.py_func(q, REACH).start.size > 0
+    assert np.unique(sort_into_cells.py_func(far_q, 1e30).cell[:300]).size <= 1
     found = []
     for own, start, speed in ((radii, q, p), (with_far, far_q, far_p)):
         law = ZoneFlocking(radii=own, order=order, form=form, dt=0.4)  # long steps: some come into reach within one

@@ -165,7 +165,11 @@ def test_a_flock_that_draws_together_until_no_cells_are_left_is_stepped_as_from_
     for k in range(1, len(run.t)):
         q, p, _, memory = law.step(float(run.t[k - 1]), q, p, memory)
         np.testing.assert_array_equal(run.q[k], q)
-    assert sort_into_cells(run.q[0], law.radii.a).start.size > 0 == sort_into_cells(run.q[-1], law.radii.a).start.size
+    assert (
+        sort_into_cells.py_func(run.q[0], law.radii.a).start.size
+        > 0
+        == sort_into_cells.py_func(run.q[-1], law.radii.a).start.size
+    )
 
 
 def test_instants_are_counted_each_by_itself():
