@@ -307,7 +307,7 @@ from flockana.course.frames import film
 def stepped(interaction, dt, end=80.0):
     length, rate, found = 3.6, 0.0, []
     for _ in range(round(end / dt)):  # both agents feel the force, and the damping k2 = 1
-        rate -= 2.0 * dt * (float(interaction.force(length)) + rate)
+        rate -= 2.0 * dt * (rate - float(interaction.force(length)))
         length += dt * rate
         found.append(length)
     return dt * np.arange(1, len(found) + 1), np.array(found)
@@ -339,10 +339,10 @@ for dt in (0.05, 0.01, 0.005):
     t, length = stepped(hard, dt)
     assert 0.02 < length[t > 60.0].max() - hard.d1 < 32.6 * dt
 assert abs(2.0 * hard.k_r * np.log(2.0) - 277.0) < 0.5
-assert abs(hard.psi(hard.r) - 5.8) < 0.02
+assert abs(hard.energy(hard.r) - 5.8) < 0.02
 by_hand = 400.0 * (np.arcsinh(1.0 / 2.0) - np.arcsinh(1.0 / 3.5))
 rest_of_psi = fl.DeadZoneInteraction(ramp=0.0, k_delta=1e-12, k1=1e-12)
-assert abs(rest_of_psi.psi(2.0) - by_hand) < 1e-6
+assert abs(rest_of_psi.energy(2.0) - by_hand) < 1e-6
 
 # %% [markdown]
 # ## The theorem, printed and corrected
@@ -454,7 +454,7 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 rise = ...
 
 # %% tags=["solution"]
-rise = hard.psi(hard.r)  # whatever the speed
+rise = hard.energy(hard.r)  # whatever the speed
 
 # %% tags=["check"]
 grade(rise, 5.81707271, digits=4, hint="what does a pair at the edge of the range cost?")

@@ -120,8 +120,8 @@ law = fl.Algorithm1(well)
 # %%
 figure, ax = plots.subplots(size=(6, 3.2))
 length = np.linspace(0.0, 3.4, 300)
-ax.plot(length, well.force(length), label="force")
-ax.plot(length, well.energy_at(length), label="potential")
+ax.plot(length, -well.force(length), label="dψ/ds: negative repels")
+ax.plot(length, well.energy(length), label="potential")
 ax.axhline(0.0, color="0.8", zorder=0)
 ax.set(xlabel="distance (length)", ylabel="length/time², length²/time²")
 _ = ax.legend()
@@ -298,9 +298,9 @@ for ax, flock, beta in zip(axes, (run, fast), (0.4, 1.0), strict=True):
     ax.legend()
 
 # %% tags=["facts"]
-pushes = [float(well.force(x)) for x in (1.0, 2.5, 2.9)]
+pushes = [-float(well.force(x)) for x in (1.0, 2.5, 2.9)]
 assert [f"{each:.3f}" for each in pushes] == ["-1.920", "0.425", "0.045"]
-costs = [float(well.energy_at(x) - well.energy_at(2.0)) for x in (3.0, 0.0)]
+costs = [float(well.energy(x) - well.energy(2.0)) for x in (3.0, 0.0)]
 assert [f"{each:.2f}" for each in costs] == ["0.26", "2.39"]
 assert np.diff(W).max() < 0.0
 assert y.max() < most
@@ -448,8 +448,8 @@ grade(
     formula,
     lambda text: next(
         not law.faults
-        and (law.force(np.linspace(0.1, 0.95, 50)) < 0).all()
-        and (law.force(np.linspace(1.05, 2.999, 400)) > 0).all()
+        and (law.force(np.linspace(0.1, 0.95, 50)) > 0).all()
+        and (law.force(np.linspace(1.05, 2.999, 400)) < 0).all()
         for law in [fl.pair_law(text, adjacency=0, range=3.0, length=1.0)]
     ),
     form="word",

@@ -37,8 +37,8 @@ def parameter_classes() -> dict[str, type]:
 def to_data(value: Any) -> Any:
     """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``."""
     if is_dataclass(value) and not isinstance(value, type):
-        data = {f.name: to_data(getattr(value, f.name)) for f in fields(value) if f.init}
-        kind = type(value)
+        kind, names = type(value), getattr(value, "names_in_files", {})
+        data = {names.get(f.name, f.name): to_data(getattr(value, f.name)) for f in fields(value) if f.init}
         ours = kind.__module__.startswith("flockana.")
         if ours and parameter_classes().get(kind.__qualname__) is not kind:
             raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
@@ -72,7 +72,8 @@ def from_data(data: Any) -> Any:
         cls = parameter_classes().get(qualname) if ours else resolve_name(name)
         if cls is None or not is_dataclass(cls):
             raise TypeError(f"{name} is no parameter class")
-        return cls(**{key: from_data(v) for key, v in data.items() if key != "type"})
+        names: dict[str, str] = {written: name for name, written in getattr(cls, "names_in_files", {}).items()}
+        return cls(**{names.get(str(key), str(key)): from_data(v) for key, v in data.items() if key != "type"})
     except (AttributeError, TypeError, ValueError) as error:
         raise FileError(f"cannot rebuild {name} from the file: {error}") from error
 

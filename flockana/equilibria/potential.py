@@ -84,7 +84,7 @@ class Potential:
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
         """Return the energy of listed pairs less their far potential, without a large constant to round."""
         lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
-        total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
+        total = self.gain * float(np.sum(self.pair.energy(lengths) - self.pair.far_potential))
         others = (term for term in self.law.terms if term is not self.pairs and not term.idle)
         return total + sum(term.energy(self.t, q) for term in others)
 

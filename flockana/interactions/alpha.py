@@ -142,16 +142,17 @@ class AlphaInteraction(Tabulated, PairInteraction):
         """Length ℓ of the bounded pull σ₁(x/ℓ) to a γ-agent."""
         return self.unit
 
+    @property
+    def feature(self) -> float:
+        """Length of the shorter of repulsion, from 0 to d, and attraction, from d to r; the adjacency only falls."""
+        return min(self.d, self.r - self.d)
+
     @cached_property
     def strength(self) -> float:
         """Largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, within 1e-6."""
         lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
         forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
         return float(np.abs(forces).max())
-
-    def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ_α(‖x‖_σ) at Euclidean distances x."""
-        return self.psi_alpha(self.sigma_norm(lengths))
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""
@@ -216,5 +217,5 @@ class AlphaInteraction(Tabulated, PairInteraction):
         return evaluate(_PSI_ALPHA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ."""
+        """Return a_ij as the source has it: a function of the σ-norm z = ‖q_j − q_i‖_σ, not of the distance."""
         return evaluate(_ADJACENCY_ALPHA, z, self.par)

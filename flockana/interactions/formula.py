@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
-
-import numpy as np
+from typing import TYPE_CHECKING, ClassVar
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
 from flockana.interactions.formula_parts import FormulaParts, formula_parts
-from flockana.interactions.pair import PairInteraction, evaluate
-from flockana.kernels.generated import generated_kernels, generated_potential
+from flockana.interactions.functions import SlopeBound
+from flockana.interactions.pair import PairInteraction
+from flockana.kernels.generated import generated_kernels
 
 if TYPE_CHECKING:
     from flockana.kernels.lift import PairKernels
     from flockana.symbolic.derivation import Derivation
-    from flockana.symbolic.pair_facts import SlopeBound
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding
 
@@ -36,7 +34,7 @@ class FormulaInteraction(PairInteraction):
     force_formula : str
         Instead of the potential its derivative, dψ/ds or dψ/dz: negative repels. ψ is then integrated numerically,
         to 1e-13 of its size, and vanishes at the length.
-    adjacency : str
+    adjacency_formula : str
         a_ij, of the same distance; "0" for none.
     r : float
         Range, in the user's length unit: farther pairs do not interact.
@@ -57,19 +55,20 @@ class FormulaInteraction(PairInteraction):
     >>> law = FormulaInteraction("k*(s - d)**2*(s - r)**2", d=2.0, r=3.0, parameters=(("k", 0.5),))
     >>> law.faults
     ('coincidence is excluded: the force has no limit where two agents meet',)
-    >>> round(law.force(2.5), 12), law.energy_at([2.0, 4.0]).tolist()
-    (0.0, [0.0, 0.0])
+    >>> round(law.force(2.2), 12), law.energy([2.0, 2.2, 4.0]).round(12).tolist()
+    (-0.096, [0.0, 0.0128, 0.0])
     """
 
     potential: str = ""
     force_formula: str = ""
-    adjacency: str = "0"
+    adjacency_formula: str = "0"
     r: float = 1.0
     d: float = 1.0
     parameters: tuple[tuple[str, float], ...] = ()
     powers: tuple[tuple[str, int, int], ...] = ()
 
-    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "adjacency", "energy", "values")}
+    names_in_files: ClassVar[Mapping[str, str]] = {"adjacency_formula": "adjacency"}
 
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):
@@ -92,7 +91,7 @@ class FormulaInteraction(PairInteraction):
     @property
     def _parts(self) -> FormulaParts:
         main = self.force_formula or self.potential
-        return formula_parts(main, bool(self.force_formula), self.adjacency, self.r, self.d, self.parameters)
+        return formula_parts(main, bool(self.force_formula), self.adjacency_formula, self.r, self.d, self.parameters)
 
     @property
     def kernels(self) -> PairKernels:  # type: ignore[override]  # compiled when first asked for
@@ -120,6 +119,11 @@ class FormulaInteraction(PairInteraction):
         return self._parts.surfaces
 
     @property
+    def seams(self) -> tuple[float, ...]:
+        """Distances at which pieces of the formula meet, and the range."""
+        return self._parts.seams
+
+    @property
     def facts(self) -> PairFacts:
         """Facts proved of the formula over its whole range by branch and bound, computed at first use."""
         return self._parts.facts
@@ -140,7 +144,7 @@ class FormulaInteraction(PairInteraction):
 
         Examples
         --------
-        >>> law = FormulaInteraction("s**2/2", r=2.0, adjacency="1 - s/r")
+        >>> law = FormulaInteraction("s**2/2", r=2.0, adjacency_formula="1 - s/r")
         >>> [(bound.force, round(bound.adjacency, 9)) for bound in law.slopes(2)]
         [(1.0, 0.5), (1.0, 0.5)]
         """
@@ -170,32 +174,6 @@ class FormulaInteraction(PairInteraction):
     def panels(self) -> FloatArray:
         """Chebyshev panels of ψ: over the range if the force was given, else near 0 where the formula cancels."""
         return self._parts.panels
-
-    def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ at each distance, constant beyond the range."""
-        square = np.square(np.asarray(lengths, dtype=np.float64))
-        return evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
-
-    def force(self, s: Any) -> Any:
-        """Return the force between two agents along their line; negative repels."""
-        with np.errstate(invalid="ignore"):  # NaN at 0 where coincidence is excluded
-            return s * self.stress(s)
-
-    def stress(self, s: Any) -> Any:
-        """Return the weight w of the pair force w (q_j − q_i)."""
-        return self._of_pair(s, 0)
-
-    def weight(self, s: Any) -> Any:
-        """Return the adjacency a_ij at each distance."""
-        return self._of_pair(s, 1)
-
-    def _of_pair(self, s: Any, row: int) -> Any:
-        lengths = np.atleast_1d(np.asarray(s, dtype=np.float64))
-        line = np.append(0.0, lengths.ravel())[:, None]
-        ends = np.arange(1, line.size, dtype=np.int64)
-        found = self.kernels.terms(line, np.zeros_like(ends), ends, self.par)[row]
-        values = np.where(lengths.ravel() < self.r, found, 0.0)
-        return float(values[0]) if np.ndim(s) == 0 else values.reshape(lengths.shape)
 
     def with_parameters(self, **parameters: float) -> FormulaInteraction:
         """Return the same formula with other parameter values; nothing is compiled again.

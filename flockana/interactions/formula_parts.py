@@ -15,10 +15,10 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
 from flockana.interactions.formula_near import TERMS, NearZero, near_zero
+from flockana.interactions.functions import SlopeBound
 from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
-    from flockana.symbolic.pair_facts import SlopeBound
     from flockana.symbolic.pair_formula import PiecewiseFormula
 
 _KEPT = 64  # formulas
@@ -40,6 +40,7 @@ class FormulaParts:
     par: FloatArray
     panels: FloatArray
     surfaces: tuple[float, ...]
+    seams: tuple[float, ...]
     strength: float
     coincidence: bool
     holds: bool
@@ -57,7 +58,8 @@ class FormulaParts:
         from flockana.symbolic.pair_facts import slope_bounds
 
         eps = float(self.par[2])
-        return slope_bounds(self.cut, eps, float(np.sqrt(self.par[0])), _places(self.cut, eps), parts)
+        bounds = slope_bounds(self.cut, eps, float(np.sqrt(self.par[0])), _places(self.cut, eps), parts)
+        return tuple(SlopeBound(*bound) for bound in bounds)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Return whether another formula's law is this one in other units, compared on a grid."""
@@ -101,7 +103,16 @@ def formula_parts(
         array.setflags(write=False)
     surfaces = tuple(sorted({*view.jumps(), r}))
     return FormulaParts(
-        cut, texts, par, panels, surfaces, view.strength, near.kind != "excluded", view.holds(d), view.looks
+        cut,
+        texts,
+        par,
+        panels,
+        surfaces,
+        (*view.places, r),
+        view.strength,
+        near.kind != "excluded",
+        view.holds(d),
+        view.looks,
     )
 
 

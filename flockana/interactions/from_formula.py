@@ -62,7 +62,7 @@ def pair_law(
     return FormulaInteraction(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),
-        adjacency=_as_text("adjacency", adjacency),
+        adjacency_formula=_as_text("adjacency", adjacency),
         r=range,
         d=length,
         parameters=tuple((parameters or {}).items()),

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.facts import Fact, PairFacts
+from flockana.interactions.functions import DistanceFunction, InnerValues
 from flockana.jit import thawed
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
@@ -21,7 +21,6 @@ from flockana.kernels.scalars import sigma_norm
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-PROVED = ("smooth", "weight", "inside")  # facts that a pair law without a formula may name a proof of
 Pairs = Iterable[tuple[Any, Any]]
 
 
@@ -36,6 +35,15 @@ def one_by_one(function: Callable[..., float], par: FloatArray) -> Callable[[Flo
     """Return a scalar function with its parameters as a function of arrays, interpreted."""
     numbers = par.tolist()
     return lambda z: np.array([function(each, numbers) for each in z.tolist()])
+
+
+def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> InnerValues:
+    """Return `DistanceFunction.inner` of compiled functions with their parameters."""
+    line = np.append(0.0, np.sqrt(s2))[:, None]
+    ends = np.arange(1, line.size, dtype=np.int64)
+    w, a, bend = kernels.terms(line, np.zeros_like(ends), ends, par)
+    slope = kernels.adjacency_slope
+    return w, a, bend, np.full_like(w, np.nan) if slope is None else slope(s2, par)
 
 
 class Tabulated(ABC):
@@ -63,7 +71,7 @@ class Tabulated(ABC):
         return self._parts[1]
 
 
-class PairInteraction(ABC):
+class PairInteraction(DistanceFunction):
     """Base class of pair laws: sums over all pairs within range from scalar functions.
 
     A subclass is a frozen dataclass that sets `range`, `kernels`, `par` and `panels`; pairs beyond the range have the
@@ -71,12 +79,6 @@ class PairInteraction(ABC):
     """
 
     kernels: PairKernels
-    proofs: ClassVar[Mapping[str, str]] = {}  # of facts about all distances, by name: smooth, weight, inside
-
-    @property
-    @abstractmethod
-    def range(self) -> float:
-        """Euclidean distance beyond which the pair force vanishes."""
 
     @property
     @abstractmethod
@@ -109,19 +111,9 @@ class PairInteraction(ABC):
         return (self.range,)
 
     @property
-    def faults(self) -> tuple[str, ...]:
-        """Properties that theorems ask for and the law lacks (C¹, smooth end), each in words."""
-        return ()
-
-    @property
-    def facts(self) -> PairFacts:
-        """Facts known over all distances: those in `proofs` are met, those in `faults` unmet."""
-        known = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
-        known |= {name: Fact("met", text) for name, text in self.proofs.items()}
-        if self.faults:
-            known["smooth"] = Fact("unmet", "; ".join(self.faults))
-        unknown = (-inf, inf)
-        return PairFacts(known["smooth"], known["weight"], known["inside"], unknown, unknown, unknown)
+    def seams(self) -> tuple[float, ...]:
+        """Distances at which the formula of force or adjacency may change; by default `surfaces`."""
+        return self.surfaces
 
     @property
     def coincidence(self) -> bool:
@@ -139,9 +131,13 @@ class PairInteraction(ABC):
     def strength(self) -> float:
         """Unit of forces: about the largest between two agents, or at contact where it is unbounded."""
 
-    @abstractmethod
-    def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return the potential of a pair at each Euclidean distance."""
+    def energy(self, s: Any) -> Any:
+        """Return the potential of a pair at Euclidean distances, constant beyond the range (see `DistanceFunction`)."""
+        square = np.square(np.asarray(s, dtype=np.float64))
+        return evaluate(self.kernels.energies, square, self.par, self.panels)
+
+    def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
+        return kernel_values(self.kernels, self.par, s2)
 
     @property
     @abstractmethod

@@ -1,27 +1,25 @@
 """Weights of velocity consensus as functions of the distance."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from math import expm1, inf, log, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
-from flockana.base.facts import Fact
 from flockana.base.units import Powers
-from flockana.interactions.pair import evaluate
+from flockana.interactions.functions import DistanceFunction, InnerValues, SlopeBound
 from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope
 
 
-class Weight(ABC):
-    """Weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
+class Weight(DistanceFunction):
+    """Adjacency a(s) without a force; a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
 
     kernels: ClassVar[WeightKernels]
-    proof: ClassVar[str] = ""  # that it is nowhere negative
-    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__",)}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__", "adjacency")}
 
     @property
     @abstractmethod
@@ -33,16 +31,13 @@ class Weight(ABC):
         """Distance beyond which the weight is 0; infinite by default."""
         return inf
 
-    @property
-    def sign(self) -> Fact:
-        """Fact whether the weight is nonnegative at every distance; assumed, unless `proof` says why."""
-        return Fact("met", self.proof) if self.proof else Fact("assumed", f"{type(self).__name__} names no proof of it")
+    def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
+        none = np.zeros_like(s2)
+        return none, self.kernels.weight(s2, self.par), none, self.kernels.slope(s2, self.par)
 
     def __call__(self, distance: Any) -> Any:
         """Return the weight at some distances, a scalar or an array."""
-        s = np.asarray(distance, dtype=np.float64)
-        values = np.where(s < self.range, evaluate(self.kernels.weight, s * s, self.par), 0.0)
-        return float(values) if s.ndim == 0 else values
+        return self.adjacency(distance)
 
 
 _RATIONAL = lift_weight(rational, rational_slope)
@@ -72,12 +67,34 @@ class RationalWeight(Weight):
     length: float = 1.0
 
     kernels: ClassVar[WeightKernels] = _RATIONAL
-    proof: ClassVar[str] = "K > 0 times a positive power"
+    proofs: ClassVar[Mapping[str, str]] = {"smooth": "a power of 1 + s²/ℓ² > 0 is analytic"} | dict.fromkeys(
+        ("weight", "inside"), "K > 0 times a positive power"
+    )
     units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
 
     def __post_init__(self) -> None:
         normalise(self, ensure_positive, "strength", "length")
         normalise(self, ensure_nonnegative, "decay")
+
+    @property
+    def feature(self) -> float:
+        """Distance at which the weight has fallen by half, ℓ √(2^(1/β) − 1); infinite for a constant."""
+        return self.length * sqrt(expm1(log(2.0) / self.decay)) if self.decay > 1e-3 else inf
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
+        """Return bounds of |da/ds|, which rises up to ℓ/√(2β + 1) and falls beyond, on geometric parts of all lengths.
+
+        Parameters
+        ----------
+        parts : int
+            How many, within 2⁻²⁰ ℓ and 2²⁰ ℓ; two more reach to 0 and to infinity.
+        """
+        top = self.length / sqrt(2.0 * self.decay + 1.0)
+        edges = np.concatenate([[0.0], np.unique([top, *np.geomspace(2.0**-20, 2.0**20, parts + 1) * self.length])])
+        at = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
+        bounds = np.where(edges[:-1] < top, at[1:], at[:-1])
+        inner = [SlopeBound(*row) for row in zip(edges[:-1], edges[1:], np.zeros(len(bounds)), bounds, strict=True)]
+        return (*inner, SlopeBound(float(edges[-1]), inf, 0.0, float(at[-1])))
 
     @cached_property
     def par(self) -> FloatArray:

@@ -5,13 +5,11 @@ The text is written by this package, from a formula that its own grammar has rea
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
 
 from flockana.jit import Kernel
 from flockana.kernels.bound import made
-from flockana.kernels.lift import PairKernels, lift, lift_scalar
+from flockana.kernels.lift import PairKernels, lift
 
 _KEPT = 64  # compiled formulas
 _MATH = "sqrt, exp, log, tan, sinh, cosh, tanh, asin, acos, atan, asinh, acosh, atanh"
@@ -46,9 +44,3 @@ def generated_kernels(
     texts = {"pair": pair, "slope": slope, "potential": potential, "adjacency_slope": adjacency_slope}
     functions = (generated(text, name) for name, text in texts.items())
     return lift(*functions, norm=None if norm is None else generated(norm, "norm"))
-
-
-@lru_cache(maxsize=_KEPT)
-def generated_potential(text: str) -> Callable[..., Any]:
-    """Return a generated potential over an array of squared distances."""
-    return lift_scalar(generated(text, "potential"))

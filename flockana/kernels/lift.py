@@ -55,6 +55,11 @@ class PairKernels:
         return self._blocks.terms
 
     @cached_property
+    def energies(self) -> Callable[..., Any]:
+        """``energies(s2, par, panels)``: ψ over an array of squared distances."""
+        return lift_scalar(self.energy_of_pair)
+
+    @cached_property
     def adjacency_slope(self) -> Callable[..., Any] | None:
         """``adjacency_slope(s2, par)``: da/d(s²) over an array of squared distances; None if the law gives none."""
         return None if self.slope_of_adjacency is None else lift_scalar(self.slope_of_adjacency)

@@ -63,14 +63,14 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
 
 def inner_cutoff(term: PairTerm) -> float:
     """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular."""
-    bounded = bool(np.isfinite(term.pair.energy_at(np.zeros(1))).all())
+    bounded = bool(np.isfinite(term.pair.energy(np.zeros(1))).all())
     return _INNER * term.pair.range if bounded else _INNER_SINGULAR * term.pair.length
 
 
 def energy_and_force(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return energy, 0 at the range, and force, positive for repulsion, of a pair at each distance."""
     pair = term.pair
-    energy = term.stiffness * (pair.energy_at(r) - pair.far_potential)
+    energy = term.stiffness * (pair.energy(r) - pair.far_potential)
     return energy, -term.stiffness * _pull_and_adjacency(term, r)[0]
 
 

@@ -17,9 +17,13 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
+from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
+from flockana.interactions.pair import kernel_values
+from flockana.kernels.alpha import R_ALPHA
 from flockana.kernels.directed import directed_forces, seen_edges
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.features import Feature, function_feature
 from flockana.laws.law import Arrays
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
@@ -29,6 +33,29 @@ from flockana.measures.perception import Edges
 _ALL_ROUND = 2.0 * pi
 _SLOW = 0.01  # of the law's own speed
 _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are counted
+
+
+@dataclass(frozen=True)
+class Reaching(DistanceFunction):
+    """The pair law with another range, at which its bump ends; its distance d stays."""
+
+    alpha: AlphaInteraction
+    r: float
+
+    @property
+    def range(self) -> float:
+        """Range of an agent."""
+        return self.r
+
+    @property
+    def feature(self) -> float:
+        """Length of the shorter of repulsion and attraction; a range at most d leaves repulsion alone."""
+        return min(self.alpha.d, self.r - self.alpha.d if self.r > self.alpha.d else self.r)
+
+    def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
+        par = self.alpha.par.copy()
+        par[R_ALPHA] = self.alpha.sigma_norm(self.r)
+        return kernel_values(self.alpha.kernels, par, s2)
 
 
 @dataclass(frozen=True)
@@ -97,6 +124,26 @@ class DirectedNet(WrappingLaw):
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
         return (self.alpha.r if self.ranges is None else self.ranges,)
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The pair law, once for each range, heard by the agents that have it."""
+        gains = self.law.gains.c1_alpha, self.law.gains.c2_alpha
+        if not isinstance(self.ranges, tuple):
+            return (LawFunction("the pair law", self._with_range(self.ranges), *gains),)
+        agents = {r: tuple(i for i, own in enumerate(self.ranges) if own == r) for r in sorted({*self.ranges})}
+        return tuple(
+            LawFunction("the pair law", self._with_range(r), *gains, listeners=who) for r, who in agents.items()
+        )
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return those of the pair law with the agents' own ranges, and of the law's other parts."""
+        others = (term for term in self.law.terms if not isinstance(term, PairTerm))
+        return (*map(function_feature, self.functions), *(one for term in others for one in term.features()))
+
+    def _with_range(self, r: float | None) -> DistanceFunction:
+        """Return the pair law with another range; its bump ends there, its distance d stays."""
+        return self.alpha if r is None else Reaching(self.alpha, r)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
-from math import pi
+from math import inf, pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import scaled_fields
 from flockana.kernels import force as kernel
 from flockana.kernels.listed import no_energy
+from flockana.laws.features import Feature
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, Derivatives, TermKernel
 from flockana.laws.wrapped import Step, View, Wrapper, input_of, normal_numbers
@@ -137,6 +138,13 @@ class Disturbed(Wrapper):
     def _called(self, t: float) -> Any:
         """Return the force alone at a time, a function of time called; None without one."""
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return those of the law, and how fast the push changes; None of a function of time."""
+        times = [inf, *np.diff([] if self.times is None else self.times)]
+        swings = 0.25 / self.frequency if self.swing is not None and self.frequency > 0.0 else inf
+        width = None if callable(self.force) else float(min(swings, *times))
+        return (*super().features(), Feature("the disturbance", "time", width))
 
     def push(self, t: float) -> FloatArray:
         """Return w(t) without its noise, shape (m,) or (n, m); 0 without a force."""

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_returned_array, ensure_state
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_fits,
+    ensure_points,
+    ensure_returned_array,
+    ensure_state,
+)
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
+from flockana.interactions.functions import LawFunction, PairCorner, UnknownEdges
 from flockana.interactions.pair import PairInteraction
+from flockana.laws.features import Feature, Unknown
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -105,6 +115,65 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     def terms(self) -> tuple[Term, ...]:
         """Terms of a law that is a sum of terms; empty for other laws."""
         return ()
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """Functions of the distance of two agents that the law reads: pair laws, nets, weights, link potentials.
+
+        Whoever needs facts about a law's functions asks all of them here, through wrappers and schemes too. A law or a
+        term that does not say what it reads has an entry without a function.
+        """
+        return tuple(function for part in self._parts() for function in part.functions)
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return the narrowest features of all parts: functions of the distance, obstacles, γ-agents."""
+        return tuple(feature for part in self._parts() for feature in part.features())
+
+    def _parts(self) -> Iterator[Any]:
+        """Yield the terms, or the inner law, that say what the law reads, and what says nothing of it."""
+        inner = vars(self).get("law")
+        wraps = isinstance(inner, LawOfMotion)
+        parts = (inner,) if wraps else self.terms
+        for part in parts:
+            says = wraps or overrides_consistently(type(part), "functions", ("act",))
+            yield part if says else Unknown(type(part).__name__)
+        ours = type(self).__module__.startswith("flockana.")
+        told = ours if wraps else bool(parts) and overrides_consistently(type(self), "terms", ("flow", "step"))
+        if not told:
+            yield Unknown(type(self).__name__)
+
+    def corners_at(self, q: Any, tolerance: float = 1e-9) -> tuple[PairCorner, ...]:
+        """Return the pairs that stand where a function that the law reads jumps or bends.
+
+        Parameters
+        ----------
+        q : array_like, shape (n, m)
+            Positions.
+        tolerance : float
+            Relative: how near a distance must be.
+
+        Returns
+        -------
+        tuple of PairCorner
+            Pair, distance, name of the function and the corner: a jump or a kink of its force or its adjacency, with
+            values or slopes on both sides. A law that does not say what it reads has corners at its `surfaces`.
+
+        Examples
+        --------
+        >>> from flockana.interactions import pair_law
+        >>> from flockana.laws.olfati_saber import Algorithm1
+        >>> spring = pair_law("s*Abs(s - d)", adjacency=0, range=3.0, length=2.0)
+        >>> [(corner.i, corner.j, str(corner.corner)) for corner in Algorithm1(spring).corners_at([[0.0], [2.0]])]
+        [(0, 1, 'the force jumps at s = 2, from 2 to -2')]
+        """
+        q = ensure_points("q", q)
+        functions = self.functions
+        pairs = [pair for function in functions for pair in function.pairs_at_corners(q, tolerance)]
+        if not functions or any(function.function is None for function in functions):
+            radii = {float(one) for surface in self.surfaces for one in np.ravel(surface)}
+            surfaces = LawFunction(f"the force of {type(self).__name__}", UnknownEdges(tuple(sorted(radii))), 1.0)
+            pairs += surfaces.pairs_at_corners(q, tolerance)
+        return tuple(dict.fromkeys(pairs))
 
     def term(self, kind: type[_Term]) -> _Term | None:
         """The first term of a kind, None if there is none.

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
 
 import sympy as sp
 from flint import arb, fmpq
@@ -314,20 +313,11 @@ def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
     return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
 
 
-class SlopeBound(NamedTuple):
-    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where unknown."""
-
-    left: float
-    right: float
-    force: float
-    adjacency: float
-
-
 def slope_bounds(
     cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
-) -> tuple[SlopeBound, ...]:
-    """Return bounds of the slopes on equal parts of the range, also split at the cuts."""
-    numbers, found = exact_numbers(cut.numbers, eps), []
+) -> Iterator[tuple[float, float, float, float]]:
+    """Yield ends of parts of the range, also split at the cuts, with bounds of |dF/ds| and |da/ds| on each."""
+    numbers = exact_numbers(cut.numbers, eps)
     root = sp.sqrt(1 + EPS * S**2)
     norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
     edges = sorted({r * k / parts for k in range(parts)} | {*places, r})
@@ -338,8 +328,8 @@ def slope_bounds(
         force, order = (main * along, 1) if cut.formula.forces else (main, 2)
         rows = (Enclosed(force.xreplace(numbers), S), order), (Enclosed(weight.xreplace(numbers), S), 1)
         ends = fmpq(*left.as_integer_ratio()), fmpq(*right.as_integer_ratio())
-        found.append(SlopeBound(left, right, *(order * _most(of, order, *ends, 0) for of, order in rows)))
-    return tuple(found)
+        force_slope, fading = (order * _most(of, order, *ends, 0) for of, order in rows)
+        yield left, right, force_slope, fading
 
 
 def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:

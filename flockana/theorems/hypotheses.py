@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from flockana.base.facts import Fact
+from flockana.base.facts import Fact, conjunction
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
-from flockana.interactions.weights import Weight
+from flockana.interactions.functions import DistanceFunction
 from flockana.laws.composition import Composition
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
@@ -122,7 +122,12 @@ def smooth_pair(run: Observed) -> Hypothesis:
     run : Observed
         A run of a law with a pair interaction.
     """
-    fact = Fact("met") if run.law.pair is None else run.law.pair.facts.smooth
+    law = run.law
+    read = {entry.function: entry for entry in law.functions if entry.stiffness != 0.0 or entry.function is None}
+    facts = [_fact_of(function, "smooth", entry.name) for function, entry in read.items()]
+    if law.pair is not None and law.pair not in read:
+        facts.append(law.pair.facts.smooth)
+    fact = facts[0] if len(facts) == 1 else conjunction(facts, "so is each function")
     return hypothesis_from_fact("the pair law is C¹ and vanishes at its range", fact)
 
 
@@ -134,11 +139,18 @@ def weight_nonnegative(run: Observed) -> Hypothesis:
     run : Observed
         A run of a law that may have a pair law and a net of its own.
     """
-    law, name = run.law, "a_ij >= 0 at every distance"
-    net = getattr(law, "net", None) or law.alpha
-    if net is None or law.gains.c2_alpha == 0.0:
+    name = "a_ij >= 0 at every distance"
+    read = [entry for entry in run.law.functions if entry.damping != 0.0 or entry.function is None]
+    if not read:
         return Hypothesis(name, "met", detail="no velocities are averaged")
-    return hypothesis_from_fact(name, net.sign if isinstance(net, Weight) else net.facts.weight)
+    facts = [_fact_of(entry.function, "weight", entry.name) for entry in read]
+    return hypothesis_from_fact(name, facts[0] if len(facts) == 1 else conjunction(facts, "so is each function"))
+
+
+def _fact_of(function: DistanceFunction | None, name: str, whose: str) -> Fact:
+    """Return a fact about a function of the distance that a law reads; assumed if the law does not say which."""
+    fact: Fact = Fact("assumed", f"{whose} is not known") if function is None else getattr(function.facts, name)
+    return fact
 
 
 def positive(run: Observed | Tube, **gains: str) -> Hypothesis:

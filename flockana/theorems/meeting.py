@@ -33,7 +33,7 @@ def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple
     if np.isfinite(least[0]) and contact[0] > -np.inf:
         return least, contact
     with np.errstate(all="ignore"):
-        ends = pair.energy_at(np.array([0.0, pair.length]))
+        ends = pair.energy(np.array([0.0, pair.length]))
     top = contact[0] if contact[0] > -np.inf or contact[1] == -np.inf else float(np.nan_to_num(ends[0], nan=-np.inf))
     seen = least[0] if np.isfinite(least[0]) else float(min(pair.far_potential, np.nanmin(ends)))
     return (seen, seen), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))

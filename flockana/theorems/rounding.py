@@ -71,7 +71,7 @@ def deepest_of(pair: PairInteraction) -> float:
     if isinstance(pair, AlphaInteraction):
         return float(pair.c_star)
     with np.errstate(all="ignore"):
-        sizes = np.abs(pair.energy_at(np.array([0.0, 0.1 * pair.length, pair.length])))
+        sizes = np.abs(pair.energy(np.array([0.0, 0.1 * pair.length, pair.length])))
     return float(np.max([abs(pair.far_potential), *sizes[np.isfinite(sizes)]]))
 
 

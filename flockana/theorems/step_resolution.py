@@ -1,11 +1,14 @@
-"""Whether a run's steps resolve a pair law given by a formula: no feature may hide between the stages of a step.
+"""Whether a run's steps resolve what its law reads: no feature may hide between the stages of a step.
 
-The slopes of force and adjacency are bounded on parts of the range (`FormulaInteraction.slopes`). Over the distances
-that a pair goes through in a step h let ω² = 2 (c1 |F'| + c2 |a'| ‖p_j − p_i‖), and ℓ the way that their distance goes.
-What hides in the step then moves the two by at most (hω)² ℓ. A step with hω <= 2 resolves the law: a feature of width
-w < ℓ changes velocities by at most the share 4 (w/ℓ)². So does a step that hides less than the run's own error.
+A law names the narrowest features of its parts (`law.features()`), through wrappers: lengths that no agent or pair may
+leap over within a step, and times that no step may exceed. Where a function of the distance has slopes, these decide,
+unless its feature does. Over the distances that a pair goes through in a step h let ω² = 2 (c1 |F'| + c2 |a'| ‖p_j −
+p_i‖), and ℓ the way that their distance goes. What hides in the step then moves the two by at most (hω)² ℓ. A step with
+hω <= 2 resolves the law: a feature of width w < ℓ changes velocities by at most the share 4 (w/ℓ)². So does a step that
+hides less than the run's own error. A part that does not say what it reads is not resolved by any step.
 """
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -14,21 +17,14 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import FormulaInteraction
+from flockana.interactions.functions import DistanceFunction, LawFunction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points
+from flockana.laws.features import Feature
 
 NAME = "the steps resolve the law"
 RESOLVED = 2.0  # hω, up to which a step resolves the law
 _PARTS = 64  # of the range
-
-
-class Formula(NamedTuple):
-    """Pair law of a term by its formula, with the gains of force and consensus."""
-
-    pair: FormulaInteraction
-    stiffness: float
-    damping: float
 
 
 class NeededSteps(NamedTuple):
@@ -37,6 +33,7 @@ class NeededSteps(NamedTuple):
     t: FloatArray
     step: FloatArray
     longest: FloatArray
+    part: Any  # (T − 1,) place in `law.features()` of the part that asks for it
 
     @property
     def missed(self) -> Any:
@@ -45,37 +42,78 @@ class NeededSteps(NamedTuple):
 
     @property
     def bound(self) -> float:
-        """Step that would resolve the law wherever its slopes are known; infinite if all steps do."""
+        """Step that would resolve the law wherever its features are known; infinite if all steps do."""
         asked = self.longest[self.missed]
         return float(asked[asked > 0.0].min(initial=np.inf))
 
 
-def formulas_of(law: Any) -> tuple[Formula, ...]:
-    """Return the pair laws among a law's terms that are given by a formula."""
-    found = ((getattr(term, "pair", None), term) for term in getattr(law, "terms", ()))
-    return tuple(
-        Formula(pair, float(getattr(term, "stiffness", 0.0)), float(term.damping))
-        for pair, term in found
-        if isinstance(pair, FormulaInteraction)
-    )
+def unknown_parts(law: Any) -> tuple[str, ...]:
+    """Return the parts of a law that do not say what they read, or how narrow it is."""
+    return tuple(dict.fromkeys(one.name for one in law.features() if one.width is None and not _has_slopes(one)))
+
+
+def _has_slopes(feature: Feature) -> bool:
+    function = None if feature.function is None else feature.function.function
+    return function is not None and type(function).slopes is not DistanceFunction.slopes
 
 
 def demand_of(run: Trajectory, place: float) -> NeededSteps:
-    """Return the steps of a run with the longest ones that its pair laws' slopes allow, positions known to an error."""
+    """Return the steps of a run with the longest ones that its law's features allow, positions known to an error."""
+    t, step = run.path.t, steps_of(run)[1]
+    longest, part = np.full(len(t) - 1, np.inf), np.zeros(len(t) - 1, dtype=np.int64)
+    for number, feature in enumerate(run.law.features()):
+        if feature.of == "time":
+            allowed = np.full(len(step), np.inf if feature.width is None else feature.width)
+        else:
+            allowed = _allowed_by_lengths(run, feature, step, place)
+        part, longest = np.where(allowed < longest, number, part), np.minimum(longest, allowed)
+    return NeededSteps(t, step, longest, part)
+
+
+def _allowed_by_lengths(run: Trajectory, feature: Feature, step: FloatArray, place: float) -> FloatArray:
+    """Return the longest step over each interval that a feature between agents allows."""
+    ways = _largest_speeds(run, pairs=feature.of == "pairs") * step
+    width = 0.0 if feature.width is None else feature.width
+    allowed = np.full(len(step), np.inf)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        short = np.where(ways > width, step * width / ways, np.inf)
+    if not _has_slopes(feature):
+        return short if feature.width is not None else allowed
+    assert feature.function is not None  # it has slopes
+    for k in np.flatnonzero(ways > width):
+        worst = max(_rates(run, feature.function, int(k), float(step[k]), place), default=0.0)
+        if worst > 0.0:
+            allowed[k] = max(RESOLVED / np.sqrt(worst), short[k])
+    return allowed
+
+
+def _largest_speeds(run: Trajectory, *, pairs: bool) -> FloatArray:
+    """Return a bound of the speeds of agents over each interval of a run's path, or of the relative speeds of two."""
+    p = run.path.p - run.path.p.mean(axis=1, keepdims=True) if pairs else run.path.p
+    speed = lengths(p).max(axis=1, initial=0.0) * (2.0 if pairs else 1.0)
+    return np.maximum(speed[1:], speed[:-1])
+
+
+def _rates(run: Trajectory, function: LawFunction, k: int, step: float, place: float) -> Iterator[float]:
+    """Yield the largest ω² of pairs from which a step over an interval may hide more than the error of positions."""
     t, q, p, u, slack = run.path
-    step, longest = steps_of(run)[1], np.full(len(t) - 1, np.inf)
-    for formula in formulas_of(run.law):
-        for k in range(len(t) - 1):
-            points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-            if slack is not None:
-                reach, allowance = reach + slack[k], allowance + slack[k]
-            for i, j in pair_blocks(q[k], formula.pair.range + 2.0 * float(reach.max())):
-                rate, way = _hidden(formula, points[j] - points[i], allowance[i] + allowance[j], t[k + 1] - t[k])
-                way = way * step[k] / (t[k + 1] - t[k])
-                hides = rate * step[k] ** 2 * way > place
-                worst = float(rate.max(where=hides, initial=0.0))
-                longest[k] = min(longest[k], RESOLVED / np.sqrt(worst) if worst > 0.0 else np.inf)
-    return NeededSteps(t, step, longest)
+    span = t[k + 1] - t[k]
+    points, reach, allowance = control_points(span, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+    if slack is not None:
+        reach, allowance = reach + slack[k], allowance + slack[k]
+    for i, j in _pairs(function, q[k], 2.0 * float(reach.max())):
+        rate, way = _hidden(function, points[j] - points[i], allowance[i] + allowance[j], span)
+        rate = rate / len(q[k]) if function.mean else rate
+        yield float(rate.max(where=rate * step * step * (way * step / span) > place, initial=0.0))
+
+
+def _pairs(function: LawFunction, q: FloatArray, margin: float) -> Any:
+    """Return blocks of the pairs between which a function acts, or may within an interval."""
+    if function.edges is not None:
+        return [np.array(function.edges, dtype=np.int32).reshape(-1, 2).T]
+    assert function.function is not None
+    reach = function.function.range + margin
+    return pair_blocks(q, reach) if np.isfinite(reach) else [np.triu_indices(len(q), 1)]
 
 
 def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
@@ -89,24 +127,27 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     return steps, steps[at]
 
 
-def _hidden(formula: Formula, apart: FloatArray, allowance: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
     """Return ω² of each pair over an interval, from its relative control points, and how far its distance moves."""
+    assert of.function is not None
     sides, ends = lengths(np.diff(apart, axis=1)).sum(axis=1) + 2.0 * allowance, lengths(apart[:, [0, -1]])
-    middle, edges = 0.5 * ends.sum(axis=1), _table(formula.pair)[0]
+    middle, table = 0.5 * ends.sum(axis=1), _table(of.function)
+    edges = table[0]
     first = np.clip(np.searchsorted(edges, middle - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
     last = np.clip(np.searchsorted(edges, middle + 0.5 * sides, side="left") - 1, first, len(edges) - 2)
-    force, weight = (most[first, last] for most in _table(formula.pair)[1:])
+    force, adjacency = (most[first, last] for most in table[1:])
     speed = 2.0 * sides / time
     with np.errstate(invalid="ignore"):  # an unknown slope without a gain or a motion moves nothing
-        parts = np.nan_to_num([formula.stiffness * force, formula.damping * weight * speed], nan=0.0, posinf=np.inf)
-    out = middle - 0.5 * sides >= formula.pair.range
+        parts = np.nan_to_num([of.stiffness * force, of.damping * adjacency * speed], nan=0.0, posinf=np.inf)
+    out = middle - 0.5 * sides >= of.function.range
     return np.where(out, 0.0, 2.0 * parts.sum(axis=0)), sides
 
 
 @lru_cache(maxsize=64)
-def _table(pair: FormulaInteraction) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _table(function: DistanceFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return edges of parts of the range, and the largest slopes of force and adjacency from part to part."""
-    bounds = pair.slopes(_PARTS)
+    bounds = function.slopes(_PARTS)
+    assert bounds is not None
     edges = np.array([*(bound.left for bound in bounds), bounds[-1].right])
     return edges, _from_to([bound.force for bound in bounds]), _from_to([bound.adjacency for bound in bounds])
 
@@ -118,14 +159,20 @@ def _from_to(values: list[float]) -> FloatArray:
 
 
 def unresolved(run: Trajectory, place: float) -> str:
-    """Return where a run's steps may leap over a feature of its pair law, in words; empty if they resolve it."""
-    if not formulas_of(run.law):
+    """Return where a run's steps may leap over a feature of its law, in words; empty if they resolve it."""
+    law: Any = run.law
+    if unknown := unknown_parts(law):
+        return f"how fast {unknown[0]} changes is not known, and so whether steps resolve it"
+    needed = demand_of(run, place)
+    if not (missed := needed.missed).size:
         return ""
-    found = demand_of(run, place)
-    if not (missed := found.missed).size:
-        return ""
-    k = int(missed[np.argmin(found.longest[missed])])
-    where = f"at t = {found.t[k]:.4g} a pair is at distances where"
-    if found.longest[k] == 0.0:
-        return f"{where} the slope of the pair law has no bound"
-    return f"{where} the pair law asks for steps of {found.longest[k]:.2g} at most; the step is {found.step[k]:.2g}"
+    k = int(missed[np.argmin(needed.longest[missed])])
+    feature = law.features()[needed.part[k]]
+    where = f"at t = {needed.t[k]:.4g} a pair is at distances where"
+    if feature.of == "time":
+        where = "at all times"
+    elif not _has_slopes(feature):
+        where = f"at t = {needed.t[k]:.4g}"
+    if needed.longest[k] == 0.0:
+        return f"{where} the slope of {feature.name} has no bound"
+    return f"{where} {feature.name} asks for steps of {needed.longest[k]:.2g} at most; the step is {needed.step[k]:.2g}"

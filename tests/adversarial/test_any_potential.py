@@ -75,8 +75,8 @@ def test_two_agents_beside_the_energy_of_a_meeting(off, above, unit):
 def test_two_agents_beside_the_energy_of_parting(share, name):
     """Two at rest distance that part with E beside ψ(r) − L: below it they stay a flock, above it that is open."""
     alpha, _ = pair(name)
-    room = alpha.far_potential - float(alpha.energy_at(np.linspace(0.5, 1.6, 20001)).min())
-    rest = float(np.linspace(0.5, 1.6, 20001)[alpha.energy_at(np.linspace(0.5, 1.6, 20001)).argmin()])
+    room = alpha.far_potential - float(alpha.energy(np.linspace(0.5, 1.6, 20001)).min())
+    rest = float(np.linspace(0.5, 1.6, 20001)[alpha.energy(np.linspace(0.5, 1.6, 20001)).argmin()])
     speed = sqrt(share * room)
     law = Algorithm1(alpha, Gains(c1_alpha=1.0, c2_alpha=1e-6))
     case = Case(law, [[0.0], [rest]], [[-speed], [speed]], 0.3)

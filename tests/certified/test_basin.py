@@ -19,7 +19,7 @@ def energy(basin, x):
     law, c1 = basin.law, 0.0 if basin.law.target is None else basin.law.gains.c1_gamma
     i, j = np.triu_indices(len(x), 1)
     lengths = np.linalg.norm(x[j] - x[i], axis=1)
-    return law.gains.c1_alpha * float(law.alpha.energy_at(lengths).sum()) + 0.5 * c1 * float((x**2).sum())
+    return law.gains.c1_alpha * float(law.alpha.energy(lengths).sum()) + 0.5 * c1 * float((x**2).sum())
 
 
 def force(basin, x):

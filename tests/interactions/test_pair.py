@@ -46,9 +46,9 @@ def test_bad_parameters(cls, options, message):
 
 
 def test_what_a_pair_law_must_define():
-    wanted = {"energy_at", "far_potential", "length", "panels", "par", "range", "strength"}
+    wanted = {"far_potential", "length", "panels", "par", "range", "strength"}
     assert PairInteraction.__abstractmethods__ == wanted
-    assert all(isinstance(vars(PairInteraction)[name], property) for name in wanted - {"energy_at"})
+    assert all(isinstance(vars(PairInteraction)[name], property) for name in wanted - {"range"})
 
 
 def test_defaults_are_the_papers():

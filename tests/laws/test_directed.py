@@ -75,7 +75,7 @@ def test_the_followers_energy_falls_as_algebra_says():
     run = simulate(law, [[0.0], [6.5]], [[0.5], [1.0]], (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 401), rtol=1e-11)
     slip, length = run.p[:, 0, 0] - run.p[:, 1, 0], run.q[:, 1, 0] - run.q[:, 0, 0]
     alpha, gains = law.alpha, law.law.gains
-    own = gains.c1_alpha * alpha.energy_at(length) + 0.5 * slip**2
+    own = gains.c1_alpha * alpha.energy(length) + 0.5 * slip**2
     rate = -gains.c2_alpha * alpha.adjacency(alpha.sigma_norm(length)) * slip**2
     lost = np.trapezoid(rate, run.t)
     assert own[-1] - own[0] == pytest.approx(lost, rel=1e-3)

@@ -77,7 +77,7 @@ def test_a_strong_pull_leaves_no_contact_at_d_1():
     assert dead_zone_pairs.is_contact(values) is False
     place = dead_zone_pairs.rest_below(values)
     pair = DeadZoneInteraction(k1=50.0, ramp=0.0)
-    assert pair.force(float(place.lower())) < 0.0 < pair.force(float(place.upper()))
+    assert pair.force(float(place.lower())) > 0.0 > pair.force(float(place.upper()))
     assert 1.93 < float(place.mid()) < 1.94
     edge = pair.d1**2 * np.sqrt(1.0 + pair.eta * pair.d1**2)
     least = (2.0 * pair.k_r + pair.k_delta * pair.d1**2) / edge  # of k₁: from there on no contact at d₁
@@ -122,7 +122,7 @@ def test_the_constants_are_those_of_the_default_law():
 def test_the_force_of_a_pair_is_at_most_that_just_below_r():
     for pair in (HARD, DeadZoneInteraction()):
         most = enclosed(symbolic.jumps()["r"][0], dead_zone_pairs.balls(dead_zone_pairs.defaults())).real
-        force = pair.force(np.linspace(0.1, np.nextafter(15.0, 0.0), 300))
+        force = -pair.force(np.linspace(0.1, np.nextafter(15.0, 0.0), 300))
         assert force.max() == pytest.approx(float(most), rel=1e-12)
 
 

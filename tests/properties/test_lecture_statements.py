@@ -53,11 +53,11 @@ def test_the_floor_of_lecture_07_passes_c_star_at_23():
 def test_the_law_of_lecture_11_repels_below_d_and_attracts_from_there_to_r():
     formula = "k/2*((r**2-s**2)**4/4 - (r**2-d**2)*(r**2-s**2)**3/3 + (r**2-d**2)**4/12)"
     well = fl.pair_law(formula, adjacency="(1 - s/r)**2", range=3.0, length=2.0, parameters={"k": 0.01})
-    assert np.all(well.force(np.linspace(0.05, 1.99, 99)) < 0.0)
-    assert np.all(well.force(np.linspace(2.01, 2.99, 99)) > 0.0)
+    assert np.all(well.force(np.linspace(0.05, 1.99, 99)) > 0.0)
+    assert np.all(well.force(np.linspace(2.01, 2.99, 99)) < 0.0)
     s = np.array([0.5, 1.0, 2.5, 2.9])
-    assert np.allclose(well.force(s), 0.01 * s * (s**2 - 4.0) * (9.0 - s**2) ** 2)
-    assert math.isclose(well.energy_at(3.0) - well.energy_at(2.0), 0.01 * 5.0**4 / 24.0, rel_tol=1e-12)
+    assert np.allclose(-well.force(s), 0.01 * s * (s**2 - 4.0) * (9.0 - s**2) ** 2)
+    assert math.isclose(well.energy(3.0) - well.energy(2.0), 0.01 * 5.0**4 / 24.0, rel_tol=1e-12)
 
 
 def test_connectedness_bounds_positions_and_a_level_set_does_not():

@@ -179,7 +179,7 @@ def test_other_pair_laws_name_their_proofs_or_are_assumed():
     assert {Changed().facts.smooth.status, DeadZoneInteraction().facts.weight.status} == {"assumed"}
     assert Proved().facts.smooth == Fact("met", "a theorem of ours")
     assert (Proved().facts.weight.status, Proved().facts.inside.status) == ("met", "assumed")
-    assert RationalWeight().sign.status == "met"
+    assert RationalWeight().facts.weight.status == "met"
 
 
 def test_facts_are_those_of_the_numbers():
@@ -199,7 +199,7 @@ def test_together():
 def test_slopes_are_bounded_on_parts_of_the_range(law):
     """Against differences: never below them, and within a factor of 3 of the largest."""
     s = np.linspace(1e-3, law.range * (1.0 - 1e-9), 40001)
-    force, weight = (np.abs(np.diff(of(s)) / np.diff(s)) for of in (law.force, law.weight))
+    force, weight = (np.abs(np.diff(of(s)) / np.diff(s)) for of in (law.force, law.adjacency))
     for bound in law.slopes(16):
         inside = (s[:-1] >= bound.left) & (s[1:] <= bound.right)
         for most, seen in ((bound.force, force[inside].max()), (bound.adjacency, weight[inside].max())):

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana.interactions.functions import LawFunction
 from flockana.theorems import Claim
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
-from flockana.theorems.step_resolution import NAME, Formula, _hidden, demand_of, steps_of
+from flockana.theorems.step_resolution import NAME, _hidden, demand_of, steps_of
 
 SPIKE = "exp(-((s - 2.05)*width)**2)"
 FORMULA = f"0.1*(r - s)**2*(s - 1)**2 + barrier*{SPIKE}", f"(1 - s/r)**2*(1 + brake*{SPIKE})"  # for all, compiled once
@@ -61,7 +62,7 @@ def test_slopes_count_where_the_pair_is():
     pair = fl.pair_law("0.01*(r - s)**2/s", adjacency="(1 - s/r)**2", range=3.0, length=1.0)
     apart = np.zeros((3, 6, 3))
     apart[:, :, 0] = [[0.001], [2.5], [3.5]]
-    rates, ways = _hidden(Formula(pair, 1.0, 1.0), apart, np.zeros(3), 1.0)
+    rates, ways = _hidden(LawFunction("the pair law", pair, 1.0, 1.0), apart, np.zeros(3), 1.0)
     assert rates[0] > 2e6
     assert rates[1] == pytest.approx(2.0 * 0.01152, rel=0.1)
     assert (rates[2], *ways) == (0.0, 0.0, 0.0, 0.0)

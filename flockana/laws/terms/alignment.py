@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import pair_matrix
 from flockana.interactions.weights import Weight
 from flockana.kernels.listed import no_energy
@@ -44,6 +45,11 @@ class AlignmentTerm(Term):
     def _gain(self, n: int) -> float:
         """Return the gain g, divided by n if the consensus is a mean."""
         return self.gain / n if self.mean else self.gain
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The weight."""
+        return (LawFunction("the alignment weight", self.weight, 0.0, self.gain, mean=self.mean),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         gain, r = self._gain(len(q)), self.weight.range

@@ -25,6 +25,7 @@ class AlongVelocity(Term):
     moving: bool = False
 
     idle: ClassVar[bool] = True
+    functions = ()
 
     @property
     def centre_decouples(self) -> bool:

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import ClassVar
 
 from flockana.base.checks import FloatArray
+from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.listed import no_energy
 from flockana.laws.terms.pairs import PairTerm
@@ -26,6 +27,11 @@ class Consensus(Term):
     @cached_property
     def _pairs(self) -> PairTerm:
         return PairTerm(self.net, 0.0, self.damping)
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The net, of which the adjacency alone is read."""
+        return (LawFunction("the consensus net", self.net, 0.0, self.damping),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         return self._pairs.act(t, q, p, u)

@@ -10,6 +10,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.copies import Copies
 from flockana.interactions import Gains
 from flockana.interactions.gains import weighted
+from flockana.laws.features import Feature, target_feature
 from flockana.laws.terms.term import Term
 
 
@@ -25,6 +26,11 @@ class CopiesTerm(Term):
     gains: Gains
 
     invariance = "none"
+    functions = ()
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return how fast the copies move."""
+        return (target_feature(self.copies),)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         if self.copies.shape[1] != m:

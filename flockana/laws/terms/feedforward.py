@@ -9,6 +9,7 @@ from flockana.base.checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.kernels import own as kernel
 from flockana.kernels.listed import no_energy
+from flockana.laws.features import Feature, target_feature
 from flockana.laws.terms.term import Term, TermKernel
 
 
@@ -24,6 +25,11 @@ class TargetFeedforward(Term):
     moving: bool = False
 
     conservative: ClassVar[bool] = False  # it pushes agents at rest, and is no gradient of the energy
+    functions = ()
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return how fast the γ-agent turns."""
+        return (target_feature(self.target),)
 
     @property
     def path(self) -> Harmonic:

@@ -10,8 +10,10 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Harmonic, Target
+from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.neighbours import pair_list
+from flockana.laws.features import Feature, target_feature
 from flockana.laws.law import block_diagonal
 from flockana.laws.terms.term import Derivatives, Term
 
@@ -35,6 +37,15 @@ class Leaders(Term):
 
     conservative: ClassVar[bool] = False  # a leader that moves drags and bends those at rest
     invariance = "none"
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The adjacency within the groups."""
+        return (LawFunction("the net of each group", self.pair, 0.0, self.damping),)
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return the net of each group, and how fast the leaders turn."""
+        return (*super().features(), *map(target_feature, self.leaders))
 
     @cached_property
     def members(self) -> tuple[npt.NDArray[np.int64], ...]:

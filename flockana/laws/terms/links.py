@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
 from flockana.laws.terms.term import Derivatives, Term
 
@@ -24,6 +25,11 @@ class LinkTerm(Term):
     def _ends(self) -> tuple[np.ndarray, np.ndarray]:
         ends = np.array(self.links, dtype=np.int32).reshape(-1, 2)
         return np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The pair law along the links."""
+        return (LawFunction("the link potential", self.pair, self.stiffness, self.damping, edges=self.links),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         par = self.pair.par

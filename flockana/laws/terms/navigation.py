@@ -11,6 +11,7 @@ from flockana.base.overrides import overrides_consistently
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel
+from flockana.laws.features import Feature, target_feature
 from flockana.laws.terms.term import Invariance, Term, TermKernel
 from flockana.measures.frame import moving_frame
 
@@ -45,6 +46,12 @@ class Navigation(Term):
     gains: Gains
     unit: float | None = None
     given: bool = False
+
+    functions = ()
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return how fast the γ-agent turns."""
+        return (target_feature(self.target),)
 
     @property
     def moving(self) -> bool:  # noqa: D102

@@ -7,7 +7,9 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
+from flockana.interactions import BetaInteraction
 from flockana.kernels.bodies import body_numbers
+from flockana.laws.features import Feature
 from flockana.laws.terms.term import Invariance, Term, TermKernel
 
 _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels
@@ -47,6 +49,13 @@ class ObstacleTerm(Term):
     field: ObstacleField
     stiffness: float
     damping: float
+
+    functions = ()
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return the layer around the obstacles in which repulsion and braking fall to 0."""
+        known = type(self.field.beta) is BetaInteraction
+        return (Feature("the obstacles' repulsion", "agents", self.field.beta.d if known else None),)
 
     @property
     def invariance(self) -> Invariance:

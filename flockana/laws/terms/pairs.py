@@ -7,6 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.listed import listed_numbers
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
@@ -48,6 +49,11 @@ class PairTerm(Term):
     pair: PairInteraction
     stiffness: float
     damping: float
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The pair law."""
+        return (LawFunction("the pair law", self.pair, self.stiffness, self.damping),)
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if two agents coincide whose force has no limit there."""

@@ -6,12 +6,14 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.interactions.functions import LawFunction
 from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
 from flockana.kernels.listed import Listed
 from flockana.kernels.runge_kutta import System
 from flockana.kernels.verlet import SKIN, lister
+from flockana.laws.features import Feature, Unknown, function_feature
 
 Derivatives = tuple[Any, Any]  # (∂u/∂q, ∂u/∂p), sparse or as blocks
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
@@ -109,6 +111,15 @@ class Term(ABC):
     def centre_decouples(self) -> bool:
         """Whether shape and centre of mass decouple: the term's forces cancel, or are one linear pull or drag."""
         return self.invariance == "rigid motions"
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """Functions of the distance of two agents that the term reads; a term that reads none says so by ()."""
+        return Unknown(type(self).__name__).functions
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return the narrowest features of what the term reads: of its functions, unless it has others."""
+        return tuple(map(function_feature, self.functions))
 
     @property
     def moving(self) -> bool:

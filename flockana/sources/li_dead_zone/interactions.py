@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import asinh, exp, inf, sinh, sqrt
 from typing import Any, ClassVar, NamedTuple
 
@@ -70,9 +71,9 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
     Examples
     --------
     >>> pair = DeadZoneInteraction()
-    >>> pair.d1, pair.d2, pair.force([3.5, 8.0, 15.0]).tolist()
-    (3.5, 12.5, [0.035, 0.08, 0.0])
-    >>> [round(float(psi), 3) for psi in pair.psi([1e-3, 3.5, 8.0, 15.0, 99.0])]
+    >>> pair.d1, pair.d2, pair.force([3.5, 8.0, 15.0]).round(12).tolist()
+    (3.5, 12.5, [-0.035, -0.08, 0.0])
+    >>> [round(float(energy), 3) for energy in pair.energy([1e-3, 3.5, 8.0, 15.0, 99.0])]
     [2926.738, 0.061, 0.32, 5.589, 5.589]
     """
 
@@ -87,7 +88,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
     ramp: float = 0.25
 
     kernels = _DEAD_ZONE
-    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("action", "force", "psi", "energy_at")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("action", "force", "energy", "values")}
     units: ClassVar[Mapping[str, Powers]] = dict.fromkeys(("r", "r_b", "delta", "r_d", "ramp"), (1, 0)) | {
         "k_r": (2, -2),
         "k_delta": (0, -2),
@@ -150,13 +151,20 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
 
     @property
+    def seams(self) -> tuple[float, ...]:
+        """Ends of the dead zone and of the ramps beside it, and the range."""
+        edges = {self.d1 - self.ramp, self.d1, self.d2, self.d2 + self.ramp}
+        return tuple(sorted({self.r, *(s for s in edges if s < self.r)}))
+
+    @property
+    def feature(self) -> float:
+        """Length of the shortest of repulsion, dead zone and attraction."""
+        return min(b - a for a, b in pairwise((0.0, *self.surfaces)))
+
+    @property
     def strength(self) -> float:
         """Unit of force: `contact_force`, the force at the end of repulsion."""
         return self.contact_force
-
-    def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return `psi` at each distance."""
-        return self.psi(lengths)
 
     @cached_property
     def far_potential(self) -> float:
@@ -195,16 +203,8 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         """Return f(ρ), the paper's φ_z without its direction; negative repels."""
         return evaluate(_ACTION, s, self.par)
 
-    def force(self, s: Any) -> Any:
-        """Return F(ρ), the force between two agents along their line; negative repels."""
-        return evaluate(_FORCE, s, self.par)
-
-    def psi(self, s: Any) -> Any:
-        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0."""
-        return evaluate(_POTENTIAL, s, self.par, self.panels)
-
     def jumps(self) -> tuple[Jump, ...]:
-        """Return discontinuities of F: at r, and without a ramp at both ends of the dead zone."""
+        """Return discontinuities of the source's F = dψ/dρ > 0 that attracts: at r, without a ramp at d₁ and d₂ too."""
         jumps = []
         for name, where in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
             below, above = _FORCE(np.nextafter(where, [0.0, inf]), self.par).tolist()

@@ -30,9 +30,9 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, ax: Axes | None = None)
     edges = [0.7 * interaction.d1, *(x for x in (interaction.d1, interaction.d2, interaction.r) if x < far), far]
     for left, right in pairwise(edges):  # piece by piece: a jump is no steep line
         x = np.linspace(np.nextafter(left, far), np.nextafter(right, 0.0), _SAMPLES)
-        ax.plot(x, interaction.force(x), color=BLUE, linestyle="-")
+        ax.plot(x, -interaction.force(x), color=BLUE, linestyle="-")
     for jump in interaction.jumps():
-        taken = float(interaction.force(jump.distance))
+        taken = -float(interaction.force(jump.distance))
         for value in (jump.below, jump.above):
             face = BLUE if abs(value - taken) <= 1e-9 * interaction.contact_force else "white"
             ax.plot(jump.distance, value, "o", color=BLUE, markerfacecolor=face, markersize=5, zorder=3)

@@ -15,6 +15,7 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
+from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.laws.gained import GainedLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -23,19 +24,38 @@ from flockana.laws.terms.term import Term
 MIN_DISTANCE, FACTOR = 0.05, 10.0
 
 
-def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
-    """Return the push's part of Σ_j φ_α n_ij, for each pair closer than min_distance.
+@dataclass(frozen=True)
+class Push(DistanceFunction):
+    """Part that the push adds to φ_α n_ij, within its own range."""
 
-    Returns ndarray, shape (n, m) It sums to zero over the agents.
-    """
-    f = np.zeros_like(q)
+    alpha: AlphaInteraction
+    min_distance: float
+    factor: float
+
+    @property
+    def range(self) -> float:
+        """Distance below which the push acts."""
+        return self.min_distance
+
+    @property
+    def feature(self) -> float:
+        """The range: below it the push falls to 0 with the distance."""
+        return self.min_distance
+
+    def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
+        eps, factor, phi = self.alpha.eps, self.factor, self.alpha.phi_alpha(self.alpha.sigma_norm(np.sqrt(s2)))
+        weight = phi * (factor / np.sqrt(1.0 + eps * factor**2 * s2) - 1.0 / np.sqrt(1.0 + eps * s2))
+        return weight, np.zeros_like(s2), np.full_like(s2, np.nan), np.zeros_like(s2)
+
+
+def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
+    """Return the push's part of Σ_j φ_α n_ij, shape (n, m), for each pair closer than min_distance; it sums to 0."""
+    f, push = np.zeros_like(q), Push(alpha, min_distance, factor)
     for i, j in pair_blocks(q, min_distance):
         if not i.size:
             continue
         delta = q[j] - q[i]
-        s2 = np.sum(delta**2, axis=1)
-        eps, phi = alpha.eps, alpha.phi_alpha(alpha.sigma_norm(np.sqrt(s2)))
-        weight = phi * (factor / np.sqrt(1.0 + eps * factor**2 * s2) - 1.0 / np.sqrt(1.0 + eps * s2))
+        weight = push.inner(np.sum(delta**2, axis=1))[0]
         np.add.at(f, i, weight[:, None] * delta)
         np.subtract.at(f, j, weight[:, None] * delta)
     return f
@@ -51,6 +71,11 @@ class PushTerm(Term):
     factor: float
 
     conservative = False
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The push."""
+        return (LawFunction("the push", Push(self.alpha, self.min_distance, self.factor), self.stiffness),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         f = self.stiffness * extra_push(self.alpha, q, min_distance=self.min_distance, factor=self.factor)

@@ -9,11 +9,12 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.units import Powers
+from flockana.interactions.functions import DistanceFunction, InnerValues
 from flockana.interactions.pair import pair_matrix
 
 
 @dataclass(frozen=True)
-class LogPotential:
+class LogPotential(DistanceFunction):
     """Potential V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, zero at s = d alone and infinite at s = 0.
 
     Parameters
@@ -26,48 +27,47 @@ class LogPotential:
     Examples
     --------
     >>> potential = LogPotential(2.0, 3.0)
-    >>> float(potential.energy(9.0)), float(potential.weight(9.0))
-    (0.0, 0.0)
+    >>> potential.energy(3.0), potential.force(3.0) == 0.0
+    (0.0, True)
     """
 
     strength: float = 1.0
     d: float = 1.0
 
     units: ClassVar[Mapping[str, Powers]] = {"strength": (2, -2), "d": (1, 0)}
+    proofs: ClassVar[Mapping[str, str]] = {"smooth": "V is analytic at s > 0"} | dict.fromkeys(
+        ("weight", "inside"), "the adjacency is 1"
+    )
 
     def __post_init__(self) -> None:
         normalise(self, ensure_positive, "strength", "d")
 
-    def energy(self, s2: Any) -> Any:
-        """Return V at a squared distance.
+    @property
+    def range(self) -> float:
+        """Infinite: the potential is defined at every distance."""
+        return inf
+
+    @property
+    def feature(self) -> float:
+        """Length d, up to which it repels; the attraction beyond has no end."""
+        return self.d
+
+    def energy(self, s: Any) -> Any:
+        """Return V at distances > 0 (see `DistanceFunction`)."""
+        x = self.d**2 / np.square(np.asarray(s, dtype=np.float64))
+        values = self.strength * (x - 1.0 - np.log(x))
+        return float(values) if np.ndim(s) == 0 else values
+
+    def inner(self, s2: FloatArray) -> InnerValues:
+        """Return V′(s)/s, the adjacency 1 of a joined pair, and their slopes by the squared distance.
 
         Parameters
         ----------
-        s2 : float or ndarray
+        s2 : ndarray, shape (L,)
             Squared distances > 0.
         """
-        x = self.d**2 / np.asarray(s2)
-        return self.strength * (x - 1.0 - np.log(x))
-
-    def weight(self, s2: Any) -> Any:
-        """Return V′(s)/s at a squared distance: agent i is pulled by this times q_j − q_i.
-
-        Parameters
-        ----------
-        s2 : float or ndarray
-            Squared distances > 0.
-        """
-        return 2.0 * self.strength * (1.0 - self.d**2 / s2) / s2
-
-    def weight_slope(self, s2: Any) -> Any:
-        """Return the derivative of `weight` by the squared distance.
-
-        Parameters
-        ----------
-        s2 : float or ndarray
-            Squared distances > 0.
-        """
-        return 2.0 * self.strength * (2.0 * self.d**2 / s2 - 1.0) / s2**2
+        rest, one = self.d**2 / s2, np.ones_like(s2)
+        return 2.0 * self.strength * (1.0 - rest) / s2, one, 2.0 * self.strength * (2.0 * rest - 1.0) / s2**2, 0.0 * one
 
     def nearest(self, energy: float) -> float:
         """Return the distance below d at which V has this value.
@@ -80,7 +80,7 @@ class LogPotential:
         Examples
         --------
         >>> potential = LogPotential(2.0, 3.0)
-        >>> round(potential.nearest(float(potential.energy(1.0))), 12)
+        >>> round(potential.nearest(potential.energy(1.0)), 12)
         1.0
         >>> round((3.0 - potential.nearest(4e-18)) / 3.0, 15)  # V is about 2 k (s/d - 1)² there
         1e-09
@@ -105,7 +105,7 @@ def net_forces(
 ) -> float:
     """Add the forces along given edges to u, unchecked, and return their power −k₂ Σ ‖p_j − p_i‖²."""
     delta, slip = q[j] - q[i], p[j] - p[i]
-    pull = potential.weight(np.einsum("kc,kc->k", delta, delta))[:, None] * delta + damping * slip
+    pull = potential.inner(np.einsum("kc,kc->k", delta, delta))[0][:, None] * delta + damping * slip
     np.add.at(u, i, pull)
     np.subtract.at(u, j, pull)
     return -damping * float(np.sum(slip * slip))
@@ -114,8 +114,8 @@ def net_forces(
 def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: Any, j: Any) -> tuple[Any, Any]:
     """Return (∂u/∂q, ∂u/∂p) of the forces along given edges, sparse."""
     (n, m), delta = q.shape, q[j] - q[i]
-    s2 = np.einsum("kc,kc->k", delta, delta)
-    bend = 2.0 * potential.weight_slope(s2)[:, None, None] * delta[:, :, None] * delta[:, None, :]
-    stiff = potential.weight(s2)[:, None, None] * np.eye(m) + bend
+    stress, _, slope, _ = potential.inner(np.einsum("kc,kc->k", delta, delta))
+    bend = 2.0 * slope[:, None, None] * delta[:, :, None] * delta[:, None, :]
+    stiff = stress[:, None, None] * np.eye(m) + bend
     drag = np.broadcast_to(damping * np.eye(m), stiff.shape)
     return -pair_matrix(i, j, stiff, n), -pair_matrix(i, j, drag, n)

@@ -14,6 +14,8 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
+from flockana.interactions.functions import LawFunction, Within
+from flockana.laws.features import Feature, function_feature
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import ensure_apart
@@ -38,6 +40,10 @@ class _MatchingLaw(Law):
     def __post_init__(self) -> None:
         ensure_kind("potential", self.potential, LogPotential, "LogPotential(strength, d)")
         normalise(self, ensure_positive, "k2")
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return those of the potential."""
+        return tuple(map(function_feature, self.functions))
 
     @property
     def scales(self) -> Scales:
@@ -89,6 +95,11 @@ class FixedNetFlocking(_MatchingLaw):
         normalise(self, ensure_net, "edges")
         super().__post_init__()
 
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The potential along the edges, whose adjacency is 1."""
+        return (LawFunction("the link potential", self.potential, 1.0, self.k2, edges=self.edges),)
+
     @cached_property
     def _joined(self) -> Ends:
         i, j = np.array(self.edges, dtype=np.int64).reshape(-1, 2).T
@@ -109,7 +120,7 @@ class FixedNetFlocking(_MatchingLaw):
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         i, j = self._joined
         delta, v = q[j] - q[i], moving_frame(p)
-        return float(np.sum(self.potential.energy(np.sum(delta * delta, axis=1)))) + 0.5 * float(np.sum(v * v))
+        return float(np.sum(self.potential.energy(np.linalg.norm(delta, axis=1)))) + 0.5 * float(np.sum(v * v))
 
 
 @dataclass(frozen=True)
@@ -152,6 +163,11 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
             raise ArgumentError(f"r = {self.r:g}: expected more than d = {self.potential.d:g}, where V is least")
 
     @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """The potential of pairs within R, whose adjacency is 1."""
+        return (LawFunction("the pair potential", Within(self.potential, self.r), 1.0, self.k2),)
+
+    @property
     def surfaces(self) -> tuple[float, ...]:
         """Switching distance R."""
         return (self.r,)
@@ -183,7 +199,7 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         s, v = np.minimum(_distances(q), self.r), moving_frame(p)
-        return float(np.sum(self.potential.energy(s * s))) + 0.5 * float(np.sum(v * v))
+        return float(np.sum(self.potential.energy(s))) + 0.5 * float(np.sum(v * v))
 
 
 def _pairs_within(pieces: Pieces, n: int) -> Ends:

@@ -62,7 +62,7 @@ class LinkKeeping(SumOfTerms):
     def tension(self) -> FormulaInteraction:
         """ψ and the adjacency 1, as a formula."""
         return FormulaInteraction(
-            "k*s**2/(r - s)", adjacency="1", r=self.r, d=0.5 * self.r, parameters=(("k", self.k),)
+            "k*s**2/(r - s)", adjacency_formula="1", r=self.r, d=0.5 * self.r, parameters=(("k", self.k),)
         )
 
     @cached_property

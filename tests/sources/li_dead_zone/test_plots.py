@@ -33,7 +33,7 @@ def test_no_curve_leads_across_a_jump():
     curves = [line.get_xydata() for line in plots.dead_zone_force(pair).lines if len(line.get_xdata()) > 9]
     assert len(curves) == 4
     for curve in curves:
-        assert curve[:, 1] == pytest.approx(pair.force(curve[:, 0]))
+        assert curve[:, 1] == pytest.approx(-pair.force(curve[:, 0]))
         assert np.abs(np.diff(curve[:, 1])).max() < 10.0  # the jump at d1 is 32.6 high
 
 

@@ -23,15 +23,18 @@ def test_the_potential_and_its_derivatives():
     s2, k, d = sp.symbols("s2 k d", positive=True)
     potential = k * (d**2 / s2 - 1 + sp.log(s2 / d**2))
     at = {k: 2, d: sp.Rational(11, 10), s2: sp.Rational(7, 3)}
-    weight = 2 * sp.diff(potential, s2)  # V'/s = 2 dV/d(s²)
-    for found, exact in (
-        (POTENTIAL.energy(7 / 3), potential),
-        (POTENTIAL.weight(7 / 3), weight),
-        (POTENTIAL.weight_slope(7 / 3), sp.diff(weight, s2)),
+    stress = 2 * sp.diff(potential, s2)  # V'/s = 2 dV/d(s²)
+    w, adjacency, slope, fading = POTENTIAL.inner(np.array([7 / 3]))
+    assert (adjacency, fading) == (1.0, 0.0)
+    for computed, exact in (
+        (POTENTIAL.energy(np.sqrt(7 / 3)), potential),
+        (POTENTIAL.force(np.sqrt(7 / 3)), -sp.sqrt(s2) * stress),
+        (w[0], stress),
+        (slope[0], sp.diff(stress, s2)),
     ):
-        assert float(found) == pytest.approx(float(exact.subs(at)), rel=1e-13)
+        assert float(computed) == pytest.approx(float(exact.subs(at)), rel=1e-13)
     for energy in (1e-9, 0.3, 40.0, 1e6):
-        assert float(POTENTIAL.energy(POTENTIAL.nearest(energy) ** 2)) == pytest.approx(energy, rel=1e-6)
+        assert float(POTENTIAL.energy(POTENTIAL.nearest(energy))) == pytest.approx(energy, rel=1e-6)
     assert POTENTIAL.nearest(0.0) == POTENTIAL.d
 
 
@@ -46,7 +49,8 @@ def test_a_pair_slides_where_each_side_drives_it_into_the_other():
     before = np.array([near, far, far, near, near, far], np.int8)
     after = np.array([far, near, near, far, far, far], np.int8)
     law, rest = ProximityFlocking(POTENTIAL, 1.7, 1.5), np.zeros((4, 2))
-    own, drawn = 2.0 * 1.7 * float(POTENTIAL.weight(1.7**2)), 2.0 * 1.9 * float(POTENTIAL.weight(1.9**2 + 0.2**2))
+    length = float(np.hypot(1.9, 0.2))
+    own, drawn = -2.0 * POTENTIAL.force(1.7), -2.0 * POTENTIAL.force(length) * 1.9 / length
     assert drawn > own > 0.0
     said = "agents 0 and 1 slide at distance 1.7 = R: each side drives them into the other"
     assert law.sliding(before, after, 0.0, q, rest) == said

@@ -57,7 +57,7 @@ def _momentum() -> Claim:
 def _own_energy(run: Trajectory) -> FloatArray:
     """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
     apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
-    return run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
+    return run.law.law.gains.c1_alpha * run.law.alpha.energy(np.abs(apart)) + 0.5 * slip**2
 
 
 def _following() -> list[Claim]:

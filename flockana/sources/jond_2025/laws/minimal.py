@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,6 +17,7 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers, scaled_fields, times
 from flockana.base.vectors import lengths
 from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.features import Feature
 from flockana.laws.law import Arrays, Law
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.terms.term import Derivatives
@@ -99,6 +101,13 @@ class MinimalFlocking(Law):
         heard = float(np.max(self.sigma))
         rate = max(float(np.sqrt(np.max(self.mu))), float(heard > 0.0) if self.normalised else heard)
         return Scales(length, 1.0 / rate if rate > 0.0 else 1.0)
+
+    functions = ()  # neighbours are chosen by radii of agents
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return the smallest perception radius; the spring to a neighbour is linear in the distance."""
+        radius = float(np.min(self.radius)) if self.edges is None else inf
+        return (Feature("the perception radii", "pairs", radius),)
 
     @property
     def surfaces(self) -> tuple[PerAgent, ...]:

@@ -18,10 +18,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from scipy.integrate import quad
 
     pair, start = DeadZoneInteraction(k1=0.0), 3.0
-    attraction = float(pair.force(start)) / pair.contact_force
-    level = float(pair.psi(start))
+    attraction = -float(pair.force(start)) / pair.contact_force
+    level = float(pair.energy(start))
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
-    fall = quad(lambda x: 3.0 * x / sqrt(pair.psi(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
+    fall = quad(lambda x: 3.0 * x / sqrt(pair.energy(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
     return [
         of_state("printed", attraction, _ROUNDING, about="all", disproof=PROOF).described(
             computed=fall,

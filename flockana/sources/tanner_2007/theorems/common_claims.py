@@ -48,6 +48,6 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
 
 def out_of_range(seen: Observed) -> Enclosure:
     """Return H(0)/V(R), an upper bound of the number of pairs that can ever leave the range."""
-    far = float(seen.law.potential.energy(seen.law.r**2))
+    far = float(seen.law.potential.energy(seen.law.r))
     energy = seen.energy[0].widened(_energy_error(seen, *np.triu_indices(seen.n, 1)))
     return energy / far if far > 0.0 else Enclosure.of(inf)

@@ -66,7 +66,7 @@ def test_the_energy_rises_by_that_of_who_follows(claims, run):
 def test_of_two_alone_what_follows_loses_its_own_energy(claims, run):
     claim = claims["follower"]
     apart, faster = (z[:, 1, 0] - z[:, 0, 0] for z in (run.q, run.p))
-    own = 30.0 * LAW.alpha.energy_at(apart) + 0.5 * faster**2
+    own = 30.0 * LAW.alpha.energy(apart) + 0.5 * faster**2
     assert own[0] == pytest.approx(0.5, rel=1e-9)
     assert claim.computed == pytest.approx((own - np.minimum.accumulate(own)).max(), abs=1e-12)
     assert claim.witness == {"from": pytest.approx(0.5, rel=1e-9), "to": pytest.approx(own[-1], abs=1e-12)}
@@ -97,6 +97,6 @@ def test_a_leader_that_swerves_a_follower_that_lags_and_a_length_that_is_not_d(r
     claims = {claim.name: claim for claim in directed_nets._claims_on(seen, 1.0)}
     assert claims["leader"].status == "refuted"
     assert claims["leader"].margin == pytest.approx(margin, rel=1e-5)
-    own = 30.0 * float(LAW.alpha.energy_at(np.array([7.0 * scale]))[0]) + 0.5 * (push - lag) ** 2
+    own = 30.0 * float(LAW.alpha.energy(np.array([7.0 * scale]))[0]) + 0.5 * (push - lag) ** 2
     assert claims["follower"].computed == pytest.approx(own, rel=1e-5, abs=1e-9)
     assert claims["follower"].status == ("refuted" if own > 1e-5 else "verified")

@@ -32,7 +32,7 @@ def by_quadrature(pair, s):
     inner = sorted((x for x in marks if min(top, pair.d1) < x < max(top, pair.d1)), reverse=top < pair.d1)
     edges, total = [pair.d1, *inner, top], 0.5 * pair.k1 * pair.d1**2
     for a, b in pairwise(edges):
-        inside = lambda x: pair.force(min(float(x), np.nextafter(pair.r, 0.0)))  # noqa: E731
+        inside = lambda x: -pair.force(min(float(x), np.nextafter(pair.r, 0.0)))  # noqa: E731
         total += quad(inside, a, b, epsabs=1e-13, epsrel=1e-13, limit=200)[0]
     return total
 
@@ -42,7 +42,7 @@ def test_the_potential_is_the_integral_of_the_force(options):
     pair = DeadZoneInteraction(**options)
     for s in (0.01, 0.3, 2.0, 3.2, 3.3, 3.45, 3.5, 5.0, 12.6, 12.75, 14.9, 15.0, 30.0):
         # quad's own floor
-        assert pair.psi(s) == pytest.approx(by_quadrature(pair, s), rel=3e-13, abs=3e-13)
+        assert pair.energy(s) == pytest.approx(by_quadrature(pair, s), rel=3e-13, abs=3e-13)
 
 
 @pytest.mark.parametrize("eta", [0.0, 1e-14, 1e-3, 1.0, 1e6])
@@ -59,18 +59,18 @@ def test_no_digits_are_lost_at_any_eta(eta):
                 else [12.5, s]
             )
             exact = mp.quad(f, points)
-            assert float(abs(pair.psi(float(s)) / exact - 1)) < 2e-14 if s < 3 else True
+            assert float(abs(pair.energy(float(s)) / exact - 1)) < 2e-14 if s < 3 else True
             # next to the edge of the dead zone psi vanishes: relative to (s - edge) F there
-            assert float(abs(pair.psi(float(s)) - exact)) < 1e-15 * max(1.0, 400.0, float(exact))
+            assert float(abs(pair.energy(float(s)) - exact)) < 1e-15 * max(1.0, 400.0, float(exact))
 
 
 def test_it_grows_only_logarithmically_at_zero():
     pair = DeadZoneInteraction()
     # psi(s/10) - psi(s) -> 2 k_r ln 10
-    steps = -np.diff(pair.psi([1e-9, 1e-8, 1e-7]))
+    steps = -np.diff(pair.energy([1e-9, 1e-8, 1e-7]))
     assert steps == pytest.approx(2.0 * 200.0 * np.log(10.0), rel=1e-9)
-    assert pair.psi(0.0) == np.inf
-    assert pair.force(1e-9) == pytest.approx(-400.0 / 1e-9, rel=1e-9)
+    assert pair.energy(0.0) == np.inf
+    assert pair.force(1e-9) == pytest.approx(400.0 / 1e-9, rel=1e-9)
 
 
 @pytest.mark.parametrize("options", CASES[:6])
@@ -81,8 +81,8 @@ def test_slope_of_the_weight_against_differences(options):
         weight, adjacency, slope = pair.kernels.terms(np.array([[0.0], [s]]), one, two, pair.par)[:, 0]
         step = 1e-6 * s * s
         low, high = (np.sqrt(s * s + x) for x in (-step, step))
-        difference = (pair.force(high) / high - pair.force(low) / low) / (2.0 * step)
-        assert (weight, adjacency) == (pytest.approx(pair.force(s) / s, rel=1e-14), 1.0)
+        difference = (pair.force(low) / low - pair.force(high) / high) / (2.0 * step)
+        assert (weight, adjacency) == (pytest.approx(-pair.force(s) / s, rel=1e-14), 1.0)
         assert slope == pytest.approx(difference, rel=1e-6, abs=1e-7)
 
 
@@ -123,9 +123,9 @@ def test_with_a_ramp_only_the_range_jumps():
 def test_least_distance_is_where_repulsion_has_that_potential(eta):
     pair = DeadZoneInteraction(ramp=0.0, k_delta=0.0, k1=0.0, eta=eta)
     for s in (2.0, 0.1, 1e-5):
-        assert pair.least_distance(pair.psi(s)) == pytest.approx(s, rel=1e-12)
+        assert pair.least_distance(pair.energy(s)) == pytest.approx(s, rel=1e-12)
     bare = DeadZoneInteraction(ramp=0.0, k_delta=0.0, k1=0.0, eta=0.0)
-    assert bare.least_distance(bare.psi(0.1)) == pytest.approx(0.1, rel=1e-12)
+    assert bare.least_distance(bare.energy(0.1)) == pytest.approx(0.1, rel=1e-12)
     assert 0.0 < DeadZoneInteraction().least_distance(285_000.0) < 1e-300  # where sinh overflows
 
 

@@ -39,7 +39,7 @@ def transcribed(t, q, p, *, feedforward=True):
             rho = float(np.linalg.norm(q[j] - q[i]))
             if j == i or rho >= 15.0:
                 continue
-            u[i] += LAW.interaction.force(rho) * (q[j] - q[i]) / rho
+            u[i] -= LAW.interaction.force(rho) * (q[j] - q[i]) / rho
             if GROUP[i] == GROUP[j]:
                 u[i] += 0.9 * (p[j] - p[i])
         if i in PINNED:

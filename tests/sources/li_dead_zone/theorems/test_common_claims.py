@@ -94,7 +94,7 @@ def test_one_agent_has_no_distances_and_far_from_the_origin_they_are_less_exact(
 def test_the_bound_is_that_of_the_energy_at_the_start():
     q, p = np.array([[[0.0], [5.0]]] * 2), np.array([[[-3.0], [3.0]]] * 2)
     bound = case.distance_bound(made_up(LAW, q, p), LAW)
-    exact = LAW.interaction.least_distance(9.0 + float(LAW.interaction.psi(5.0)))
+    exact = LAW.interaction.least_distance(9.0 + float(LAW.interaction.energy(5.0)))
     assert bound.lo < exact < bound.hi
     assert bound.half_width == pytest.approx(1e-9 * exact, rel=1e-3, abs=0.0)
 
@@ -133,6 +133,6 @@ def test_one_component_settles_if_its_energy_cannot_break_it():
     q = np.array([[[0.0], [5.0]]] * 2)
     run = made_up(LAW, q)
     claim = case.velocities_match(run, case.final_components(run, LAW), [], name="velocity")
-    share = float(LAW.interaction.psi(5.0)) / LAW.interaction.far_potential
+    share = float(LAW.interaction.energy(5.0)) / LAW.interaction.far_potential
     assert claim.status == "verified"
     assert claim.margin == pytest.approx(1.0 - share, rel=1e-9)

@@ -39,7 +39,7 @@ def test_a_pair_is_bound_by_its_energy(share, distance, certain):
     """n = 2: no pair out of range while H < psi(r), and B = r/2 = 7.5; beyond that nothing is certain."""
     law = DeadZoneFlocking()
     q = np.array([[-4.0, 0.0], [4.0, 0.0], [0.0, distance]])
-    speed = np.sqrt(share * law.interaction.far_potential - law.interaction.psi(8.0))  # each of the two: ½(s² + s²)
+    speed = np.sqrt(share * law.interaction.far_potential - law.interaction.energy(8.0))  # each of the two: ½(s² + s²)
     p = np.array([[speed, 0.0], [-speed, 0.0], [0.0, 1.0]])
     assert components_of(q, p, law).separation.certain is certain
 

@@ -15,7 +15,7 @@ CONTACT = 3.49973  # within 1e-5 of where repulsion and the pull k₁ balance, o
 
 def slope(s, h=1e-6):
     force = LAW.interaction.force
-    return float(force(np.array([s + h]))[0] - force(np.array([s - h]))[0]) / (2.0 * h)
+    return float(force(np.array([s - h]))[0] - force(np.array([s + h]))[0]) / (2.0 * h)
 
 
 @pytest.mark.parametrize(("m", "speed"), [(1, 0.0), (1, 1e-4), (2, 1e-4)])

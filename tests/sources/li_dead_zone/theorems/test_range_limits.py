@@ -30,7 +30,7 @@ def small_flock(seed, n=8, box=9.0):
 def test_the_energy_that_breaks_a_pair_up_is_sharp_but_for_rounding(excess):
     """Without damping the two part if and only if H̄ > ψ̄(r); with it nothing is known from H̄ alone above that."""
     pair = DeadZoneFlocking(k2=1e-3)
-    speed = np.sqrt((1.0 + excess) * FAR - LAW.interaction.psi(CONTACT))
+    speed = np.sqrt((1.0 + excess) * FAR - LAW.interaction.energy(CONTACT))
     run = simulate(pair, [[0.0], [CONTACT]], [[-speed], [speed]], (0.0, 1e-9))  # damping takes 4e-12 of H̄
     status = said("dead-zone-1-printed", run)["velocity"]
     assert status in ("verified", "inconclusive")

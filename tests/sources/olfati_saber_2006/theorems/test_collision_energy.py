@@ -23,12 +23,12 @@ def test_of_another_pair_law_the_least_of_all_pairs_is_taken_off(places, speed):
     law = compose(pair=WELL, consensus=0.5)
     n = len(places)
     s = np.linspace(0.0, 3.0, 4001)
-    least, gain = float(WELL.energy_at(s).min()), law.gains.c1_alpha
+    least, gain = float(WELL.energy(s).min()), law.gains.c1_alpha
     p = np.zeros((2, n, 1))
     p[:, 0], p[:, -1] = speed, -speed
     pairs = [abs(a - b) for k, a in enumerate(places) for b in places[:k]]
-    above = gain * float(WELL.energy_at(np.array(pairs)).sum()) + speed**2 - gain * least * len(pairs)
-    needed = gain * (float(WELL.energy_at(np.array([0.0]))[0]) - least)
+    above = gain * float(WELL.energy(np.array(pairs)).sum()) + speed**2 - gain * least * len(pairs)
+    needed = gain * (float(WELL.energy(np.array([0.0]))[0]) - least)
     verdict = verdict_of(law, *places, p=p)
     for text, times in (("c*", 1.0), ("2 c*", 2.0)):
         found = hypothesis(verdict, f"H(0) < {text}")

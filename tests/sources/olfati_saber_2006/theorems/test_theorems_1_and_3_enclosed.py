@@ -77,7 +77,7 @@ def test_a_flock_that_is_apart_does_not_stay_together(distance):
 
 def test_what_has_the_energy_to_part_has_a_neighbour_in_the_set_that_does():
     """Two have 30 ψ_α(r) at rest out of range, and no less apart: a faster start has that much more."""
-    far = 30.0 * float(LAW.alpha.energy_at(np.array([9.0]))[0])
+    far = 30.0 * float(LAW.alpha.energy(np.array([9.0]))[0])
     fast = hypothesis(verify("os-1", tube_of(0.0, 7.0, speed=sqrt(1.25 * far))), "cohesive dynamic flock")
     assert fast.status == "unmet"
     assert fast.margin == pytest.approx(-0.25 * far, rel=1e-9)

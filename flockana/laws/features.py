@@ -1,0 +1,49 @@
+"""Narrowest features of a law's parts, which the steps of a run must resolve."""
+
+from __future__ import annotations
+
+from math import inf, pi
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from flockana.interactions.functions import LawFunction
+
+if TYPE_CHECKING:
+    from flockana.environment.target import Target
+
+
+class Feature(NamedTuple):
+    """Narrowest rise and fall of one part of a law: over a distance of agents, or in time."""
+
+    name: str  # of the part, in words
+    of: Literal["pairs", "agents", "time"]  # what must not leap over it within a step
+    width: float | None  # in units of length or of time; None if unknown
+    function: LawFunction | None = None  # of the distance of two agents, whose slopes may tell more
+
+
+class Unknown(NamedTuple):
+    """Law or term that does not say what it reads."""
+
+    whose: str
+
+    @property
+    def functions(self) -> tuple[LawFunction, ...]:
+        """An entry without a function."""
+        return (LawFunction(f"what {self.whose} reads", None),)
+
+    def features(self) -> tuple[Feature, ...]:
+        """Return a feature of unknown width."""
+        return tuple(map(function_feature, self.functions))
+
+
+def function_feature(function: LawFunction) -> Feature:
+    """Return the feature of a function of the distance."""
+    width = None if function.function is None else function.function.feature
+    return Feature(function.name, "pairs", width, function)
+
+
+def target_feature(target: Target | Any) -> Feature:
+    """Return the feature in time of a γ-agent: a quarter of the period of a harmonic one."""
+    width, path = getattr(target, "feature", None), getattr(target, "harmonic", None)
+    if width is None and path is not None:
+        width = 0.5 * pi / abs(path.omega) if path.omega else inf
+    return Feature("the γ-agent", "time", width)
