@@ -208,12 +208,14 @@ class DistanceFunction(ABC):
         parts: tuple[tuple[Part, int], ...] = (("force", 0), ("adjacency", 1))
         for k, seam in enumerate(seams):
             for part, row in parts:
-                values, slopes = ([float(side[at][k]) for side in sides] for at in (row, row + 2))
-                way = 4.0 * seam * _BESIDE * (abs(slopes[0]) + abs(slopes[1]))  # a root has steep slopes and no jump
-                if _differ(*values, usual[row]) and not abs(values[1] - values[0]) <= way:
-                    yield Corner(float(seam), part, "jump", *values)
-                elif _differ(*slopes, usual[row + 2]):
-                    yield Corner(float(seam), part, "kink", *slopes)
+                (below, above), (left, right) = (
+                    (float(sides[0][at][k]), float(sides[1][at][k])) for at in (row, row + 2)
+                )
+                way = 4.0 * seam * _BESIDE * (abs(left) + abs(right))  # a root has steep slopes and no jump
+                if _differ(below, above, usual[row]) and not abs(above - below) <= way:
+                    yield Corner(float(seam), part, "jump", below, above)
+                elif _differ(left, right, usual[row + 2]):
+                    yield Corner(float(seam), part, "kink", left, right)
 
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
