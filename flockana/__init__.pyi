@@ -23,7 +23,7 @@ from .dynamics import predicates as predicates
 from .dynamics.simulate import simulate as simulate
 from .dynamics.trajectory import Trajectory as Trajectory
 from .ensemble.campaign import ensemble as ensemble
-from .ensemble.dataset import shares as shares
+from .ensemble.shares import shares as shares
 from .environment.capsule import Capsule as Capsule
 from .environment.copies import Copies as Copies
 from .environment.obstacles import Obstacle as Obstacle

@@ -17,10 +17,10 @@ from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
-from flockana.certified.energies import BITS
 from flockana.certified.flow import Flow, ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
 from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube
 
 _SHORTEST = 1e-7  # of the law's own time: nearer to a switch, it is crossed

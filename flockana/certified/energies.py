@@ -4,36 +4,23 @@ Below the levels no two agents can coincide, or no agent can leave. The counting
 `flockana.equilibria.barrier`, with every length and level enclosed, and each count rounded to the side that is safe.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import combinations
 from math import ceil, floor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flint import arb, arb_series, ctx, fmpq
 
 from flockana.certified.balls import ball, exact, hull, minus, norm2, series_length, square
 from flockana.certified.flow import Flow, Pieces, flow_of, sphere_terms
 from flockana.certified.series import PairNumbers, Piece
+from flockana.certified.structural_energy import BITS, Vectors, pair_energy
+from flockana.certified.tube import Tube
 from flockana.equilibria.barrier import coincident_lattice, turan_pairs
 from flockana.lattice import harborth
-from flockana.laws.olfati_saber import Algorithm2
 
-if TYPE_CHECKING:
-    from flockana.certified.tube import Tube
-
-BITS = 100
 _HALVINGS = 40  # of the bracket of the shortest length of a bound pair
 _ORDER = 12  # of the rate's Taylor polynomials
-Vectors = Sequence[Sequence[arb]]
-
-
-def structural_energy(law: Any, q: Vectors, p: Vectors) -> arb:
-    """Return the energy of Algorithm 1 or 2 in the moving frame, on a box of states."""
-    with ctx.workprec(BITS):
-        total = _pair_energy(law, q) + _inertia(p)
-        return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
 
 
 def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
@@ -42,23 +29,10 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
         area = arb(exact(law.alpha.unit)) ** 2
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
         far = sum(((1 + norm2(minus(x, start)) / area).sqrt() - 1 for x in q), arb(0))
-        total = _pair_energy(law, q) + arb(exact(law.gains.c1_gamma)) * area * far
+        total = pair_energy(law, q) + arb(exact(law.gains.c1_gamma)) * area * far
         for term in sphere_terms(law):
             total += term.stiffness * sum((term.beta.potential(square(term.clearance(x))) for x in q), arb(0))
         return total + sum(map(norm2, p), arb(0)) / 2
-
-
-def _pair_energy(law: Any, q: Vectors) -> arb:
-    """Return c1α V."""
-    squares = (norm2(minus(y, x)) for x, y in combinations(q, 2))
-    return gain(law) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
-
-
-def _inertia(x: Vectors) -> arb:
-    """Return ½ Σ‖x_i − x_c‖²."""
-    columns = list(zip(*x, strict=True))
-    means = [sum(column, arb(0)) / len(x) for column in columns]
-    return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2
 
 
 def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
@@ -92,11 +66,6 @@ def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]
     with series_length(_ORDER + 1):
         total = sum(flow.powers([arb_series(row) for row in path], pieces), arb_series([0]))
         return [total[j] for j in range(_ORDER + 1)]
-
-
-def gain(law: Any) -> arb:
-    """Return c1α, the factor of V."""
-    return arb(exact(law.gains.c1_alpha))
 
 
 def coincident_floor(alpha: Any, n: int, m: int) -> arb:

@@ -16,8 +16,8 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import ensure_sealed
 from flockana.certified.balls import minus, norm
-from flockana.certified.energies import BITS, structural_energy
 from flockana.certified.flow import sphere_terms
+from flockana.certified.structural_energy import BITS, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:

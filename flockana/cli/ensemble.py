@@ -179,7 +179,7 @@ def share_table(table: xarray.Dataset) -> Table:
     """Return a table of the shares of each claim for every combination of parameters."""
     from rich.text import Text
 
-    from flockana.ensemble.dataset import share_cells
+    from flockana.ensemble.shares import share_cells
     from flockana.report.tables import column, headed_table
 
     columns = (column(heading, right=True) for heading in ("runs", "verified, %", "refuted, %", "vac.", "inc."))

@@ -2,8 +2,8 @@
 
 from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.campaign import ensemble
-from flockana.ensemble.dataset import STATUSES, shares
 from flockana.ensemble.phases import PHASES, phases
+from flockana.ensemble.shares import STATUSES, shares
 from flockana.ensemble.store import Store
 
 __all__ = ["PHASES", "STATUSES", "Store", "clopper_pearson", "ensemble", "phases", "shares"]

@@ -3,7 +3,7 @@
 import xarray
 
 from flockana.base.tables import html_table, text_table
-from flockana.ensemble.dataset import share_cells, shares
+from flockana.ensemble.shares import share_cells, shares
 
 _HEADS = ("parameters", "claim", "runs", "verified, %", "refuted, %", "vacuous", "inconclusive")
 

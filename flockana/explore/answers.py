@@ -20,7 +20,7 @@ from flockana.player.marks import marks_of
 from flockana.scenarios.checks import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify
-from flockana.theorems.headline import BYLINES
+from flockana.theorems.claim import BYLINES
 
 Send = Callable[[str, Any], None]  # a kind, and plain data or bytes
 

@@ -32,8 +32,8 @@ from flockana.report.pages import FixedPage, Page, ScenarioPage
 from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.theorems.claim import BYLINES
 from flockana.theorems.errata import FOREWORD, SORTS, errata, erratum_of
-from flockana.theorems.headline import BYLINES
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off

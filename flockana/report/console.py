@@ -15,8 +15,9 @@ from flockana.report.statistics import StatisticsSection
 from flockana.report.tables import FoldingTable, column, headed_table
 from flockana.report.text import MARKS, show
 from flockana.theorems import Verdict
+from flockana.theorems.claim import BYLINES
 from flockana.theorems.errata import SORTS, errata, erratum_of
-from flockana.theorems.headline import BYLINES, merged
+from flockana.theorems.headline import merged
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}

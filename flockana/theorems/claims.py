@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from flockana.theorems.claim import does_not_hold
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import erratum_of, printed
-from flockana.theorems.headline import does_not_hold, overall
+from flockana.theorems.headline import overall
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, Check, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
 

@@ -3,50 +3,42 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from flockana.theorems.theorem import Claim, Status, Verdict
+from flockana.theorems.claim import BYLINES, Claim, Hypothesis, Status, does_not_hold
 
-# whose a claim is, in words
-BYLINES: Mapping[str, str] = {"source": "the source's", "corrected": "corrected", "flockana": "our extension"}
 _SHORT = 60  # characters of a statement that is quoted; a longer one is named
 
 
-def headline(verdict: Verdict) -> str:
+def headline(
+    status: Status, claims: tuple[Claim, ...], further: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]
+) -> str:
     """Return the counts of the author's claims by status, then each correction and extension with its status."""
-    by_author = _counts(verdict, verdict.main_claims)
-    others = sorted(verdict.further_claims, key=lambda claim: claim.by)
-    further = (f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))
-    return "; ".join([by_author, *further])
+    others = sorted(further, key=lambda claim: claim.by)
+    texts = (f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))
+    return "; ".join([_counts(status, claims, hypotheses), *texts])
 
 
-def _counts(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
+def _counts(status: Status, claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
     """The count of the deciding status out of all, then the others."""
     if not claims:
         return "no claim"
-    order = dict.fromkeys((verdict.status, "refuted", "inconclusive", "verified", "vacuous"))
-    found = {status: sum(claim.status == status for claim in claims) for status in order}
-    of = {verdict.status: f" of {len(claims)}"}
-    texts = [f"{count}{of.get(status, '')} {status}" for status, count in found.items() if count]
-    return ", ".join(texts) + (_reason(verdict, claims) if found["vacuous"] else "")
+    order = dict.fromkeys((status, "refuted", "inconclusive", "verified", "vacuous"))
+    counts = {each: sum(claim.status == each for claim in claims) for each in order}
+    of = {status: f" of {len(claims)}"}
+    texts = [f"{count}{of.get(each, '')} {each}" for each, count in counts.items() if count]
+    return ", ".join(texts) + (_reason(claims, hypotheses) if counts["vacuous"] else "")
 
 
-def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
+def _reason(claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
     """Return why claims are vacuous: the first unmet hypothesis, or the claim's own detail."""
     silent = [claim for claim in claims if claim.status == "vacuous"]
-    needs = [need for claim in silent for need in (*claim.needs, *verdict.hypotheses) if need.status == "unmet"]
+    needs = [need for claim in silent for need in (*claim.needs, *hypotheses) if need.status == "unmet"]
     if not needs:
         return f": {silent[0].detail}" if silent[0].detail else ""
     return f": {does_not_hold(needs[0].name)}"
-
-
-def does_not_hold(need: str) -> str:
-    """Return the sentence that a hypothesis does not hold; a name in words is quoted."""
-    return f"{need if re.search('[<>=≤≥]', need) else repr(need)} does not hold"
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:

@@ -4,21 +4,20 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from flockana.theorems.claim import About as About
+from flockana.theorems.claim import By as By
+from flockana.theorems.claim import Claim as Claim
+from flockana.theorems.claim import Decided as Decided
+from flockana.theorems.claim import Hypothesis as Hypothesis
+from flockana.theorems.claim import HypothesisStatus as HypothesisStatus
+from flockana.theorems.claim import Needs as Needs
+from flockana.theorems.claim import Rigour as Rigour
+from flockana.theorems.claim import Status as Status
+from flockana.theorems.claim import does_not_hold, with_alarm
+from flockana.theorems.claim import unmet as unmet
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import does_not_hold
 from flockana.theorems.tolerances import Tolerances as Tolerances
-from flockana.theorems.verdict import About as About
-from flockana.theorems.verdict import By as By
-from flockana.theorems.verdict import Claim as Claim
-from flockana.theorems.verdict import Decided as Decided
-from flockana.theorems.verdict import Hypothesis as Hypothesis
-from flockana.theorems.verdict import HypothesisStatus as HypothesisStatus
-from flockana.theorems.verdict import Needs as Needs
-from flockana.theorems.verdict import Rigour as Rigour
-from flockana.theorems.verdict import Status as Status
 from flockana.theorems.verdict import Verdict as Verdict
-from flockana.theorems.verdict import unmet as unmet
-from flockana.theorems.verdict import with_alarm
 
 Kind = Literal["trajectory", "configuration", "fixed"]
 Known = tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]  # what a theorem says of one case

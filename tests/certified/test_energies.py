@@ -7,8 +7,8 @@ from flint import arb, ctx
 import flockana as fl
 from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.certified import energies as levels
-from flockana.certified.energies import structural_energy
 from flockana.certified.series import PairNumbers
+from flockana.certified.structural_energy import gain, structural_energy
 from flockana.equilibria.barrier import coincident_lattice, collision_bounds
 from flockana.sources.olfati_saber_2006.theorems.any_potential import disconnected_energy
 
@@ -27,7 +27,7 @@ def test_the_balls_are_about_the_bounds_in_floating_point(alpha, m):
 def test_a_state_left_behind_has_the_energy_of_its_lattice_and_none_where_there_is_none():
     law = Algorithm1(gains=Gains(c1_alpha=3.0, c2_alpha=1.0))
     for n, m in ((7, 2), (4, 1), (5, 3)):
-        ball = levels.gain(law) * levels.disconnected_state(law.alpha, n, m)
+        ball = gain(law) * levels.disconnected_state(law.alpha, n, m)
         stated = disconnected_energy(law, n, m)
         assert abs(ball - arb(stated)) < 1e-12 * stated
     assert levels.disconnected_state(AlphaInteraction(r=12.2), 7, 2) is None  # κ > √3
@@ -40,9 +40,9 @@ WEAK = AlphaInteraction(d=1.0, r=10.0)  # what holds a pair out to r costs more 
 
 def test_a_unit_of_length_counts_twice():
     """V with its gain is the energy of the law at the same state, in any unit."""
-    assert levels.gain(HEAVY) == 3
+    assert gain(HEAVY) == 3
     q = coincident_lattice(HEAVY.alpha, 5, 2)
-    found = levels.gain(HEAVY) * levels.coincident_state(HEAVY.alpha, 5, 2)
+    found = gain(HEAVY) * levels.coincident_state(HEAVY.alpha, 5, 2)
     assert float(found) == pytest.approx(HEAVY.structural_energy(q, np.zeros_like(q)), rel=1e-12)
 
 

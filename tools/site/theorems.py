@@ -14,7 +14,7 @@ from flockana.report.coverage.anchors import verdict_id
 from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
-from flockana.theorems.headline import BYLINES
+from flockana.theorems.claim import BYLINES
 from flockana.theorems.of_schemes import scheme_note
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail

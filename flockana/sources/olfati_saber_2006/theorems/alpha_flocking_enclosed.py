@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from flockana.certified.balls import exact, norm, square
-from flockana.certified.energies import BITS
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Pair, Tube
 from flockana.theorems.from_tube import certain_links, decided, groups
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition

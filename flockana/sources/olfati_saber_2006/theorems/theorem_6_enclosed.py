@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
-from flockana.certified.energies import BITS, powers_during, total_energy, work
+from flockana.certified.energies import powers_during, total_energy, work
 from flockana.certified.flow import Flow, flow_of
 from flockana.certified.series import Piece
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, up
 from flockana.theorems.energy import proved
 from flockana.theorems.from_tube import decided

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from flockana.certified.balls import exact
-from flockana.certified.energies import BITS, coincident_floor, coincident_state, disconnected_state, gain
+from flockana.certified.energies import coincident_floor, coincident_state, disconnected_state
 from flockana.certified.series import PairNumbers
+from flockana.certified.structural_energy import BITS, gain
 from flockana.certified.tube import Tube, down, up
 from flockana.theorems import from_tube
 from flockana.theorems.claims import undecided, vacuous
