@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 
 def observe_command(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS; example: the one shipped."
+        ),
+    ],
     *,
     law: Annotated[
         str | None, typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, or algorithm-1.")
@@ -32,17 +37,29 @@ def observe_command(
     d: Annotated[float | None, typer.Option("--d", help="Desired distance; by default the law's.")] = None,
     r: Annotated[float | None, typer.Option("--r", help="Range of nets; by default 1.2 d.")] = None,
     dt: Annotated[float | None, typer.Option(help="Time between frames, if the file has no times.")] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(metavar="NAMES", help="Which column is what: t=when,id=bird,q=east+north; or all in order."),
+    ] = None,
+    axes: Annotated[
+        str | None, typer.Option(metavar="NAMES", help="Axes of an array: time,agent,axis in its order.")
+    ] = None,
+    box: Annotated[
+        str | None, typer.Option(metavar="L[,L..]", help="Periods of positions, which are unwrapped.")
+    ] = None,
+    window: Annotated[str | None, typer.Option(metavar="T0,T1", help="First and last time that count.")] = None,
     clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
     page: Annotated[Path | None, output("HTML page to write, with a player.")] = None,
     as_json: AsJson = False,
 ) -> int:
     """Measure a recorded flock, compare it with a law, judge theorems on it.
 
-    For example: flockana observe tracks.csv --law square-root --sd 0.05 --fit -o report.html
+    For example: flockana observe example --sd 0.05 --d 7 -o report.html
 
     Exit status: 0 done, 2 bad input, 3 the recording does not follow the law, 130 interrupted.
     """
     from flockana.base.files import ensure_target, write_atomic
+    from flockana.recorded.example import EXAMPLE_FILE
     from flockana.recorded.read import read_recording
     from flockana.report.recording import measure_rows, recording_page
 
@@ -50,7 +67,21 @@ def observe_command(
         ensure_target(page)
     if law is not None and formula is not None:
         raise ArgumentError("--law and --formula are both given: expected one of them")
-    rec = read_recording(file, dt=dt, clock=clock, bound=bound, sd=sd)
+    rec = read_recording(
+        EXAMPLE_FILE if str(file) == "example" and not file.exists() else file,
+        columns=_columns(columns),
+        axes=axes,
+        box=None if box is None else _numbers("--box", box),
+        dt=dt,
+        clock=clock,
+        bound=bound,
+        sd=sd,
+    )
+    if window is not None:
+        ends = _numbers("--window", window)
+        if len(ends) != 2:
+            raise ArgumentError(f"--window {window}: expected two times, such as 0,2.5")
+        rec = rec.window(*ends)
     chosen = _law(law, formula, d, r)
     if fit and chosen is None:
         raise ArgumentError("--fit: expected --law or --formula, whose gains are fitted")
@@ -100,25 +131,36 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
     return law_scales(law)
 
 
-def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
-    """Return the recording with short gaps filled and incomplete agents removed, and a note on what was done."""
-    import numpy as np
+def _columns(text: str | None) -> Any:
+    """Return columns as `read_recording` takes them: by meaning, or the names of all."""
+    if text is None:
+        return None
+    parts = [part.strip() for part in text.split(",")]
+    if not any("=" in part for part in parts):
+        return parts
+    pairs = [part.partition("=") for part in parts]
+    if bad := [part for part, (_, sign, names) in zip(parts, pairs, strict=True) if not sign or not names]:
+        raise ArgumentError(f"--columns {bad[0]!r}: expected MEANING=NAME, such as t=when,id=bird,q=east+north")
+    return {key: names.split("+") if key in ("q", "p", "u", "agents") else names for key, _, names in pairs}
 
+
+def _numbers(name: str, text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise ArgumentError(f"{name} {text}: expected numbers with commas between them") from None
+
+
+def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
+    """Return the complete part of a recording, and a note on what it is."""
     if not rec.gaps:
         return rec, []
-    filled = rec.filled()
-    notes = [f"{rec.gaps - filled.gaps} of {rec.gaps} missing positions are filled by splines, with their errors."]
-    if not filled.gaps:
-        return filled, notes
-    samples = np.flatnonzero(filled.present.all(axis=1))
-    runs = np.split(samples, np.flatnonzero(np.diff(samples) > 1) + 1) if samples.size else []
-    longest = max(runs, key=len, default=samples)
-    if len(longest) < 4:
-        notes.append("At no time all agents are known: no law is compared and no theorem judged.")
-        return None, notes
-    start, end = float(rec.t[longest[0]]), float(rec.t[longest[-1]])
-    notes.append(f"All agents are known from t = {start:g} to {end:g}: laws and theorems are held against this part.")
-    return filled.window(start, end), notes
+    part = rec.complete()
+    if len(part.t) < 4:
+        return None, ["No part of four samples is complete: no law is compared and no theorem judged."]
+    agents = f"{part.n} of {rec.n} agents" if part.n < rec.n else "All agents"
+    note = f"{agents} are seen from t = {part.t[0]:g} to {part.t[-1]:g}: laws and theorems are held against this part."
+    return part, [note]
 
 
 def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> dict[str, Any]:
@@ -141,7 +183,9 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
     from flockana.report.tables import fact_table
 
     facts = tuple((name, f"{first} to {last}") for name, first, last in rows)
-    console = show(repr(rec).strip("<>"), fact_table(facts))
+    console = show(repr(rec).strip("<>").partition("; read as ")[0], fact_table(facts))
+    for text in rec.read_as:
+        console.print(f"read: {text}", markup=False)
     for note in notes:
         console.print(note, markup=False)
     for key in ("comparison", "fitted"):
@@ -158,7 +202,12 @@ def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]
     """Return all results as plain data for JSON."""
     series = {str(name): seen[name].values.astype(float).tolist() for name in seen.data_vars}
     measures = {name: [x if isfinite(x) else None for x in values] for name, values in series.items()}
-    plain: dict[str, Any] = {"recording": repr(rec), "time": rec.t.tolist(), "measures": measures}
+    plain: dict[str, Any] = {
+        "recording": repr(rec),
+        "read_as": list(rec.read_as),
+        "time": rec.t.tolist(),
+        "measures": measures,
+    }
     if "comparison" in results:
         plain["comparison"] = results["comparison"].to_dict()
     if "fitted" in results:

@@ -179,9 +179,9 @@ def _positions_by_header(
     path: Path, header: list[str], lines: list[tuple[int, list[str]]]
 ) -> list[tuple[int, list[str]]]:
     """Return the position columns that a header names; all columns where no name is known."""
-    from flockana.recorded.reading.names import AGENTS, COORDINATES, TIMES, layout_of, plain
+    from flockana.recorded.reading.names import is_header, layout_of
 
-    if not {plain(cell) for cell in header} & {*COORDINATES, *AGENTS, *TIMES}:
+    if not any(map(is_header, header)):
         return lines
     layout = layout_of(header, str(path))
     if layout.time is not None or "q" not in layout.long:

@@ -76,8 +76,8 @@ def _of_splines(rec: Recording) -> Accelerations:
     if len(rec.t) < _FEWEST:
         raise ArgumentError(f"{len(rec.t)} samples without accelerations: expected {_FEWEST} or more")
     fit = motions(rec)
-    whole = fit.carried.all(axis=1) & ~np.isnan(fit.q).any(axis=(1, 2))
+    whole = fit.known.all(axis=1)
     if not whole.any():
-        raise ArgumentError("no sample has all agents: fill gaps, or leave agents out by select(agents=...)")
+        raise ArgumentError("no sample has all agents: take complete(), or leave agents out by select(agents=...)")
     t, q, p = rec.t[whole], fit.q[whole], fit.p[whole]
     return Accelerations("splines", t, fit.u[whole], fit.u_sd[whole], (t, q, p), None)

@@ -51,6 +51,7 @@ class Following:
 
 def following(rec: Recording, law: Any) -> Following:
     """Return whether a recording follows a law: from sample to sample, or where noise is stated over windows."""
+    rec = rec.measured
     if len(rec.t) < 2:
         raise ArgumentError("one sample shows no motion: expected two or more")
     if rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0)):

@@ -3,20 +3,21 @@
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
-from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
+from flockana.recorded.boxes import unwrapped
+from flockana.recorded.reading.arrays import dataset_arrays, mat_arrays, named_arrays, netcdf_arrays, npz_arrays
 from flockana.recorded.reading.lammps import read_dump
 from flockana.recorded.reading.names import Columns
 from flockana.recorded.reading.table import table_arrays
 from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
 
-_ARRAYS = {".npz": npz_arrays, ".npy": npz_arrays, ".mat": mat_arrays, ".nc": netcdf_arrays}
-_ACCURACY = ("bound", "sd", "p_bound", "p_sd", "estimated")
+_ARRAYS = {".npz": npz_arrays, ".npy": npz_arrays, ".mat": mat_arrays}
+_ACCURACY = ("bound", "sd", "p_bound", "p_sd", "estimated", "smoothed")
 _DUMPS = (".dump", ".lammpstrj", ".lammps")
 _ITEM = b"ITEM:"
 
@@ -28,6 +29,9 @@ def read_recording(
     dt: float | None = None,
     clock: float | None = None,
     m: int | None = None,
+    axes: Any = None,
+    jitter: float | None = None,
+    box: Any = None,
     bound: Any = None,
     sd: Any = None,
     p_bound: Any = None,
@@ -35,23 +39,31 @@ def read_recording(
 ) -> Recording:
     """Return a recording from a file, a table or arrays.
 
-    Files are CSV or TSV tables (long: time, id, x, y, vx, vy; wide: time, x1, y1, x2, y2), npz, MATLAB (.mat), netCDF
-    (a run of flockana, too) and text dumps of LAMMPS, whose places are unwrapped. A row without an agent's position is
-    a gap.
+    Files are tables, separated by commas, semicolons, tabs or blanks (long: time, id, x, y, vx, vy; wide: time, x1, y1,
+    x2, y2), npz, npy, MATLAB (.mat), netCDF (a run of flockana, or a dataset of `movement`) and text dumps of LAMMPS,
+    whose places are unwrapped. A row without an agent's position is a gap. `Recording.read_as` says which column became
+    what; what can be read in two ways is refused with both.
 
     Parameters
     ----------
-    source : path, pandas.DataFrame or mapping of str to array_like
-        The file, the table, or arrays t (T,) and q (T, n, m), and p and u if there are any.
+    source : path, pandas.DataFrame, xarray.Dataset or mapping of str to array_like
+        The file, the table, the dataset, or arrays t (T,) and q (T, n, m), and p and u if there are any; or the columns
+        of a long table.
     columns : mapping or sequence of str, optional
-        Names in the file, by "t", "frame", "id", "q", "p", "u" (lists of columns for the last three); or the names of
-        the columns of a table without a header.
+        Names in the file, by "t", "frame", "id", "q", "p", "u" (lists of columns for the last three), and "agents", the
+        names of those in a wide table; or the names of the columns of a table without a header.
     dt : float, optional
-        Time of a frame or a step, where there are no times.
+        Time of a frame, a row or a step, where there are no times.
     clock : float, optional
         Seconds in one time unit of the law, where times are dates.
     m : int, optional
-        Dimension, of a dump; by default that of its positions.
+        Dimension, of a dump or a table; by default that of its positions.
+    axes : str or sequence of str, optional
+        Which axis of an array is which, such as "time axis agent"; by default (T, n, m), time, agent and axis.
+    jitter : float, optional
+        Stamps of a table within this of each other are one instant; by default those that differ by rounding.
+    box : float or sequence of float, optional
+        Periods of the positions along each axis, inf where there is none; positions are unwrapped.
     bound, sd, p_bound, p_sd : float or array_like, optional
         Accuracy, as in `Recording`; by default what a file of `Recording.save` states.
 
@@ -69,29 +81,58 @@ def read_recording(
     """
     accuracy = {"bound": bound, "sd": sd, "p_bound": p_bound, "p_sd": p_sd}
     dt = None if dt is None else ensure_positive("dt", dt)
-    if isinstance(source, Mapping):
-        by_name = columns if isinstance(columns, Mapping) else None
-        return Recording(**named_arrays(source, "the mapping", columns=by_name, dt=dt), **accuracy)
-    if hasattr(source, "columns") and hasattr(source, "iloc"):
-        if any(name is not None and name not in source.columns for name in source.index.names):
-            source = source.reset_index()  # times or agents are the index
-        if columns is not None and not isinstance(columns, Mapping):
-            if len(columns) != len(source.columns):
-                raise ArgumentError(
-                    f"columns has {len(columns)} names: expected {len(source.columns)}, as the frame has"
-                )
-            source = source.set_axis(list(columns), axis=1)
-        return Recording(**table_arrays(source, columns, dt, clock), source="a frame", **accuracy)
-    if not isinstance(source, str | os.PathLike):
+    how = _How(columns, dt, clock, m, axes, jitter)
+    if isinstance(source, str | os.PathLike):
+        rec = _of_file(ensure_path(source), how, accuracy)
+    elif hasattr(source, "data_vars"):
+        rec = Recording(**_of_arrays(dataset_arrays(source, "the dataset"), "the dataset", how), **accuracy)
+    elif isinstance(source, Mapping):
+        rec = Recording(**_of_arrays(source, "the mapping", how), **accuracy)
+    elif hasattr(source, "columns") and hasattr(source, "iloc"):
+        rec = Recording(**_of_frame(source, how), source="a frame", **accuracy)
+    else:
         raise ArgumentError(
-            f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, or arrays by name"
+            f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, an xarray "
+            "dataset, or arrays by name"
         )
-    path = ensure_path(source)
+    return rec if box is None else unwrapped(rec, box)
+
+
+class _How(NamedTuple):
+    """What a user states of a source."""
+
+    columns: Columns
+    dt: float | None
+    clock: float | None
+    m: int | None
+    axes: Any
+    jitter: float | None
+
+
+def _of_arrays(arrays: Mapping[str, Any], where: str, how: _How) -> dict[str, Any]:
+    by_name = how.columns if isinstance(how.columns, Mapping) else None
+    found = named_arrays(arrays, where, columns=by_name, dt=how.dt, axes=how.axes, clock=how.clock)
+    ids = arrays.get("ids") if isinstance(arrays.get("ids"), tuple) else None
+    return found if ids is None else found | {"ids": ids}
+
+
+def _of_frame(frame: Any, how: _How) -> dict[str, Any]:
+    columns = how.columns
+    if any(name is not None and name not in frame.columns for name in frame.index.names):
+        frame = frame.reset_index()  # times or agents are the index
+    if columns is not None and not isinstance(columns, Mapping):
+        if len(columns) != len(frame.columns):
+            raise ArgumentError(f"columns has {len(columns)} names: expected {len(frame.columns)}, as the frame has")
+        frame = frame.set_axis(list(columns), axis=1)
+    return table_arrays(frame, columns, how.dt, how.clock, how.m, how.jitter)
+
+
+def _of_file(path: Path, how: _How, accuracy: Mapping[str, Any]) -> Recording:
     if not path.exists():
         raise FileError(f"no file {path}: expected CSV, TSV, npz, mat, netCDF or a dump of LAMMPS")
     try:
         given = {name: value for name, value in accuracy.items() if value is not None}
-        contents = _contents(path, columns, dt, clock, m)
+        contents = _contents(path, how)
         kept = {name: value for name, value in contents.items() if not given or name not in _ACCURACY}
         return Recording(**({"source": path.name} | kept | given))
     except FileError:
@@ -101,16 +142,20 @@ def read_recording(
         raise error if str(path) in text else ArgumentError(f"{path}: {text}") from None
 
 
-def _contents(path: Path, columns: Columns, dt: float | None, clock: float | None, m: int | None) -> dict[str, Any]:
+def _contents(path: Path, how: _How) -> dict[str, Any]:
     suffix = path.suffix.lower()
+    if suffix == ".nc":
+        return _of_arrays(dataset_arrays(netcdf_arrays(path), str(path)), str(path), how)
     if suffix in _ARRAYS:
-        by_name, arrays = columns if isinstance(columns, Mapping) else None, _ARRAYS[suffix](path)
-        return _read_metadata(arrays) | named_arrays(arrays, str(path), columns=by_name, dt=dt)
+        arrays = _ARRAYS[suffix](path)
+        return _of_arrays(arrays, str(path), how) | _read_metadata(arrays)
     if suffix in _DUMPS or _starts_with_item(path):
-        dump = read_dump(path, dt, m)
-        return {name: dump[name] for name in "tqpu" if name in dump} | {"ids": [f"{i:g}" for i in dump["ids"]]}
-    names = None if columns is None or isinstance(columns, Mapping) else list(columns)
-    return table_arrays(read_text(path, names), columns, dt, clock)
+        dump = read_dump(path, how.dt, how.m)
+        held = [name for name in "qpu" if name in dump]
+        texts = ("t from TIME" if how.dt is None else "t from TIMESTEP times dt", f"{', '.join(held)} from the dump")
+        return {name: dump[name] for name in ["t", *held]} | {"ids": [f"{i:g}" for i in dump["ids"]], "read_as": texts}
+    names = None if how.columns is None or isinstance(how.columns, Mapping) else list(how.columns)
+    return table_arrays(read_text(path, names), how.columns, how.dt, how.clock, how.m, how.jitter)
 
 
 def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:

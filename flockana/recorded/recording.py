@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_flag, ensure_known, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import atomic_write, ensure_path
 from flockana.base.memory import ResultCache
@@ -18,6 +18,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
+from flockana.recorded.parts import largest_complete_part
 from flockana.recorded.unknown import UnknownLaw
 from flockana.recorded.velocities import filled, with_velocities
 
@@ -51,10 +52,14 @@ class Recording(ResultCache):
         The same of velocities; by default those of the positions over the interval between samples.
     estimated : bool
         Whether the accuracy was estimated from the data: then it decides nothing.
+    smoothed : bool
+        Whether velocities come from positions (`with_velocities`): then verdicts and fits rest on the positions alone.
     ids : sequence of str, optional
         Names of the agents; by default their numbers.
     source : str
         Where it comes from.
+    read_as : sequence of str
+        Which column of the source became what, and from which unit, as `read_recording` says.
 
     Raises
     ------
@@ -79,8 +84,10 @@ class Recording(ResultCache):
     p_bound: Any = None
     p_sd: Any = None
     estimated: bool = False
+    smoothed: bool = False
     ids: Sequence[str] = ()
     source: str = ""
+    read_as: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         q = _with_gaps("q", self.q)
@@ -105,13 +112,15 @@ class Recording(ResultCache):
         if unseen.size:
             raise ArgumentError(f"q[:, {unseen[0]}] is NaN throughout: expected agents that are seen; leave it out")
         self._check_accuracy()
+        object.__setattr__(self, "read_as", tuple(map(str, self.read_as)))
         object.__setattr__(self, "ids", tuple(str(i) for i in self.ids) or tuple(map(str, range(self.n))))
         if len(self.ids) != self.n:
             raise ArgumentError(f"ids has {len(self.ids)} names: expected {self.n}, one for each agent")
 
     def _check_accuracy(self) -> None:
         ensure_flag("estimated", self.estimated)
-        given = [name for name in _ERRORS if getattr(self, name) is not None]
+        ensure_flag("smoothed", self.smoothed)
+        given = [name for name in _ERRORS if getattr(self, name) is not None and not (self.smoothed and name == "p_sd")]
         if len({name.removeprefix("p_") for name in given}) > 1:
             raise ArgumentError(
                 f"{' and '.join(given)} are given: expected one kind of accuracy, bound and p_bound, or sd and p_sd"
@@ -120,8 +129,10 @@ class Recording(ResultCache):
 
     def __repr__(self) -> str:
         gaps = f", {self.gaps} gaps" if self.gaps else ""
-        span = f"t = {self.t[0]:g} to {self.t[-1]:g}"
-        return f"<Recording of {self.n} agents, m = {self.m}, {len(self.t)} samples, {span}{gaps}, {self.accuracy}>"
+        start, end = (f"{x:.{_digits(self.t)}g}" for x in (self.t[0], self.t[-1]))
+        text = f"Recording of {self.n} agents, m = {self.m}, {len(self.t)} samples, t = {start} to {end}{gaps}"
+        read_as = f"; read as {'; '.join(self.read_as)}" if self.read_as else ""
+        return f"<{text}, {self.accuracy}{read_as}>"
 
     @property
     def n(self) -> int:
@@ -153,11 +164,13 @@ class Recording(ResultCache):
         """Half widths of positions and velocities, and how they are known."""
         if self.bound is None and self.sd is None:
             return Accuracy(np.inf, np.inf, "unknown")
-        kind: Kind = "estimated" if self.estimated else "sd" if self.bound is None else "bound"
+        kind: Kind = "estimated" if self.estimated or self.smoothed else "sd" if self.bound is None else "bound"
+        width = band(2 * self.q.shape[0] * self.n, self.m)
         place, speed = self.bound, self.p_bound
         if place is None:
-            width = band(2 * self.q.shape[0] * self.n, self.m)
-            place, speed = times(self.sd, width), times(self.p_sd, width)
+            place = times(self.sd, width)
+        if place is not self.bound or self.smoothed:
+            speed = times(self.p_sd, width)
         return Accuracy(place, place / self.interval if speed is None else speed, kind)
 
     def window(self, start: float, end: float) -> Self:
@@ -175,14 +188,20 @@ class Recording(ResultCache):
         """
         return self.select(samples=(self.t >= start) & (self.t <= end))
 
-    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Self:
+    def select(self, *, samples: Any = slice(None), agents: Any = None) -> Self:
         """Return some samples of some agents.
 
         Parameters
         ----------
-        samples, agents : index array, bool array or slice
-            Which ones.
+        samples : index array, bool array or slice
+            Which samples.
+        agents : index array, bool array, slice or sequence of str, optional
+            Which agents, by number or name; by default those that are seen at some of the samples.
         """
+        if agents is None:
+            agents = self.present[samples].any(axis=0)
+        elif not isinstance(agents, slice) and np.asarray(agents).dtype.kind in "UO":
+            agents = [self.ids.index(ensure_known("agent", str(name), self.ids)) for name in agents]
         change: dict[str, Any] = {"t": self.t[samples], "ids": np.array(self.ids)[agents].tolist()}
         if not (len(change["t"]) and len(change["ids"])):
             raise ArgumentError("no sample or no agent is left: expected a selection that holds one")
@@ -190,6 +209,17 @@ class Recording(ResultCache):
             value = getattr(self, name)
             change[name] = value[samples][:, agents] if isinstance(value, np.ndarray) else value
         return replace(self, **change)
+
+    def complete(self) -> Self:
+        """Return the window, and the agents seen throughout it, with the most positions; without gaps."""
+        samples, agents = largest_complete_part(self.present)
+        return self.select(samples=samples, agents=agents)
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return an `xarray.Dataset` as the package `movement` makes it: position over time, space and individuals."""
+        from flockana.recorded.dataset import dataset_of
+
+        return dataset_of(self)
 
     def in_units(self, length: float, time: float) -> Self:
         """Return the same recording in other units (`flockana.rescale`).
@@ -213,23 +243,34 @@ class Recording(ResultCache):
             k, i = (int(x) for x in np.argwhere(~self.present)[0])
             raise ArgumentError(
                 f"{purpose} needs every agent at every sample, and agent {self.ids[i]} is missing at t = "
-                f"{self.t[k]:g} ({self.gaps} gaps): fill short gaps by filled(), or choose samples and agents by "
-                "window(start, end) or select(samples=, agents=)"
+                f"{self.t[k]:g} ({self.gaps} gaps): take complete(), choose by window(start, end) or "
+                "select(samples=, agents=), or fill gaps by filled(most_acceleration=)"
             )
 
-    def filled(self, *, longest: float | None = None) -> "Recording":
-        """Return the recording with short gaps filled by splines, each filled position with its own error.
+    def filled(self, *, most_acceleration: float | None = None, longest: float | None = None) -> "Recording":
+        """Return the recording with gaps filled, each filled position with an error that covers every allowed motion.
 
         Parameters
         ----------
+        most_acceleration : float, optional
+            Largest acceleration that an agent can have; without it gaps stay open, as the samples bound no motion that
+            was not seen.
         longest : float, optional
-            Longest gap that is filled, in time; by default what the data carry.
+            Longest gap that is filled, in time.
         """
-        return filled(self, longest)
+        return filled(self, most_acceleration, longest)
 
     def with_velocities(self) -> "Recording":
-        """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
+        """Return the recording with velocities and accelerations from its positions, by smoothing splines.
+
+        Beside a gap they are what the samples on that side say; of fewer than four samples between gaps they are NaN.
+        """
         return with_velocities(self)
+
+    @property
+    def measured(self) -> "Recording":
+        """The recording without velocities that were made by smoothing its positions; itself if there are none."""
+        return replace(self, p=None, u=None, p_sd=None, smoothed=False) if self.smoothed else self
 
     def metrics(self, *, d: float, r: float) -> "xarray.Dataset":
         """Return measures of the flock over time, each with its error as ``<name>_error``.
@@ -261,6 +302,8 @@ class Recording(ResultCache):
         self.ensure_complete("a trajectory")
         rec = self if self.p is not None else self.with_velocities()
         assert rec.p is not None
+        if np.isnan(rec.p).any():
+            raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more in a row for velocities, or velocities")
         speed = float(np.sqrt(np.nanmean(rec.p**2) * rec.m))
         if law is None:
             alpha = None if d is None and r is None else scaled_alpha(d, r)
@@ -284,7 +327,7 @@ class Recording(ResultCache):
         """
         if ensure_path(path, action="write").suffix != ".npz":
             raise FileError(f"cannot write {str(path)!r}: expected a name that ends in .npz")
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        given = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "read_as"}
         with atomic_write(path) as partial:
             np.savez_compressed(partial, **{name: value for name, value in given.items() if value is not None})
         return Path(path)
@@ -319,6 +362,12 @@ def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
     """Return the samples of a run as a recording."""
     u = None if isinstance(run.law, DiscreteLaw) else run.u
     return Recording(run.t, run.q, run.p, u, source=f"a run of {type(run.law).__name__}", **accuracy)
+
+
+def _digits(t: FloatArray) -> int:
+    """Return the digits by which the first and last time differ as their span does."""
+    span = float(np.ptp(t))
+    return int(min(max(4, 4 + np.ceil(np.log10(np.abs(t).max() / span))), 17)) if span > 0.0 else 6
 
 
 def _with_gaps(name: str, values: Any) -> FloatArray:

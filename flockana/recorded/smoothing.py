@@ -1,9 +1,10 @@
-"""Smoothing splines with an error at every sample, through series with gaps.
+"""Smoothing splines with an error at every sample, through the pieces of series with gaps.
 
 A spline of degree five that smooths samples of known noise is the mean of a motion whose jerk is white noise, given the
 samples; the same computation, a Kalman filter forth and back, gives the variance of position, velocity and acceleration
-at each sample, across gaps too. The intensity of the jerk is the largest that the samples nearby do not
-reject, so that a flock that settles is smoothed more than one that has just been let go, and an encounter less.
+at each sample. The intensity of the jerk is the largest that the samples nearby do not reject, so that a flock that
+settles is smoothed more than one that has just been let go, and an encounter less. Pieces of a series on both sides of
+a gap say nothing of each other: what happened in between is not known.
 """
 
 from typing import NamedTuple
@@ -20,6 +21,7 @@ _WINDOW = 6  # samples to each side over which a likelihood is local
 _DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
 
 _Filtered = tuple[FloatArray, FloatArray, FloatArray]  # means and deviations (T, K, 3), log-likelihoods (T, K)
+_Pieces = npt.NDArray[np.intp]
 
 
 class Smoothed(NamedTuple):
@@ -30,62 +32,93 @@ class Smoothed(NamedTuple):
     noise: float
 
 
-def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
-    """Return the smoothing spline through each series, the jerk's intensity estimated sample by sample."""
-    unit = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
+def smoothed(
+    t: FloatArray, y: FloatArray, noise: FloatArray | None, pieces: _Pieces, *, groups: int = 1, floor: float = 0.0
+) -> Smoothed:
+    """Return the smoothing spline through each piece of each series, the jerk's intensity estimated sample by sample.
+
+    `pieces` (T, K) numbers those of each series, -1 outside; an estimated noise is `floor` at least.
+    """
+    unit = _usual_interval(t, y)
     middle = np.nanmean(y, axis=0)
     spread = float(np.nanmax(np.abs(y - middle))) or 1.0
     x, clock = (y - middle) / spread, (t - t[0]) / unit
-    sd = _likeliest_noise(clock, x) if noise is None else noise / spread
+    sd = np.maximum(_likeliest_noise(clock, x, pieces), floor / spread) if noise is None else noise / spread
     sd = np.maximum(np.broadcast_to(sd, x.shape), _FINEST)
-    mean, deviations, _ = _filtered(clock, x, sd, _local_jerk(clock, x, sd, groups), backwards=True)
+    jerk = _local_jerk(clock, x, sd, pieces, groups)
+    mean, deviations, _ = _filtered(clock, x, sd, jerk, pieces, backwards=True)
     factors = spread * unit ** -np.arange(3.0)
     mean = mean * factors
     mean[:, :, 0] += middle
     return Smoothed(mean, deviations * factors, float(sd.max()) * spread)
 
 
-def _steepest(x: FloatArray) -> float:
+def _usual_interval(t: FloatArray, y: FloatArray) -> float:
+    """Return the median interval between the samples of a series."""
+    seen = ~np.isnan(y)
+    steps = [np.diff(t[seen[:, k]]) for k in range(y.shape[1])]
+    every = np.concatenate(steps)
+    return float(np.median(every)) if every.size else 1.0
+
+
+def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
+    """Return all differences of an order between samples within the pieces of the series."""
+    rows = []
+    for k in range(x.shape[1]):
+        seen = np.flatnonzero(~np.isnan(x[:, k]))
+        piece = pieces[seen, k]
+        if len(seen) > order:
+            rows.append(np.diff(x[seen, k], order)[piece[order:] == piece[: len(piece) - order]])
+    return np.concatenate(rows) if rows else np.empty(0)
+
+
+def _steepest(x: FloatArray, pieces: _Pieces) -> float:
     """Return the logarithm of third differences, an upper bound of the jerk, as noise enlarges them."""
-    third = np.diff(x, 3, axis=0)
-    size = float(np.sqrt(np.nanmean(third**2))) if np.isfinite(third).any() else 1.0
+    third = _differences(x, pieces, 3)
+    size = float(np.sqrt(np.mean(third**2))) if third.size else 1.0
     return float(np.log(max(size, 1e-14))) + 2.0
 
 
-def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, groups: int) -> FloatArray:
+def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, pieces: _Pieces, groups: int) -> FloatArray:
     """Intensity of the jerk at each sample of each series, by the likelihood of the samples nearby, shape (T, K)."""
-    top, (count, series) = _steepest(x), x.shape
+    top, (count, series) = _steepest(x, pieces), x.shape
     tried = np.maximum(top - np.arange(_JERKS, dtype=np.float64), np.log(sd.min()) - 6.0)
-    weights = np.minimum(np.arange(1.0, 2 * _WINDOW + 2), np.arange(2 * _WINDOW + 1.0, 0.0, -1.0)) / (_WINDOW + 1.0)
-    local = np.empty((_JERKS, count, series // groups))
+    local, piece = np.zeros((_JERKS, count, series // groups)), pieces[:, ::groups]
     for g, jerk in enumerate(tried):
-        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), backwards=False)[2]
+        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
         own = own.reshape(count, -1, groups).sum(axis=2)
-        local[g] = np.apply_along_axis(np.convolve, 0, own, weights, "full")[_WINDOW : _WINDOW + count]
+        for by in range(-_WINDOW, _WINDOW + 1):
+            here, there = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
+            weight = 1.0 - abs(by) / (_WINDOW + 1.0)
+            local[g, here] += weight * np.where(piece[here] == piece[there], own[there], 0.0)
     largest = tried[np.argmax(local >= local.max(axis=0) - _DROP, axis=0)]
     return np.repeat(np.exp(largest), groups, axis=1)
 
 
-def _likeliest_noise(t: FloatArray, x: FloatArray) -> FloatArray:
+def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArray:
     """Standard deviation of the noise, one for all series, by maximum likelihood with one jerk for all."""
     from scipy.optimize import minimize
 
     def cost(z: FloatArray) -> float:
         sd = np.full(x.shape, max(float(np.exp(z[1])), _FINEST))
-        return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), backwards=False)[2].sum())
+        return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), pieces, backwards=False)[2].sum())
 
-    start = np.array([_steepest(x) - 4.0, _steepest(x) - 3.0])
+    start = np.array([_steepest(x, pieces) - 4.0, _steepest(x, pieces) - 3.0])
     best = minimize(cost, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "maxfev": 120})
     return np.array(np.exp(best.x[1]))
 
 
-def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *, backwards: bool) -> _Filtered:
-    """Means, deviations, likelihoods of a Kalman filter; of a state given all samples if it goes backwards too."""
+def _filtered(
+    t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, pieces: _Pieces, *, backwards: bool
+) -> _Filtered:
+    """Means, deviations, likelihoods of a Kalman filter; of a state given its piece if it goes backwards too."""
     count, series = y.shape
     seen: npt.NDArray[np.bool_] = ~np.isnan(y)
-    alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk))  # then all have the same covariances
+    alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk, pieces))  # then so are all covariances
     wide = 1 if alike else series
-    state, cov = np.zeros((series, 3)), np.broadcast_to(np.diag(_initial_variance(y, sd)), (wide, 3, 3))
+    begins = (pieces >= 0) & (pieces != np.vstack([np.full((1, series), -2), pieces[:-1]]))
+    unknown = np.broadcast_to(np.diag(_initial_variance(y, sd, pieces)), (wide, 3, 3))
+    state, cov = np.zeros((series, 3)), unknown
     means, covs = np.empty((count, series, 3)), np.empty((count, wide, 3, 3))
     before, cov_before = np.empty_like(means), np.empty_like(covs)
     likelihood, use, variance = np.zeros((count, series)), seen[:, :wide], sd[:, :wide] ** 2
@@ -93,6 +126,8 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
     for k in range(count):
         if k:
             state, cov = state @ turns[k].T, turns[k] @ cov @ turns[k].T + jerk[k, :wide, None, None] ** 2 * kicks[k]
+            state = np.where(begins[k][:, None], 0.0, state)
+            cov = np.where(begins[k, :wide, None, None], unknown, cov)
         before[k], cov_before[k] = state, cov
         if use[k].any():
             size = np.maximum(cov[:, 0, 0], 0.0) + variance[k]
@@ -108,16 +143,17 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
         means[k], covs[k] = state, cov
     for k in range(count - 2 if backwards else -1, -1, -1):
         way = np.linalg.solve(cov_before[k + 1], turns[k + 1] @ covs[k]).swapaxes(1, 2)
+        way = np.where(begins[k + 1, :wide, None, None], 0.0, way)  # the next piece says nothing of this one
         means[k] += np.einsum("kij,kj->ki", np.broadcast_to(way, (series, 3, 3)), means[k + 1] - before[k + 1])
         covs[k] += way @ (covs[k + 1] - cov_before[k + 1]) @ way.swapaxes(1, 2)
     deviations = np.sqrt(np.maximum(np.diagonal(covs, axis1=2, axis2=3), 0.0))
     return means, np.broadcast_to(deviations, means.shape).copy(), likelihood
 
 
-def _initial_variance(y: FloatArray, sd: FloatArray) -> FloatArray:
+def _initial_variance(y: FloatArray, sd: FloatArray, pieces: _Pieces) -> FloatArray:
     """Variances of position, velocity and acceleration before the first sample: what the samples show at most."""
-    sizes = [np.abs(np.diff(y, k, axis=0)) if len(y) > k else y for k in range(3)]
-    largest = np.array([float(np.nanmax(x)) if np.isfinite(x).any() else 1.0 for x in sizes])
+    sizes = [np.abs(_differences(y, pieces, k)) if k else np.abs(y[~np.isnan(y)]) for k in range(3)]
+    largest = np.array([float(x.max()) if x.size else 1.0 for x in sizes])
     return (_DIFFUSE * (largest + float(sd.max()))) ** 2
 
 

@@ -1,32 +1,33 @@
-"""Velocities and accelerations from recorded positions, each with its error, and short gaps filled."""
+"""Velocities and accelerations from recorded positions, each with its error, and gaps filled within a stated bound."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_positive
-from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
 from flockana.recorded.smoothing import smoothed
 
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
 
-_TOLD = 2.0  # times the usual acceleration: a gap in which it is known less well is not filled
-_FEWEST = 4  # samples of an agent from which velocities are made
+_FEWEST = 4  # samples of a piece from which velocities are made
+_MISSED = 1.75  # times an agent's usual interval, from which on a sample is missing
+_DEPENDENT = 2.0  # times the deviation of independent errors: what those of a bound or a grid may add up to
+_COARSE = 1.0  # deviations that a grid is wider than whose rounding makes errors dependent
+_GRID = 1e-6  # of a grid's step, within which numbers are rounded to it
 
 
 @dataclass(frozen=True, eq=False)
 class Motions:
     """Positions, velocities and accelerations by smoothing splines, shape (T, n, m), and standard deviations (T, n).
 
-    Before an agent's first sample and after its last all are NaN.
+    All are NaN where an agent was not seen, and in pieces of fewer than four samples between gaps.
     """
 
     q: FloatArray
@@ -35,8 +36,12 @@ class Motions:
     q_sd: FloatArray  # q_sd, p_sd, u_sd: of each coordinate
     p_sd: FloatArray
     u_sd: FloatArray
-    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the acceleration is still determined
     noise: float  # standard deviation of a coordinate, stated or estimated
+
+    @property
+    def known(self) -> npt.NDArray[np.bool_]:
+        """Whether the motion of an agent is known at a sample, shape (T, n)."""
+        return ~np.isnan(self.p[:, :, 0])
 
 
 def motions(rec: Recording) -> Motions:
@@ -45,62 +50,164 @@ def motions(rec: Recording) -> Motions:
 
 
 def _motions(rec: Recording) -> Motions:
-    for name, samples in zip(rec.ids, rec.present.sum(axis=0), strict=True):
-        if samples < _FEWEST:
-            raise ArgumentError(
-                f"agent {name} has {samples} samples: expected {_FEWEST} or more for velocities from positions; leave "
-                "it out by select(agents=...)"
-            )
-    stated = rec.sd if rec.bound is None else 0.5 * rec.bound
-    count, n, m = rec.q.shape
-    noise = None if stated is None else np.repeat(np.broadcast_to(stated, (count, n)), m, axis=1)
-    fit = smoothed(rec.t, rec.q.reshape(count, n * m), noise, groups=m)
+    pieces = pieces_of(rec)
+    whole = [np.bincount(x[x >= 0], minlength=1) for x in np.where(rec.present, pieces, -1).T]
+    short = np.stack([np.append(count < _FEWEST, True)[x] for count, x in zip(whole, pieces.T, strict=True)], axis=1)
+    (count, n, m), grid = rec.q.shape, grid_of(rec.q)
+    noise = _coordinate_noise(rec)
+    rounded = grid > 0.0 and (noise is None or grid > _COARSE * float(np.max(noise)))
+    dependent = _DEPENDENT if rec.bound is not None or rounded else 1.0
+    if bool((short | ~rec.present).all()):
+        none, bare = np.full(rec.q.shape, np.nan), np.full(rec.present.shape, np.nan)
+        return Motions(none, none, none, bare, bare, bare, 0.0)
+    wide = None if noise is None else np.repeat(np.broadcast_to(noise, (count, n)), m, axis=1)
+    series, split = rec.q.reshape(count, n * m), np.repeat(pieces, m, axis=1)
+    fit = smoothed(rec.t, series, wide, split, groups=m, floor=grid / np.sqrt(12.0))
     (q, p, u), deviations = ([x[:, :, k].reshape(count, n, m) for k in range(3)] for x in (fit.mean, fit.sd))
-    q_sd, p_sd, u_sd = (each.max(axis=2) for each in deviations)
-    within = np.maximum.accumulate(rec.present) & np.maximum.accumulate(rec.present[::-1])[::-1]
+    q_sd, p_sd, u_sd = (dependent * each.max(axis=2) for each in deviations)
     for x in (q, p, u, q_sd, p_sd, u_sd):
-        x[~within] = np.nan
-    usual = np.sqrt(np.nanmean(np.where(rec.present, lengths(u) ** 2, np.nan), axis=0) / m)
-    known = within & (np.nan_to_num(u_sd, nan=np.inf) <= _TOLD * usual)
-    carried = rec.present.copy()
-    for i, gap, _ in _gaps(rec):
-        carried[gap, i] = known[gap, i].all()
-    return Motions(q, p, u, q_sd, p_sd, u_sd, carried, fit.noise)
+        x[short | ~rec.present] = np.nan
+    return Motions(q, p, u, q_sd, p_sd, u_sd, fit.noise)
+
+
+def _coordinate_noise(rec: Recording) -> Any:
+    """Standard deviation of a coordinate as it is stated: that of an error evenly spread within a bound."""
+    if rec.bound is None:
+        return rec.sd
+    return np.divide(rec.bound, np.sqrt(3.0))
+
+
+def grid_of(q: FloatArray) -> float:
+    """Return the step of the grid to which positions are rounded, 0 if they are on none.
+
+    Examples
+    --------
+    >>> grid_of(np.array([0.25, 1.5, 1.75, 4.0, 0.5]))
+    0.25
+    """
+    values = np.unique(q[~np.isnan(q)])
+    steps = np.diff(values)
+    size = float(np.abs(values).max(initial=0.0))
+    steps = steps[steps > 1e-12 * size]
+    if len(steps) < 3:
+        return 0.0
+    step = float(steps.min())
+    off = np.abs(steps / step - np.rint(steps / step))
+    return step if (off < np.maximum(_GRID, 1e-12 * size / step)).all() else 0.0
+
+
+def pieces_of(rec: Recording) -> npt.NDArray[np.intp]:
+    """Return the number of the piece between gaps in which each sample of each agent lies, shape (T, n); -1 outside.
+
+    A gap is an interval in which an agent has missed a sample, by its own usual interval.
+    """
+    pieces = np.full(rec.present.shape, -1, dtype=np.intp)
+    for i in range(rec.n):
+        seen = np.flatnonzero(rec.present[:, i])
+        steps = np.diff(rec.t[seen])
+        apart = steps > _MISSED * (float(np.median(steps)) if len(steps) else 1.0)
+        number = np.concatenate([[0], np.cumsum(apart)])
+        last = np.full(len(rec.t), -1)
+        last[seen] = np.arange(len(seen))
+        last = np.maximum.accumulate(last)  # the sample before
+        inside = (last >= 0) & (np.arange(len(rec.t)) <= seen[-1])
+        here = last[inside]
+        after = np.minimum(here + (rec.t[inside] > rec.t[seen[here]]), len(seen) - 1)
+        pieces[inside, i] = np.where(number[here] == number[after], number[here], -1)
+    return pieces
 
 
 def with_velocities(rec: Recording) -> Recording:
-    """See `Recording.with_velocities`: what rests on splines holds in a 0.99 band, so a bound turns into `sd`."""
-    fit, seen = motions(rec), rec.present
-    p, u = (np.where(seen[:, :, None], x, np.nan) for x in (fit.p, fit.u))
-    p_sd = np.where(seen, fit.p_sd, 0.0)
-    return replace(rec, p=p, u=u, p_sd=p_sd, p_bound=None, **_in_band(rec, fit))
-
-
-def _in_band(rec: Recording, fit: Motions) -> dict[str, Any]:
-    """Return the accuracy of a recording as a standard deviation: a bound counts as one, else the noise."""
-    sd = rec.sd if rec.sd is not None else fit.noise if rec.bound is None else rec.bound
-    return {"sd": sd, "bound": None, "estimated": rec.estimated or (rec.bound is None and rec.sd is None)}
-
-
-def filled(rec: Recording, longest: float | None) -> Recording:
-    """See `Recording.filled`."""
-    if not rec.gaps:
-        return rec
+    """See `Recording.with_velocities`: how smooth a motion is, is an estimate, so such velocities decide nothing."""
     fit = motions(rec)
-    fill = ~rec.present & fit.carried
-    most = np.inf if longest is None else ensure_positive("longest", longest)
+    unknown = rec.bound is None and rec.sd is None
+    change: dict[str, Any] = {"sd": fit.noise, "estimated": True} if unknown else {}
+    p_sd = np.where(fit.known, fit.p_sd, 0.0)
+    return replace(rec, p=fit.p, u=fit.u, p_sd=p_sd, p_bound=None, smoothed=True, **change)
+
+
+class _Ends(NamedTuple):
+    """Positions and velocities before and after a gap, (2, m) each, and their errors, (2,); inf where not known."""
+
+    q: FloatArray
+    p: FloatArray
+    off_q: FloatArray
+    off_p: FloatArray
+
+
+def filled(rec: Recording, most: float | None, longest: float | None) -> Recording:
+    """See `Recording.filled`."""
+    if not rec.gaps or most is None:
+        return rec
+    most = ensure_positive("most_acceleration", most)
+    reach = np.inf if longest is None else ensure_positive("longest", longest)
+    fit = motions(rec) if rec.bound is None else None
+    name, stated = ("bound", rec.bound) if fit is None else ("sd", rec.sd if rec.sd is not None else fit.noise)
+    error: FloatArray = np.broadcast_to(np.asarray(stated, dtype=np.float64), rec.present.shape).copy()
+    p, speed = rec.p, rec.p_bound if fit is None else rec.p_sd
+    if p is None:  # those of the smoothing splines, or none that a bound holds of
+        p = np.full(rec.q.shape, np.nan) if fit is None else fit.p
+        speed = np.inf if fit is None else np.nan_to_num(fit.p_sd, nan=np.inf)
+    slip: FloatArray = np.broadcast_to(error / rec.interval if speed is None else speed, rec.present.shape).copy()
+    q, p = rec.q.copy(), p.copy()
     for i, gap, duration in _gaps(rec):
-        fill[gap, i] &= duration <= most
-    change = _in_band(rec, fit)
-    change["sd"] = sd = np.where(fill, np.nan_to_num(fit.q_sd), change["sd"])
+        if duration <= reach:
+            at, here = [gap.start - 1, gap.stop], (rec.t[gap] - rec.t[gap.start - 1]) / duration
+            ends = _Ends(rec.q[at, i], p[at, i], error[at, i], slip[at, i])
+            q[gap, i], error[gap, i], p[gap, i], slip[gap, i] = _bridge(here, duration, ends, most)
+    change: dict[str, Any] = {"q": q, "u": None, name: error}
     if rec.p is not None:
-        own = rec.p_sd if rec.p_sd is not None else rec.p_bound
-        change["p_sd"] = np.where(fill, np.nan_to_num(fit.p_sd), sd / rec.interval if own is None else own)
-        change["p_bound"] = None
-    for name in ("q", "p", "u"):
-        if (known := getattr(rec, name)) is not None:
-            change[name] = np.where(fill[:, :, None], getattr(fit, name), known)
-    return replace(rec, **change)
+        change |= {"p": p, f"p_{name}": slip}
+    return replace(rec, estimated=rec.estimated or (rec.bound is None and rec.sd is None), **change)
+
+
+def _bridge(
+    s: FloatArray, duration: float, ends: _Ends, most: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return positions and velocities in a gap at shares s of it, each with what any motion may be off.
+
+    The cubic through both ends, or the chord where velocities are not known or say less. A motion whose acceleration is
+    ``most`` at most is off by ``most`` times the integral of the absolute value of Peano's kernel; errors of ends add.
+    """
+    one, none = np.ones(len(s)), np.zeros((2, len(s)))
+    rise, fall = s**2 * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / duration
+    forms = [
+        [(np.stack([1.0 - s, s]), none), (np.stack([-one, one]) / duration, none)],
+        [
+            (np.stack([1.0 - rise, rise]), duration * np.stack([s * (1.0 - s) ** 2, -(s**2) * (1.0 - s)])),
+            (np.stack([-fall, fall]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
+        ],
+    ]
+    told = bool(np.isfinite(ends.off_p).all() and np.isfinite(ends.p).all())
+    p, off_p = (ends.p, ends.off_p) if told else (np.zeros(ends.p.shape), np.zeros(2))
+    found = []
+    for order in (0, 1):
+        best, error = np.zeros((len(s), ends.q.shape[1])), np.full(len(s), np.inf)
+        for form in forms[: 1 + told]:
+            by_q, by_p = form[order]
+            off = most * _kernel(s, duration, by_q[1], by_p[1], order)
+            off = off + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ off_p
+            best = np.where((off < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best)
+            error = np.minimum(off, error)
+        found += [best, error]
+    return found[0], found[1], found[2], found[3]
+
+
+def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, order: int) -> FloatArray:
+    """Integral of the absolute value of Peano's kernel of an interpolation, or of its slope, at shares s of a gap."""
+
+    def kernel(x: FloatArray | float) -> tuple[Any, Any]:
+        after = -by_q * (1.0 - x) * duration - by_p
+        return after + ((s - x) * duration if order == 0 else 1.0), after
+
+    def area(a: FloatArray, b: FloatArray, width: FloatArray) -> FloatArray:  # of |a line| from a to b
+        total = np.abs(a) + np.abs(b)
+        crossing = np.divide(a**2 + b**2, total, out=np.zeros_like(total), where=total > 0.0)
+        result: FloatArray = 0.5 * width * np.where(a * b < 0.0, crossing, total)
+        return result
+
+    here = kernel(s)
+    return duration * (area(kernel(0.0)[0], here[0], s) + area(here[1], kernel(1.0)[1], 1.0 - s))
 
 
 def _gaps(rec: Recording) -> Iterator[tuple[int, slice, float]]:

@@ -106,6 +106,7 @@ def verify_recording(
     if item.kind != "trajectory":
         raise ArgumentError(f"{item.id} is not about motion: expected a theorem that is checked on a run")
     rec.ensure_complete("a verdict")
+    rec = rec.measured
     if law is None:
         return _of_samples(item, rec, tolerances, d, r, subject)
     if d is not None or r is not None:
@@ -128,6 +129,7 @@ def verify_recording(
 def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: Any = None, **case: Any) -> Verdicts:
     """Return the verdicts of all theorems about a law on a recording; without a law, of definitions about samples."""
     rec.ensure_complete("a verdict")
+    rec = rec.measured
     if law is None:
         return Verdicts(verify_recording(theorem(name), rec, tolerances, **case) for name in DEFINITIONS)
     p = rec.p if rec.p is not None else rec.with_velocities().p

@@ -175,7 +175,7 @@ def test_wrong_bytes_and_files_are_refused(tmp_path):
     for source, message in (
         (tmp_path / "nothing.csv", "no file"),
         (tmp_path, "no regular file"),
-        (3, "expected a file, a pandas frame, or arrays by name"),
+        (3, "expected a file, a pandas frame, an xarray dataset, or arrays by name"),
         ({"t": T, "q": np.zeros((5, 2, 3))}, r"its axis 2 is that long: give numpy.moveaxis\(q, 2, 0\)"),
     ):
         with pytest.raises(FlockanaError, match=message):

@@ -1,6 +1,7 @@
-"""Arrays by name: npz, MATLAB and netCDF files, mappings."""
+"""Arrays by name: npz, npy, MATLAB and netCDF files, mappings, and the datasets of `movement`."""
 
-from collections.abc import Iterator, Mapping
+import pickle
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -8,47 +9,209 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.names import TIMES
+from flockana.recorded.reading.table import table_arrays
+from flockana.recorded.reading.words import is_agent, is_frame, is_time, words_of
 
 _NAMES = {
-    "t": TIMES,
-    "q": ("q", "positions", "position", "pos", "x", "xy", "xyz"),
+    "t": ("t", "time", "times", "timestamp", "timestamps", "seconds", "tau"),
+    "q": (
+        "q",
+        "positions",
+        "position",
+        "pos",
+        "x",
+        "xy",
+        "xyz",
+        "trajectories",
+        "trajectory",
+        "tracks",
+        "locations",
+        "coords",
+    ),
     "p": ("p", "velocities", "velocity", "vel", "v"),
     "u": ("u", "accelerations", "acceleration", "acc", "a", "inputs"),
 }
+_RATES = ("fps", "frames_per_second", "frame_rate", "framerate")
+_AXES = {
+    **dict.fromkeys(("t", "time", "times", "frame", "frames", "sample", "samples"), 0),
+    **dict.fromkeys(("n", "agent", "agents", "individual", "individuals", "id", "robot", "particle", "animal"), 1),
+    **dict.fromkeys(("m", "axis", "axes", "space", "xy", "xyz", "coordinate", "coordinates", "dim"), 2),
+}
+_SAFE = {"ndarray", "dtype", "_reconstruct", "scalar", "OrderedDict", "_frombuffer", "_codecs", "encode"}
 
 
 def named_arrays(
-    arrays: Mapping[str, Any], where: str, *, columns: Mapping[str, Any] | None = None, dt: float | None = None
+    arrays: Mapping[str, Any],
+    where: str,
+    *,
+    columns: Mapping[str, Any] | None = None,
+    dt: float | None = None,
+    axes: Any = None,
+    clock: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p and u among arrays by name."""
+    """Return t, q, p, u and read_as among arrays by name, or of a long table whose columns they are."""
+    arrays = _without_shells(arrays)
     given = {} if columns is None else dict(columns)
+    if (frame := _long_table(arrays, given)) is not None:
+        frame.attrs["where"] = where
+        return table_arrays(frame, given or None, dt, clock)
     lower = {str(name).lower(): name for name in arrays if name not in given.values()}
-    found: dict[str, Any] = {}
+    found, read_as = dict[str, Any](), []
     for kind, names in _NAMES.items():
-        name = given.get(kind, next((lower[each] for each in names if each in lower), None))
+        known = [lower[each] for each in names if each in lower]
+        if kind not in given and len(known) > 1:
+            raise ArgumentError(
+                f"{where}: {', '.join(map(repr, known))} may each be {kind}: expected columns={{{kind!r}: ...}}"
+            )
+        name = given.get(kind, known[0] if known else None)
         if kind in given and name not in list(arrays):
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
             found[kind] = _array(arrays[name], kind, where)
+            read_as.append(f"{kind} from {name!r} {found[kind].shape}")
     shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in found:
         raise ArgumentError(
             f'{where} holds {shown}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
+    if axes is not None:
+        order = _order(axes)
+        found |= {k: _turned(found[k], order, k, where) for k in "qpu" if k in found}
+        read_as.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
     q = found["q"]
     if q.ndim != 3:
         raise ArgumentError(
-            f"{where}: {shown}: expected positions of shape (T, n, m), such as q.reshape(T, n, m) or stack([x, y], 2)"
+            f"{where}: {shown}: expected positions of shape (T, n, m); say which axis is which by axes=, such as "
+            'axes=("time", "axis") of one agent, or ("time", "agent") on a line'
         )
-    if "t" not in found and dt is None:
+    step, rate = _interval(lower, arrays, dt, where)
+    if "t" not in found and step is None:
         raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
-    t = found["t"].reshape(-1) if "t" in found else (dt or 0.0) * np.arange(len(q))  # MATLAB has no vectors
+    if "t" in found and dt is not None:
+        raise ArgumentError(f"{where} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
+    t = found["t"].reshape(-1) if "t" in found else (step or 0.0) * np.arange(len(q))  # MATLAB has no vectors
+    if "t" not in found:
+        read_as.append(rate or "t from the samples times dt")
     if len(t) != len(q):
         turned = [k for k in range(3) if q.shape[k] == len(t)]
-        hint = f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0)" if turned else ""
-        raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}: expected (T, n, m){hint}")
-    return found | {"t": t}
+        hint = (
+            f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0), or axes=" if turned else ""
+        )
+        raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}: expected (T, n, m){hint}, or axes=")
+    if q.shape[2] > 3:
+        raise ArgumentError(
+            f"{where}: q of shape {q.shape} has {q.shape[2]} axes if read as (T, n, m): expected 1 to 3; name them by "
+            'axes=, such as axes=("time", "axis", "agent")'
+        )
+    return found | {"t": t, "read_as": tuple(read_as)}
+
+
+def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | None, where: str) -> tuple[Any, str]:
+    """Return the interval between samples that is given, or that a frame rate beside the arrays states."""
+    name = next((lower[each] for each in _RATES if each in lower), None)
+    rate = np.asarray(arrays[name]).reshape(-1) if name is not None else np.empty(0)
+    if rate.size != 1 or rate.dtype.kind not in "fiu" or not rate[0] > 0:
+        return dt, ""
+    if dt is not None and abs(dt * float(rate[0]) - 1.0) > 1e-6:
+        raise ArgumentError(f"{where} has {name} = {rate[0]:g}, and dt = {dt:g} is given: expected one of them")
+    return 1.0 / float(rate[0]), f"t from the samples over {name} = {rate[0]:g}"
+
+
+def _order(axes: Any) -> list[int]:
+    """Return which of time, agent and axis each axis of an array is."""
+    words = axes.replace(",", " ").split() if isinstance(axes, str) else list(axes)
+    words = list(words[0]) if len(words) == 1 and len(words[0]) in (2, 3) and words[0] not in _AXES else words
+    order = [_AXES.get(str(word).lower(), -1) for word in words]
+    if -1 in order or len(set(order)) < len(order) or 0 not in order or len(order) not in (2, 3):
+        raise ArgumentError(
+            f'axes = {axes!r}: expected time, agent and axis in the order of the array, such as "time axis agent"'
+        )
+    return order
+
+
+def _turned(x: Any, order: Sequence[int], kind: str, where: str) -> Any:
+    """Return an array with its axes as (T, n, m); one that is left out has the length 1."""
+    if x.ndim != len(order):
+        raise ArgumentError(
+            f"{where}: {kind} has shape {x.shape} and axes= names {len(order)}: expected one name for each"
+        )
+    missing = [k for k in range(3) if k not in order]
+    full = x.reshape(*x.shape, *(1 for _ in missing))
+    return np.transpose(full, [[*order, *missing].index(k) for k in range(3)])
+
+
+def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return arrays by name out of dictionaries and structures that hold them, one for each agent perhaps."""
+    for value in list(arrays.values()):
+        inner = _dictionaries(value)
+        if inner and len(arrays) <= 1 + sum(_dictionaries(x) == [] for x in arrays.values()):
+            if len(inner) == 1:
+                rest = {k: x for k, x in arrays.items() if x is not value}
+                return _without_shells({**rest, **inner[0]})
+            return _joined_agents(inner)
+    return arrays
+
+
+def _dictionaries(value: Any) -> list[Mapping[str, Any]]:
+    """Return the dictionaries that a list, an array of objects or a MATLAB structure holds; none otherwise."""
+    if isinstance(value, Mapping):
+        return [value]
+    if isinstance(value, np.ndarray) and value.dtype.names:
+        return [{name: np.squeeze(one[name]) for name in value.dtype.names} for one in value.reshape(-1)]
+    items = list(value.reshape(-1)) if isinstance(value, np.ndarray) and value.dtype.hasobject else value
+    if isinstance(items, list) and items and all(isinstance(x, np.ndarray) and x.dtype.names for x in items):
+        return [one for x in items for one in _dictionaries(x)]
+    if isinstance(items, list | tuple) and items and all(isinstance(x, Mapping) for x in items):
+        return list(items)
+    return []
+
+
+def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return a dictionary for each agent as one long table."""
+    table: dict[str, list[Any]] = {}
+    for k, one in enumerate(agents):
+        columns = dict[str, Any]()
+        for name, value in one.items():
+            array = np.asarray(value)
+            array = array.reshape(-1) if array.ndim > 1 and 1 in array.shape else array
+            if array.ndim == 2 and 1 <= array.shape[1] <= 3:
+                columns |= {f"{name}_{'xyz'[j]}": array[:, j] for j in range(array.shape[1])}
+            elif array.ndim == 1 and array.size > 1:
+                columns[str(name)] = array
+            elif is_agent(words_of(name)[0]) and array.size == 1:
+                columns[str(name)] = array.reshape(-1)
+        rows = max((len(x) for x in columns.values()), default=0)
+        names = [name for name in columns if is_agent(words_of(name)[0])] or ["id"]
+        columns.setdefault(names[0], np.array([k]))
+        columns = {name: np.repeat(x, rows) if len(x) == 1 else x for name, x in columns.items()}
+        if (bad := next((name for name, x in columns.items() if len(x) != rows), None)) is not None:
+            raise ArgumentError(
+                f"agent {k}: {bad!r} has {len(columns[bad])} values: expected {rows}, one for each sample"
+            )
+        for name, x in columns.items():
+            table.setdefault(name, []).append(x)
+    if (bad := next((name for name, parts in table.items() if len(parts) != len(agents)), None)) is not None:
+        raise ArgumentError(f"{len(agents)} agents, and {bad!r} is not of each: expected the same names for all")
+    return {name: np.concatenate(parts) for name, parts in table.items()}
+
+
+def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+    """Return arrays of one length as the columns of a long table; None if they are no such columns."""
+    import pandas as pd
+
+    try:
+        plain = {str(name): np.asarray(x) for name, x in arrays.items()}
+    except ValueError:  # rows of different lengths
+        return None
+    columns = {name: x.reshape(-1) for name, x in plain.items() if x.size == max(x.shape, default=0)}
+    columns = {name: x for name, x in columns.items() if x.size > 1 or len(columns) == len(arrays)}
+    if len({x.size for x in columns.values()}) != 1:
+        return None
+    agents = "id" in given or any(is_agent(words_of(name)[0]) for name in columns)
+    times = any(is_time(words_of(name)[0]) or is_frame(words_of(name)[0]) for name in columns)
+    if not (agents and (times or {"t", "frame"} & given.keys())) or any(x.ndim > 2 for x in plain.values()):
+        return None
+    return pd.DataFrame(columns)
 
 
 def _array(value: Any, kind: str, where: str) -> Any:
@@ -74,14 +237,37 @@ def _readable(path: Path, kind: str, remedy: str) -> Iterator[None]:
         raise FileError(f"cannot read {path} as {kind}: {reason}; {remedy}") from None
 
 
+class _PlainUnpickler(pickle.Unpickler):
+    """Reader of pickled dictionaries, lists, numbers and numpy arrays; anything else could run code, and is refused."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if module.split(".")[0] in ("numpy", "collections", "_codecs") and name in _SAFE:
+            return super().find_class(module, name)
+        raise pickle.UnpicklingError(f"it holds {module}.{name}, which is neither a number nor an array")
+
+
 def npz_arrays(path: Path) -> dict[str, Any]:
-    """Return the arrays of an npz file; objects are refused, as they can run code."""
+    """Return the arrays of a file npz or npy; of objects, those in dictionaries of arrays alone."""
     with _readable(path, "npz", "write it by numpy.savez"):
-        found = np.load(path, allow_pickle=False)
-        if isinstance(found, np.ndarray):  # of a file .npy
-            return {"q": found}
-        with found as file:
-            return {name: file[name] for name in file.files}
+        with path.open("rb") as file:
+            if file.read(6) == b"\x93NUMPY":
+                return _npy_array(file)
+        with np.load(path, allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+
+
+def _npy_array(file: Any) -> dict[str, Any]:
+    """Return the array of an npy file; dictionaries in an array of objects are unpickled without running code."""
+    file.seek(0)
+    version = np.lib.format.read_magic(file)
+    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    if not read(file)[2].hasobject:
+        file.seek(0)
+        return {"q": np.load(file, allow_pickle=False)}
+    content = np.asarray(_PlainUnpickler(file).load(), dtype=object)
+    if not _dictionaries(content):
+        raise ValueError("it holds objects that are no dictionaries of arrays by name")
+    return {"objects": content}
 
 
 def mat_arrays(path: Path) -> dict[str, Any]:
@@ -90,20 +276,53 @@ def mat_arrays(path: Path) -> dict[str, Any]:
 
     with _readable(path, "a MATLAB file", "expected save(..., '-v7')"):
         try:
-            found = loadmat(path, squeeze_me=False)
+            arrays = loadmat(path, squeeze_me=False)
         except NotImplementedError:
             raise FileError(f"{path} is a MATLAB file of version 7.3: expected save(..., '-v7')") from None
-    return {name: value for name, value in found.items() if not name.startswith("__")}
+    return {name: value for name, value in arrays.items() if not name.startswith("__")}
 
 
-def netcdf_arrays(path: Path) -> dict[str, Any]:
-    """Return the arrays of a netCDF file, coordinates among them; of a run that flockana saved, too."""
+def netcdf_arrays(path: Path) -> Any:
+    """Return the dataset of a netCDF file; of a run that flockana saved, too."""
     import xarray
 
     with (
         _readable(path, "netCDF-4", "expected q over (time, agent, axis)"),
         xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset,
     ):
-        data = dataset.load()
-    found = {str(name): np.asarray(data[name]) for name in (*data.coords, *data.data_vars)}
-    return {name: value for name, value in found.items() if value.dtype.kind in "fiu"}
+        return dataset.load()
+
+
+def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
+    """Return the arrays of an xarray.Dataset; its dimensions say which axis is which, as `movement` names them.
+
+    Positions are over time, space and individual(s), and keypoint(s) of each; of several keypoints one must be chosen.
+    """
+    keys = next((name for name in ("keypoints", "keypoint") if name in dataset.sizes), None)
+    if keys is not None and "position" in dataset:
+        names = [str(x) for x in dataset[keys].values]
+        if len(names) > 1:
+            raise ArgumentError(
+                f"{where} has {len(names)} {keys} of each individual, {', '.join(names[:4])}: expected one; give "
+                f"ds.sel({keys}={names[0]!r}), or ds.mean({keys!r}), the mean of all"
+            )
+        dataset = dataset.isel({keys: 0})
+    arrays: dict[str, Any] = {}
+    for name in (*dataset.coords, *dataset.data_vars):
+        array = dataset[name]
+        order = [_AXES.get(str(each).lower(), -1) for each in array.dims]
+        if "space" in array.dims and -1 not in order and 0 in order and array.ndim in (2, 3):
+            arrays[str(name)] = _turned(np.asarray(array), order, str(name), where)
+        elif array.dtype.kind in "fiu" and not {"space"} & {*array.dims}:
+            arrays[str(name)] = np.asarray(array)
+    if "space" not in dataset.sizes:
+        return arrays
+    kept = {name: x for name, x in arrays.items() if name in ("time", "position", "velocity", "acceleration")}
+    fps = dataset.attrs.get("fps")
+    if dataset.attrs.get("time_unit") == "frames":
+        kept.pop("time", None)
+    if "time" not in kept and fps is not None:
+        kept["fps"] = np.asarray(fps)
+    people = next((name for name in ("individuals", "individual") if name in dataset.coords), None)
+    ids = None if people is None else tuple(str(x) for x in np.atleast_1d(dataset[people].values))
+    return kept | ({} if ids is None else {"ids": ids})

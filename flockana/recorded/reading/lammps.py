@@ -77,6 +77,8 @@ def read_dump(
     columns = found[0].columns
     if dt is None and any(each.time is None for each in found):
         raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
+    if dt is not None and not needed and not any(each.time is None for each in found):
+        raise ArgumentError(f"{path} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
     t = np.array([each.step * (dt or 0.0) if each.time is None else each.time for each in found])
     if not (np.diff(t) > 0.0).all():
         k = int(np.argmin(np.diff(t)))

@@ -1,122 +1,278 @@
-"""Names of columns and arrays in files of recordings, and what they mean."""
+"""Which column of a table holds what, by its name; what may be read in two ways is refused with both."""
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flockana.base.errors import ArgumentError, format_value
+from flockana.recorded.reading.words import (
+    AXES,
+    Unit,
+    Word,
+    coordinate,
+    is_agent,
+    is_agents_word,
+    is_frame,
+    is_time,
+    words_of,
+)
 
 Columns = Mapping[str, Any] | Sequence[str] | None  # names that a user gives
 
-AXES = "xyz"
-TIMES = ("t", "time", "times", "timestamp", "seconds", "tau")
-FRAMES = ("frame", "frames", "step", "sample")
-AGENTS = (
-    *("id", "agent", "agent_id", "track", "track_id", "trackid"),
-    *("particle", "robot", "bird", "fish", "name", "label"),
-)
-KINDS = {
-    "q": ("{}", "q{}", "q_{}", "pos_{}", "position_{}"),
-    "p": ("v{}", "p{}", "v_{}", "p_{}", "vel_{}"),
-    "u": ("u{}", "a{}", "u_{}", "a_{}", "acc_{}"),
-}
-COORDINATES = {
-    form.format(letter): (kind, axis)
-    for kind, forms in KINDS.items()
-    for axis, letter in enumerate(AXES)
-    for form in forms
-}
-_UNIT = re.compile(r"\s*[\[(].*[\])]\s*$")  # x [m], t (s)
-_NUMBERED = re.compile(r"^([a-z]+_?)[_ .-]?(\d+)$")  # x1, vx_2
-_AGENT_FIRST = re.compile(r"^(.+?)[_ .-]([a-z]+)$")  # robot7_x
+MEANINGS = {"q": "position", "p": "velocity", "u": "acceleration"}
+_KNOWN = ("t", "frame", "id", "agents", "q", "p", "u")
+_WHOLE = ("sec", "secs", "seconds")  # beside a column of nanoseconds
+_NANO = ("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds")
+_EITHER = 'columns={"q": [...]} or columns={"agents": [...]}'
+_NAMED = 'name them by columns={"t": ..., "id": ..., "q": [...], "p": [...]}'
+
+Kinds = dict[str, dict[str, str]]  # column by kind and axis
 
 
 @dataclass(frozen=True)
 class Layout:
     """Which columns hold what: time or frame, agent, and coordinates by kind ("q", "p", "u").
 
-    In a wide table the coordinates are those of each agent, by its name.
+    In a wide table the coordinates are those of each agent, by its name. `rivals` may be the agent's column too: their
+    numbers decide.
     """
 
-    time: str | None
+    time: Any  # a column, or those of seconds and nanoseconds
     frame: str | None
     agent: str | None
     long: Mapping[str, Sequence[str]]
     wide: Mapping[str, Mapping[str, Sequence[str]]]
+    rivals: tuple[str, ...] = ()
+    units: Mapping[str, Unit] | None = None
+    notes: tuple[str, ...] = ()
 
 
-def plain(name: Any) -> str:
-    """Return a column's name without unit, capitals, and blanks or # at its ends."""
-    return _UNIT.sub("", str(name).lstrip("# ")).strip().lower()
+def is_header(name: Any) -> bool:
+    """Return whether a name is that of a coordinate, an agent or a time."""
+    words, unit = words_of(name)
+    return is_time(words) or is_agent(words) or coordinate(words, unit) is not None
 
 
-def _agent_and_coordinate(name: str) -> tuple[str, str, int] | None:
-    """Return agent, kind and axis that a plain name stands for; the agent is empty in a long table."""
-    ways = [("", name)]
-    if match := _NUMBERED.match(name):
-        ways.append((match[2], match[1].rstrip("_")))
-    if match := _AGENT_FIRST.match(name):
-        ways.append((match[1], match[2]))
-    return next(((agent, *COORDINATES[each]) for agent, each in ways if each in COORDINATES), None)
+def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | None = None) -> Layout:
+    """Return the layout of a table by its header, and by the names that a user states.
 
-
-def layout_of(names: Sequence[Any], where: str) -> Layout:
-    """Return the layout of a table by its header."""
-    by_name = {plain(name): str(name) for name in names}
-    time, frame, agent = (
-        next((by_name[each] for each in known if each in by_name), None) for known in (TIMES, FRAMES, AGENTS)
+    Raises
+    ------
+    ArgumentError
+        If a column is not there, or what is not stated may be read in two ways; the message has both.
+    """
+    given = _ensure_given(columns or {}, names, where)
+    taken = {x for k, v in given.items() if k != "agents" for x in (v if isinstance(v, list | tuple) else [v])}
+    texts = [name for name in names if name not in taken]
+    described = {name: words_of(name) for name in texts}
+    time, passed = _time_of(texts, described, where) if not {"t", "frame"} & given.keys() else (given.get("t"), [])
+    frame = given.get(
+        "frame", next((x for x in texts if is_frame(described[x][0])), None) if "t" not in given else None
     )
-    wide: dict[str, dict[str, dict[int, str]]] = {}
-    for name, column in by_name.items():
-        if column not in (time, frame, agent) and (found := _agent_and_coordinate(name)) is not None:
-            owner, kind, axis = found
-            wide.setdefault(owner, {}).setdefault(kind, {})[axis] = column
-    long = wide.pop("", {})
+    used = {*passed, *(time if isinstance(time, tuple) else [time]), frame}
+    agents = [given["id"]] if "id" in given else [x for x in texts if x not in used and is_agent(described[x][0])]
+    known = {x: word for x in texts if x not in used and x not in agents and (word := coordinate(*described[x]))}
+    units = {x: unit for x in names if (unit := words_of(x)[1]) is not None}
     shown = ", ".join(map(str, list(names)[:12])) + (", ..." if len(names) > 12 else "")
-    if not long and not wide:
-        raise ArgumentError(
-            f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); name "
-            'them by columns={"t": ..., "id": ..., "q": [...], "p": [...]}'
-        )
-    if "q" in long or not wide:
-        return Layout(time, frame, agent, _axes(long, where, shown), {})
-    each = {agent_: _axes(kinds, where, shown) for agent_, kinds in wide.items()}
-    sizes = {agent_: {kind: len(columns) for kind, columns in kinds.items()} for agent_, kinds in each.items()}
-    first = next(iter(wide))
-    if (other := next((agent_ for agent_ in sizes if sizes[agent_] != sizes[first]), None)) is not None:
-        raise ArgumentError(f"{where} has other columns for agent {other} than for {first}: expected alike")
-    return Layout(time, frame, None, {}, each)
+    groups = _by_owner(known, where)
+    if "q" in given:
+        layout = Layout(time, frame, None, _stated(given), {})
+    else:
+        layout = _arranged(groups, given.get("agents"), agents, texts, where, shown)
+        layout = replace(layout, long={**layout.long, **{k: v for k, v in _stated(given).items() if layout.long}})
+    first = None if layout.wide or not agents else agents[0]
+    read = {*_flat(layout), *used, *agents}
+    idle = [f"{x!r}" for x in names if x not in read]
+    notes = layout.notes + ((f"not read: {', '.join(idle[:12])}{', ...' if len(idle) > 12 else ''}",) if idle else ())
+    notes += (f"not read: {', '.join(repr(x) for x in passed)}, the time of receipt",) if passed else ()
+    return replace(
+        layout, time=time, frame=frame, agent=first, rivals=tuple(agents[1:]) if first else (), units=units, notes=notes
+    )
 
 
-def given_layout(columns: Mapping[str, Any], names: Sequence[Any], where: str) -> Layout:
-    """Return the layout that a user states: "t", "id", and lists of columns for "q", "p", "u"."""
-    unknown = set(columns) - {"t", "frame", "id", "q", "p", "u"}
-    if unknown:
-        raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected t, frame, id, q, p, u")
-    given = {k: columns[k] for k in "qpu" if k in columns}
-    kinds = {k: [x] if isinstance(x, str) else list(x) if isinstance(x, Sequence) else [x] for k, x in given.items()}
+def _flat(layout: Layout) -> set[str]:
+    return {x for kinds in (layout.long, *layout.wide.values()) for columns in kinds.values() for x in columns}
+
+
+def _stated(given: Mapping[str, Any]) -> dict[str, list[str]]:
+    kinds = {k: given[k] for k in "qpu" if k in given}
+    return {k: list(x) if isinstance(x, list | tuple) else [x] for k, x in kinds.items()}
+
+
+def _ensure_given(columns: Mapping[str, Any], names: Sequence[Any], where: str) -> Mapping[str, Any]:
+    """Return the names that a user states, or raise where one is no column."""
+    if unknown := set(columns) - {*_KNOWN}:
+        raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected {', '.join(_KNOWN)}")
+    kinds = _stated(columns)
     asked = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
     lacking = [x for x in asked if x not in list(names)]
     if lacking:
         raise ArgumentError(f"{where} has no column {lacking[0]!r}: expected one of {', '.join(map(str, names))}")
-    if "q" not in kinds or any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3:
+    if "q" in kinds and (any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3):
         got = format_value(dict(columns))
         raise ArgumentError(f"columns = {got}: expected 1 to 3 columns for q, and as many for p and u")
-    return Layout(columns.get("t"), columns.get("frame"), columns.get("id"), kinds, {})
+    return columns
 
 
-def _axes(kinds: Mapping[str, Mapping[int, str]], where: str, shown: str) -> dict[str, list[str]]:
-    """Columns of each kind in the order of their axes; raise where one is missing."""
-    if "q" not in kinds:
-        raise ArgumentError(f"{where} has the columns {shown}: expected positions x, y, z among them")
-    m = max(kinds["q"]) + 1
-    for kind, columns in kinds.items():
-        size = max(m, max(columns) + 1)
-        lacking = [KINDS[kind][0].format(AXES[k]) for k in range(size) if k not in columns]
+def _two_readings(where: str, names: Sequence[Any], one: str, other: str, remedy: str) -> ArgumentError:
+    shown = ", ".join(repr(x) for x in list(names)[:6])
+    return ArgumentError(f"{where}: {shown} may be {one}, or {other}: expected {remedy}, which decides")
+
+
+def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> tuple[Any, list[str]]:
+    """Return the column of times, or those of seconds and nanoseconds, and times of receipt that are not read."""
+    endings = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
+    nano = [name for name in names if endings[name] and endings[name][0] in _NANO]
+    whole = [name for name in names if endings[name] and endings[name][0] in _WHOLE]
+    if len(nano) == len(whole) == 1:
+        return (whole[0], nano[0]), []
+    times = [x for x in names if is_time(described[x][0])]
+    received = [x for x in times if str(x).startswith(("%", "__")) or "rosbag" in str(x).lower()]
+    if received and len(received) < len(times):
+        times = [x for x in times if x not in received]
+    else:
+        received = []
+    if len(times) > 1:
+        raise _two_readings(where, times, "the times", "one of them another clock", f'columns={{"t": {times[0]!r}}}')
+    return (times[0] if times else None), received
+
+
+def _by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kinds]:
+    """Return columns by owner, kind and axis; orientations and other vectors have kinds of their own."""
+    patterns: dict[tuple[str, ...], dict[str, str]] = {}
+    for name, word in known.items():
+        patterns.setdefault(word.pattern, {}).setdefault(word.axis, name)
+    quaternions = {pattern for pattern, axes in patterns.items() if {*axes} >= {*"xyzw"}}
+    others = any(word.kind == "q" and word.pattern not in quaternions for word in known.values())
+    groups: dict[tuple[str, ...], Kinds] = {}
+    for name, word in known.items():
+        kind = word.kind
+        if word.pattern in quaternions:
+            if kind == "q" and not others and word.pattern in ((), ("",)):
+                remedy = f'columns={{"q": [{", ".join(repr(patterns[word.pattern][x]) for x in AXES)}]}}'
+                one, other = "positions and a weight", "a quaternion without positions"
+                raise _two_readings(where, [*patterns[word.pattern].values()], one, other, remedy)
+            kind = "orientation"
+        if word.axis == "w":
+            continue
+        own = groups.setdefault(word.owner, {})
+        if (rival := own.get(kind, {}).get(word.axis)) is not None and kind in MEANINGS:
+            raise _rivals(where, rival, name, kind, word.axis)
+        own.setdefault(kind, {})[word.axis] = name
+    for kinds in groups.values():
+        _settle(kinds, where)
+    return groups
+
+
+def _rivals(where: str, one: str, other: str, kind: str, axis: str) -> ArgumentError:
+    return ArgumentError(
+        f"{where}: {one!r} and {other!r} may both be the {MEANINGS[kind]} along {axis}: expected columns={{"
+        f'"{kind}": [{one!r}, ...]}}, which decides'
+    )
+
+
+def _settle(kinds: Kinds, where: str) -> None:
+    """Settle px and qx, which are positions if nothing else is; else px is a velocity, and qx refused."""
+    for letter in "pq":
+        columns = kinds.pop(letter + "?", None)
+        if columns is None:
+            continue
+        axis, name = next(iter(columns.items()))
+        if "q" not in kinds:
+            kinds["q"] = columns
+        elif letter == "q" or "p" in kinds:
+            raise _rivals(where, kinds["q"].get(axis, name), name, "q", axis)
+        else:
+            kinds["p"] = columns
+
+
+def _arranged(
+    groups: dict[tuple[str, ...], Kinds],
+    stated: Any,
+    agents: Sequence[str],
+    names: Sequence[Any],
+    where: str,
+    shown: str,
+) -> Layout:
+    """Return a long or a wide layout: one vector, or one for each agent."""
+    placed = {owner: kinds for owner, kinds in groups.items() if "q" in kinds}
+    if stated is not None:
+        wanted = {str(name): tuple(words_of(name)[0]) for name in stated}
+        lacking = [name for name, owner in wanted.items() if owner not in placed]
         if lacking:
+            raise ArgumentError(f"{where}: no positions of {lacking[0]!r} are among the columns {shown}")
+        return Layout(
+            None, None, None, {}, _alike({name: placed[owner] for name, owner in wanted.items()}, where, shown)
+        )
+    if not placed:
+        raise _no_positions(names, groups, where, shown)
+    numbered = [owner for owner in placed if owner and all(word.isdigit() for word in owner)]
+    listed = [kinds["q"]["x"] for kinds in placed.values() if "x" in kinds["q"]] or names
+    if () in placed:
+        if numbered:
+            raise _two_readings(where, listed, "one agent", "several", _EITHER)
+        return Layout(None, None, None, _axes(placed[()], where, shown), {})
+    if len(placed) == 1 and (agents or not numbered):
+        owner, kinds = next(iter(placed.items()))
+        note = f"all are of {' '.join(owner)!r}, one agent" if not agents else f"all are of {' '.join(owner)!r}"
+        return Layout(None, None, None, _axes({**groups.get((), {}), **kinds}, where, shown), {}, notes=(note,))
+    if agents:
+        remedy = 'columns={"q": [...]} of the one that is meant, or columns={"agents": [...]}'
+        raise _two_readings(where, listed, f"vectors of the agent of {agents[0]!r}", "agents of their own", remedy)
+    if loose := {*groups.get((), {})} & {*MEANINGS}:
+        raise _two_readings(where, names, f"of agents and a common {MEANINGS[min(loose)]}", "of one", _EITHER)
+    if not _are_agents(list(placed)):
+        owners = [_joined(owner) for owner in placed]
+        remedy = f'columns={{"agents": {owners}}} or columns={{"q": [...]}}'
+        raise _two_readings(where, listed, "agents", "vectors of one agent, such as a goal", remedy)
+    return Layout(None, None, None, {}, _alike({_joined(x): kinds for x, kinds in placed.items()}, where, shown))
+
+
+def _joined(owner: Sequence[str]) -> str:
+    return "".join(owner) if all(word.isdigit() for word in owner[1:]) else "_".join(owner)
+
+
+def _are_agents(owners: list[tuple[str, ...]]) -> bool:
+    """Return whether names differ in a number or a letter alone, or all begin with a word for agents."""
+    stems = {tuple(word for word in owner if not word.isdigit() and len(word) > 1) for owner in owners}
+    return len(stems) == 1 or all(is_agents_word(owner[0]) and len(owner) > 1 for owner in owners)
+
+
+def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:
+    """Return the columns of each agent in the order of axes; raise where one has others."""
+    each = {name: _axes(kinds, where, shown) for name, kinds in agents.items()}
+    sizes = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in each.items()}
+    first = next(iter(sizes))
+    if (other := next((name for name in sizes if sizes[name] != sizes[first]), None)) is not None:
+        raise ArgumentError(f"{where} has other columns for agent {other} than for {first}: expected alike")
+    return each
+
+
+def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str, shown: str) -> ArgumentError:
+    """Return the error that says why no column is a position."""
+    listed = [x for x in names if (w := words_of(x)[0])[-1:] and w[-1].isdigit() and coordinate([*w[:-1], "x"], None)]
+    if 1 < len(listed) <= 3:
+        remedy = f'columns={{"q": {list(map(str, listed))}}}, or names such as x1, x2'
+        return _two_readings(where, listed, "the axes of one agent", "agents on a line", remedy)
+    if any({*kinds} & {"orientation", "other"} for kinds in groups.values()):
+        return ArgumentError(
+            f"{where} has the columns {shown}: expected positions x, y, z among them; an orientation or a goal "
+            f"is none; {_NAMED}"
+        )
+    if groups:
+        return ArgumentError(f"{where} has the columns {shown}: expected positions x, y, z among them; {_NAMED}")
+    return ArgumentError(
+        f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); {_NAMED}"
+    )
+
+
+def _axes(kinds: Kinds, where: str, shown: str) -> dict[str, list[str]]:
+    """Columns of each kind in the order of their axes; raise where one is missing."""
+    size = 1 + max(AXES.index(axis) for axis in kinds["q"])
+    for kind in (k for k in MEANINGS if k in kinds):
+        own = max(size, 1 + max(AXES.index(axis) for axis in kinds[kind]))
+        letter = {"q": "", "p": "v", "u": "a"}[kind]
+        if lacking := [letter + axis for axis in AXES[:own] if axis not in kinds[kind]]:
             raise ArgumentError(f"{where} has the columns {shown}: expected {', '.join(lacking)} too, or fewer axes")
-        if len(columns) > m:
-            extra = KINDS[kind][0].format(AXES[m])
-            raise ArgumentError(f"{where} has {extra} and no {AXES[m]}: expected both or none")
-    return {kind: [columns[k] for k in range(m)] for kind, columns in kinds.items()}
+    return {kind: [kinds[kind][axis] for axis in AXES[:size]] for kind in MEANINGS if kind in kinds}

@@ -1,42 +1,190 @@
-"""Long and wide tables as arrays: times, positions, velocities, names of agents."""
+"""Long and wide tables as arrays: times, positions, velocities, names of agents, and how each was read."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.names import Columns, Layout, given_layout, layout_of
+from flockana.recorded.reading.names import MEANINGS, Columns, Layout, layout_of
 from flockana.recorded.reading.text import numbers, row_name
+from flockana.recorded.reading.words import AXES, Unit
 
-_SPARSE = 20  # positions for each row of a table, beyond which agents were sampled at different times
+_LARGEST = 2e8  # numbers that a recording holds at most, gaps among them
+_ROUNDINGS = 16.0  # of the largest stamp, by which stamps of one instant may differ
+_EPOCHS = ((1e17, 1e-9, "nanoseconds"), (1e14, 1e-6, "microseconds"), (1e11, 1e-3, "milliseconds"))  # since 1970
 
 
-def table_arrays(frame: Any, columns: Columns, dt: float | None, clock: float | None) -> dict[str, Any]:
-    """Return t, q, p, u and ids of a table, as `Recording` takes them."""
+def table_arrays(
+    frame: Any,
+    columns: Columns,
+    dt: float | None,
+    clock: float | None,
+    m: int | None = None,
+    jitter: float | None = None,
+) -> dict[str, Any]:
+    """Return t, q, p, u, ids and read_as of a table, as `Recording` takes them."""
     where = str(frame.attrs.get("where", "the frame"))
     if not len(frame):
         raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
     if not frame.columns.is_unique:
         twice = frame.columns[frame.columns.duplicated()][0]
         raise ArgumentError(f"{where}: the column {twice!r} is given twice; expected each once")
-    names = list(frame)
-    layout = given_layout(columns, names, where) if isinstance(columns, Mapping) else layout_of(names, where)
+    layout = layout_of(list(frame), where, columns if isinstance(columns, Mapping) else None)
+    if layout.time is not None and dt is not None:
+        raise ArgumentError(
+            f"{where} has times in {layout.time!r} and dt = {dt:g} is given: expected one; leave dt= out, or count "
+            f'by frames with columns={{"frame": {layout.frame or "..."!r}}}'
+        )
+    layout = _of_dimension(layout, m, where)
+    t, said = _times(frame, layout, dt, clock, where)
+    layout = _with_agents(frame, layout, t, where)
+    factors, texts = _factors(layout, where)
+    notes = [*said, *frame.attrs.get("notes", ()), *texts]
     if layout.wide:
-        return _wide(frame, layout.wide, _times(frame, layout, dt, clock, where))
-    if layout.time is None and layout.frame is None:
-        return _one_instant(frame, layout, where)
-    t = _times(frame, layout, dt, clock, where)
+        arrays = _wide(frame, layout.wide, _counted(frame, t, dt, layout, where))
+    elif layout.agent is not None and t is not None:
+        t, moved = _instants(t, jitter)
+        notes += [moved] if moved else []
+        arrays = _long(frame, layout, t, where)
+    elif layout.agent is not None:
+        arrays = _one_instant(frame, layout)
+    else:
+        t = _counted(frame, t, dt, layout, where)
+        if len(np.unique(t)) < len(t):
+            rest = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
+            raise ArgumentError(
+                f"{where} has several rows at one time and no column id: expected the agent of each row; name it by "
+                f'columns={{"id": ...}}, one of {rest}'
+            )
+        arrays = _wide(frame, {"0": layout.long}, t)
+    for kind, factor in factors.items():
+        arrays[kind] = arrays[kind] * factor
+    return arrays | {"read_as": (*_described(layout, dt), *notes, *layout.notes, *_flat_axis(arrays))}
+
+
+def _counted(frame: Any, t: FloatArray | None, dt: float | None, layout: Layout, where: str) -> FloatArray:
+    """Return the time of each row, which counts where there are no times."""
+    if t is not None:
+        return t
+    if dt is None:
+        rest = (
+            "a row for each instant" if layout.wide else "rows that are samples of one agent, or agents at one instant"
+        )
+        raise ArgumentError(
+            f"{where} has no times, and {rest}: expected dt=, the time from row to row, a column time, columns="
+            '{"t": ...}, or, of one instant, a column id'
+        )
+    return dt * np.arange(len(frame), dtype=np.float64)
+
+
+def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
+    """Return the layout with the first m axes."""
+    kinds = layout.long or next(iter(layout.wide.values()))
+    if m is None or m == len(kinds["q"]):
+        return layout
+    if m not in range(1, len(kinds["q"]) + 1):
+        raise ArgumentError(f"m = {m!r}: expected 1 to {len(kinds['q'])}, of which {where} has positions")
+
+    def cut(kinds: Mapping[str, Sequence[str]]) -> dict[str, Sequence[str]]:
+        return {kind: columns[:m] for kind, columns in kinds.items()}
+
+    return replace(layout, long=cut(layout.long), wide={name: cut(kinds) for name, kinds in layout.wide.items()})
+
+
+def _described(layout: Layout, dt: float | None) -> list[str]:
+    """Return which column became what, and from which unit."""
+
+    def named(columns: Sequence[str]) -> str:
+        unit = (layout.units or {}).get(columns[0])
+        return ", ".join(repr(str(x)) for x in columns) + (f" in {unit.text}" if unit else "")
+
+    texts = []
+    if layout.time is not None:
+        texts.append(f"t from {named(layout.time if isinstance(layout.time, tuple) else [layout.time])}")
+    elif layout.frame is not None:
+        texts.append(f"t from {layout.frame!r} times dt")
+    else:
+        texts.append("t from the rows times dt" if dt is not None else "one instant")
     if layout.agent is not None:
-        return _long(frame, layout, t, where)
-    if len(np.unique(t)) < len(t):
-        raise ArgumentError(f"{where} has several rows at one time and no column id: expected the agent of each row")
-    return _wide(frame, {"0": layout.long}, t)
+        texts.append(f"agents from {layout.agent!r}")
+    elif not layout.wide:
+        texts.append("one agent")
+    if layout.wide:
+        first, kinds = next(iter(layout.wide.items()))
+        each = " and ".join(f"{kind} from {named(columns)}" for kind, columns in kinds.items())
+        texts.append(f"{len(layout.wide)} agents, each with columns: {each} of agent {first}")
+    return texts + [f"{kind} from {named(columns)}" for kind, columns in layout.long.items()]
 
 
-def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, where: str) -> FloatArray:
-    """Time of each row."""
+def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
+    """Return factors by which velocities and accelerations come into the units of positions and times, and a note."""
+    units, kinds = layout.units or {}, [layout.long] if layout.long else [*layout.wide.values()]
+    own: dict[str, Unit] = {}
+    for kind in MEANINGS:
+        columns = [x for each in kinds for x in each.get(kind, ())]
+        spelt = {(units[x].length, units[x].factor, units[x].power): units[x] for x in columns if x in units}
+        if len(spelt) > 1 or (spelt and any(x not in units for x in columns)):
+            raise ArgumentError(
+                f"{where}: {MEANINGS[kind]}s are in {', '.join(x.text for x in spelt.values())}, or others: expected "
+                "one unit; convert them, or drop the units from the header"
+            )
+        if spelt:
+            own[kind] = next(iter(spelt.values()))
+    time = units.get(layout.time) if isinstance(layout.time, str) else None
+    factors, texts = {}, []
+    for kind, power in (("p", 1), ("u", 2)):
+        if kind in own and "q" in own and time is not None and own[kind].power == power:
+            if (own[kind].length == "px") != (own["q"].length == "px"):
+                continue
+            factor = own[kind].factor / own["q"].factor * time.factor**power
+            if abs(factor - 1.0) > 1e-9:
+                factors[kind] = factor
+                texts.append(f"{kind} times {factor:.4g}, from {own[kind].text} to {own['q'].text} and {time.text}")
+    return factors, texts
+
+
+def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
+    """Return a note on a last axis along which nothing moves."""
+    q = np.asarray(arrays["q"])
+    last = q[..., -1]
+    if q.shape[-1] < 2 or q.shape[0] < 2 or np.nanmax(last) != np.nanmin(last):
+        return []
+    axis = AXES[q.shape[-1] - 1]
+    return [f"{axis} is {np.nanmin(last):g} throughout, and kept: m={q.shape[-1] - 1} leaves it out"]
+
+
+def _with_agents(frame: Any, layout: Layout, t: FloatArray | None, where: str) -> Layout:
+    """Return the layout with the one column of agents among several: names of agents return at other times."""
+    import pandas as pd
+
+    if not layout.rivals or layout.agent is None or t is None:
+        return layout
+    every, fit = [layout.agent, *layout.rivals], list[str]()
+    for name in every:
+        pairs = pd.DataFrame({"t": t, "id": frame[name].to_numpy()})
+        if not pairs.duplicated().any() and frame[name].nunique() < len(frame) and not frame[name].isna().any():
+            fit.append(name)
+    codes = {tuple(pd.factorize(frame[name])[0]) for name in fit}
+    if len(codes) != 1:
+        got = ", ".join(repr(str(x)) for x in (fit or every))
+        raise ArgumentError(
+            f"{where}: {got} may each be the agent of a row, or a count: expected the one whose values come once at a "
+            f'time, and return; columns={{"id": {fit[0] if fit else every[0]!r}}} decides'
+        )
+    idle = ", ".join(repr(str(x)) for x in every if x != fit[0])
+    return replace(layout, agent=fit[0], notes=(*layout.notes, f"not read: {idle}, whose values do not name an agent"))
+
+
+def _times(
+    frame: Any, layout: Layout, dt: float | None, clock: float | None, where: str
+) -> tuple[FloatArray | None, list[str]]:
+    """Return the time of each row, None where only rows count, and what was made of the numbers."""
+    if isinstance(layout.time, tuple):
+        whole, parts = (numbers(frame, name) for name in layout.time)
+        return (whole - whole[0]) + 1e-9 * parts, ["seconds and nanoseconds are added, from the first second on"]
     if layout.time is not None:
         series = frame[layout.time]
         if series.dtype.kind == "M" or (series.dtype.kind not in "fiu" and _is_date(series.iloc[0])):
@@ -46,16 +194,21 @@ def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, wh
         if np.isnan(t).any():
             k = int(np.argmax(np.isnan(t)))
             raise FileError(f"{row_name(frame, k)}, column {layout.time!r}: no time; expected one in every row")
-        return t
+        unit = (layout.units or {}).get(layout.time)
+        for least, factor, text in _EPOCHS if unit is None else ():
+            if least <= t.min() <= t.max() < 1e3 * least and series.dtype.kind in "iu":
+                exact = series.to_numpy()
+                return (exact - exact.min()) * factor, [f"t counts {text} since 1970: in seconds from the first"]
+        return t, []
     if layout.frame is None:
-        raise ArgumentError(f'{where} has no times: expected a column time or frame; name it by columns={{"t": ...}}')
+        return None, []
     if dt is None:
         raise ArgumentError(f"{where} counts by {layout.frame!r} and has no times: expected dt=, the time of a frame")
     steps = numbers(frame, layout.frame)
     if np.isnan(steps).any() or (steps != np.rint(steps)).any():
         k = int(np.argmax(~(steps == np.rint(steps))))
         raise FileError(f"{row_name(frame, k)}, column {layout.frame!r}: expected a whole number")
-    return steps * dt
+    return steps * dt, []
 
 
 def _is_date(value: Any) -> bool:
@@ -82,6 +235,30 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
     return seconds / ensure_positive("clock", clock)
 
 
+def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
+    """Return the times with stamps of one instant made equal, by default those that differ by rounding."""
+    stamps = np.unique(t)
+    size = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
+    reach = size if jitter is None else ensure_nonnegative("jitter", jitter)
+    first, group = stamps[0], np.zeros(len(stamps), dtype=np.intp)
+    for k in range(1, len(stamps)):  # an instant is as long as the jitter at most
+        group[k] = group[k - 1]
+        if stamps[k] - first > reach:
+            first, group[k] = stamps[k], group[k - 1] + 1
+    if len(stamps) == 1 or group[-1] == len(stamps) - 1:
+        return t, ""
+    start = np.searchsorted(group, np.arange(group[-1] + 1))
+    end = np.append(start[1:], len(stamps)) - 1
+    middle = np.where(start == end, stamps[start], 0.5 * (stamps[start] + stamps[end]))
+    widest = float((stamps[end] - stamps[start]).max())
+    text = f"stamps up to {widest:.3g} apart are one instant: {len(stamps)} are {len(middle)}"
+    return middle[group[np.searchsorted(stamps, t)]], text
+
+
+def _name(agent: Any) -> str:
+    return f"{agent:.0f}" if isinstance(agent, float) and agent.is_integer() else str(agent)
+
+
 def _values(frame: Any, names: Sequence[str]) -> FloatArray:
     return np.stack([numbers(frame, name) for name in names], axis=1)
 
@@ -96,10 +273,10 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
         raise FileError(f"{row_name(frame, k)}, column {layout.agent!r}: no name; expected the agent of every row")
     agent, ids = pd.factorize(column, sort=True)
     sample, instants = pd.factorize(t, sort=True)
-    if len(ids) * len(instants) > _SPARSE * len(frame):
+    if len(ids) * len(instants) * len(layout.long["q"]) > _LARGEST:
         raise FileError(
-            f"{where}: {len(frame)} rows of {len(ids)} agents at {len(instants)} times; expected agents that are "
-            "sampled at common times; resample or round them"
+            f"{where}: {len(frame)} rows of {len(ids)} agents at {len(instants)} times; expected agents that "
+            "share their times; give jitter=, within which stamps are one instant"
         )
     place = sample.astype(np.int64) * len(ids) + agent
     if np.bincount(place).max() > 1:
@@ -109,12 +286,12 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
             f"{row_name(frame, k)}: agent {column.iloc[k]} at t = {t[k]:g} a second time; expected it once; were two "
             "agents given one name?"
         )
-    found: dict[str, Any] = {"t": np.asarray(instants, dtype=np.float64), "ids": [str(i) for i in ids]}
+    arrays: dict[str, Any] = {"t": np.asarray(instants, dtype=np.float64), "ids": [_name(i) for i in ids]}
     for kind, names in layout.long.items():
         array = np.full((len(instants) * len(ids), len(names)), np.nan)
         array[place] = _values(frame, names)
-        found[kind] = array.reshape(len(instants), len(ids), len(names))
-    return found
+        arrays[kind] = array.reshape(len(instants), len(ids), len(names))
+    return arrays
 
 
 def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: FloatArray) -> dict[str, Any]:
@@ -130,11 +307,14 @@ def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: Flo
     return {"t": t[order], "ids": list(columns)} | arrays
 
 
-def _one_instant(frame: Any, layout: Layout, where: str) -> dict[str, Any]:
+def _one_instant(frame: Any, layout: Layout) -> dict[str, Any]:
     """Agents without times: a flock at one instant."""
-    found: dict[str, Any] = {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
+    where = str(frame.attrs.get("where", "the frame"))
+    arrays: dict[str, Any] = {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
     if layout.agent is not None:
-        found["ids"] = ids = [str(i) for i in frame[layout.agent]]
+        arrays["ids"] = ids = [_name(i) for i in frame[layout.agent]]
         if len(set(ids)) < len(ids):
-            raise ArgumentError(f"{where} has agents several times and no times: expected a column time")
-    return found
+            raise ArgumentError(
+                f'{where} has agents several times and no times: expected a column time, or columns={{"t": ...}}'
+            )
+    return arrays

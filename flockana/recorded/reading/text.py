@@ -1,6 +1,7 @@
 """Tables in text files: CSV and TSV, with messages that name row, column and remedy."""
 
 import io
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,23 @@ _QUOTE, _NEWLINE = ord('"'), ord("\n")
 
 
 def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
-    """Return a table as a pandas frame: delimiter by its first line, header by its names or `names`."""
+    """Return a table as a pandas frame: delimiter by its first line, header by its names or `names`.
+
+    Empty columns at the end, decimal commas and further lines of a header are taken for what they are, and noted.
+    """
     import pandas as pd
 
     data = _bytes(path)
     first = next((line for line in data.split(b"\n", 20) if line.strip()), b"").decode("utf-8")
     delimiter = _delimiter(first)
+    if delimiter == " ":
+        data, first, delimiter = (
+            b"\n".join(b"\t".join(x.split()) for x in data.split(b"\n")),
+            "\t".join(first.split()),
+            "\t",
+        )
+        if first.startswith("#\t"):
+            data, first = data.removeprefix(b"#\t"), first.removeprefix("#\t")
     cells = [cell.strip().strip('"') for cell in first.split(delimiter)]
     if names is None and all(_is_number(cell) for cell in cells):
         raise FileError(
@@ -30,21 +42,22 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         )
     if first.count('"') % 2:
         raise FileError(f"{path}, line 1: {first.strip()[:_SHOWN]!r} has an open quote; expected a header in one line")
-    twice = sorted({cell for cell in cells if cells.count(cell) > 1}) if names is None else []
+    twice = sorted({cell for cell in cells if cell and cells.count(cell) > 1}) if names is None else []
     if twice:
         raise FileError(f"{path}, line 1: the column {twice[0]!r} is given twice; expected each once")
+    data, notes = _cleaned(data, delimiter)
     width = len(cells)
     if names is not None and len(names) != width:
         raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
     if _QUOTE not in data:
-        _ensure_rectangular(data, ord(delimiter), width, path)
+        data = _ensure_rectangular(data, ord(delimiter), width, path)
     lines = [k for k, line in enumerate(data.split(b"\n"), 1) if line.strip()] if b"\n\n" in data.strip() else None
     try:
         frame = pd.read_csv(
             io.BytesIO(data),
             sep=delimiter,
             header=0 if names is None else None,
-            names=cells if names is None else list(names),
+            names=[cell or f"column {k}" for k, cell in enumerate(cells, 1)] if names is None else list(names),
             na_values=list(_GAPS),
             keep_default_na=False,
             skipinitialspace=True,
@@ -54,10 +67,30 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         raise FileError(f"cannot read {path}: {' '.join(str(error).split())}; expected a table of numbers") from None
     if not len(frame):
         raise FileError(f"{path} has a header and no rows: expected one for each sample of an agent")
-    frame.attrs |= {"where": str(path), "first": 1 if names is not None else 2}
+    if empty := [x for k, x in enumerate(frame) if not cells[k] and names is None and frame[x].isna().all()]:
+        frame, notes = frame.drop(columns=empty), [*notes, f"{len(empty)} columns without a name are empty"]
+    frame.attrs |= {"where": str(path), "first": 1 if names is not None else 2, "notes": tuple(notes)}
     if lines is not None:  # pandas leaves out empty ones
         frame.attrs["lines"] = lines[1:] if names is None else lines
     return frame
+
+
+def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
+    """Return a table with decimal points and one line of a header, and notes on what was there instead."""
+    notes, (head, _, rest) = [], data.partition(b"\n")
+    if delimiter != "," and b"," in rest and b"." not in rest and re.search(rb"\d,\d", rest):
+        rest, notes = re.sub(rb"(?<=\d),(?=\d)", b".", rest), ["commas are decimal points"]
+    lines, skipped = rest.split(b"\n", 4), 0
+    for line in lines[:3]:
+        texts = [cell.strip(' "') for cell in line.decode("utf-8").split(delimiter)]
+        if not any(texts) or any(_is_number(text) and text not in _GAPS for text in texts):
+            break
+        skipped += 1
+    later = [cell for line in lines[skipped : skipped + 1] for cell in line.decode("utf-8").split(delimiter)]
+    if skipped and any(_is_number(cell.strip(' "')) and cell.strip() not in _GAPS for cell in later):
+        rest = b"\n" * skipped + b"\n".join(lines[skipped:])
+        notes.append(f"{skipped} more lines of a header are left out")
+    return head + b"\n" + rest, notes
 
 
 def numbers(frame: Any, column: str) -> Any:
@@ -114,24 +147,35 @@ def _bytes(path: Path) -> bytes:
 
 
 def _delimiter(line: str) -> str:
-    """Return the delimiter most frequent in the first line: tab, semicolon or comma."""
-    return max("\t,;", key=line.count)
+    """Return the delimiter most frequent in the first line: tab, semicolon or comma, else a blank."""
+    return max("\t,; ", key=lambda mark: min(line.count(mark), 1) if mark == " " else 2 * line.count(mark))
 
 
-def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path) -> None:
-    """Raise on the first row with another number of cells than the header; pandas would fill short ones."""
+def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path) -> bytes:
+    """Return the table without empty cells beyond the header; raise on a row with another number of cells.
+
+    pandas would fill short ones.
+    """
     raw = np.frombuffer(data, dtype=np.uint8)
     ends = np.flatnonzero(raw == _NEWLINE)
     ends = ends if raw[-1] == _NEWLINE else np.append(ends, len(raw))
     starts = np.concatenate([[0], ends[:-1] + 1])
     cells = np.diff(np.searchsorted(np.flatnonzero(raw == delimiter), np.append(starts, len(raw)))) + 1
-    bad = np.flatnonzero((cells != width) & (ends > starts))
+    bad, mark, long = np.flatnonzero((cells != width) & (ends > starts)), bytes([delimiter]), False
     for k in bad.tolist():
-        if text := data[starts[k] : ends[k]].strip():
+        text = data[starts[k] : ends[k]]
+        excess = mark * int(cells[k] - width)
+        if cells[k] > width and text.rstrip(b" ").endswith(excess):
+            long = True
+        elif text.strip():
             raise FileError(
                 f"{path}, line {k + 1}: {cells[k]} values, expected {width} as in the header: "
-                f"{text[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off?"
+                f"{text.strip()[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off?"
             )
+    if not long:
+        return data
+    lines = data.split(b"\n")
+    return b"\n".join(x.rstrip(b" ")[: -(x.count(mark) - width + 1)] if x.count(mark) >= width else x for x in lines)
 
 
 def _is_number(text: str) -> bool:

@@ -1,0 +1,83 @@
+"""Positions in a periodic box, unwrapped from sample to sample."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.recorded.recording import Recording
+
+_HALF = 0.5  # of a period: a longer step is taken for one the other way
+
+
+def unwrapped(rec: Recording, box: Any) -> Recording:
+    """Return a recording whose positions are unwrapped from a periodic box.
+
+    A step that leads beyond half a period is taken for a shorter one the other way round, or, where velocities were
+    recorded, for the one nearest to what these lead to. So steps must be shorter than half a period: the longest that
+    was seen and the largest change from one to the next together, over as long as an agent was not seen.
+
+    Parameters
+    ----------
+    rec : Recording
+        The recording.
+    box : float or sequence of float
+        Period along each axis, inf where there is none.
+
+    Raises
+    ------
+    ArgumentError
+        If a step may be longer than half a period.
+
+    Examples
+    --------
+    >>> unwrapped(Recording([0.0, 1.0, 2.0], [[[0.7]], [[0.9]], [[0.1]]]), 1.0).q.ravel()
+    array([0.7, 0.9, 1.1])
+    """
+    try:
+        size = np.broadcast_to(np.asarray(box, dtype=np.float64), (rec.m,))
+    except (TypeError, ValueError):
+        size = np.zeros(rec.m)
+    if not (size > 0.0).all():
+        raise ArgumentError(f"box = {box!r}: expected a period > 0, or {rec.m}, one for each axis, inf for none")
+    period = np.where(np.isfinite(size), size, 1.0)
+    q = rec.q.copy()
+    for i in range(rec.n):
+        seen = np.flatnonzero(rec.present[:, i])
+        h = np.diff(rec.t[seen])[:, None]
+        ahead = np.zeros((len(h), rec.m)) if rec.p is None else h * _mean_velocity(rec.p[seen, i])
+        off = np.diff(rec.q[seen, i], axis=0) - ahead
+        short = np.where(np.isfinite(size), off - period * np.rint(off / period), off)
+        _ensure_short(rec, i, short, ahead, h, size)
+        q[seen[1:], i] = q[seen[0], i] + np.cumsum(ahead + short, axis=0)
+    note = f"unwrapped from a box of {', '.join(f'{x:g}' for x in size)}"
+    return replace(rec, q=q, read_as=(*rec.read_as, note))
+
+
+def _mean_velocity(p: FloatArray) -> FloatArray:
+    return np.nan_to_num(0.5 * (p[1:] + p[:-1]))
+
+
+def _ensure_short(
+    rec: Recording, i: int, short: FloatArray, ahead: FloatArray, h: FloatArray, size: FloatArray
+) -> None:
+    """Raise if a step of an agent may be longer than half a period."""
+    usual = float(np.median(h)) if len(h) else 1.0
+    rate = np.abs(short) / h
+    dense = h[:, 0] <= 1.5 * usual
+    fastest = rate[dense].max(axis=0, initial=0.0)
+    both = [np.abs(rate[b] - rate[a]) for a, b in pairwise(np.flatnonzero(dense).tolist()) if b == a + 1]
+    turned = np.max(both, axis=0, initial=0.0) if both else np.zeros(rec.m)
+    reach = np.maximum((fastest + turned) * h, np.abs(short))
+    if (bad := reach >= _HALF * size).any():
+        k, axis = (int(x) for x in np.argwhere(bad)[0])
+        seen = np.flatnonzero(rec.present[:, i])
+        beside = " beyond its velocity" if rec.p is not None else ""
+        raise ArgumentError(
+            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{beside} from t = {rec.t[seen[k]]:g} to "
+            f"{rec.t[seen[k + 1]]:g} along {'xyz'[axis]}, half of the period {size[axis]:g} or more: "
+            "expected shorter steps; sample more often, give velocities, or leave the agent out"
+        )

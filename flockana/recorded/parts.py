@@ -1,0 +1,31 @@
+"""Parts of a recording in which no agent is missing."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.NDArray[Any]]:
+    """Return the samples, one after another, and the agents seen at all of them, that hold the most positions.
+
+    Examples
+    --------
+    >>> largest_complete_part(np.array([[1, 0], [1, 1], [1, 1]], dtype=bool))
+    (slice(1, 3, None), array([0, 1]))
+    """
+    count, n = present.shape
+    ends = np.empty((count + 1, n), dtype=np.intp)  # first sample from k on at which each agent is missing
+    ends[count] = count
+    for k in range(count - 1, -1, -1):
+        ends[k] = np.where(present[k], ends[k + 1], k)
+    starts = np.flatnonzero((present & ~np.vstack([np.zeros((1, n), dtype=bool), present[:-1]])).any(axis=1))
+    best, window = 0, (0, 0)
+    for k in starts.tolist():
+        order = np.sort(ends[k])[::-1]
+        held = (order - k) * np.arange(1, n + 1)
+        if held.max() > best:
+            j = int(np.argmax(held))
+            best, window = int(held[j]), (k, int(order[j]))
+    start, end = window
+    return slice(start, end), np.flatnonzero(present[start:end].all(axis=0))

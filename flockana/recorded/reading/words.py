@@ -1,0 +1,281 @@
+"""Vocabulary of recordings: what a column's name says of its kind, axis, owner and unit."""
+
+import re
+from typing import Any, NamedTuple
+
+AXES = "xyz"
+_TIMES = {
+    *("t", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "second", "sec", "secs", "tau", "clock"),
+    *("elapsed", "date", "datetime", "utc", "epoch", "unix", "rosbag"),
+}
+_FRAMES = {"frame", "step", "sample", "tick", "iteration", "seq", "timestep"}
+_AGENTS = {
+    *(
+        "agent",
+        "track",
+        "trajectory",
+        "traj",
+        "particle",
+        "robot",
+        "drone",
+        "uav",
+        "ugv",
+        "quad",
+        "quadrotor",
+        "copter",
+    ),
+    *("bird", "pigeon", "jackdaw", "starling", "fish", "animal", "individual", "ped", "pedestrian", "person", "people"),
+    *("vehicle", "car", "cell", "object", "obj", "body", "boid", "node", "actor", "member", "entity", "ant", "bee"),
+    *("mouse", "sheep", "player", "atom", "bot", "vessel", "ship", "aircraft", "tag", "target", "identity", "subject"),
+    *("cf", "crazyflie", "insect", "bat", "fly", "larva", "nucleus", "bacterium", "walker", "unit", "vicon"),
+}
+_NUMBERS = {
+    "id",
+    "ids",
+    "number",
+    "no",
+    "nr",
+    "num",
+    "index",
+    "idx",
+    "name",
+    "key",
+    "label",
+    "code",
+    "count",
+    "identifier",
+}
+_FILLERS = {"field", "header", "data", "msg", "value", "state", "states", "world", "the", "of", "coordinate", "coord"}
+_FILLERS |= {"coordinates", "coords", "odom", "odometry", "stamped"}
+_ROLES = {
+    "other": {
+        *(
+            "goal",
+            "target",
+            "setpoint",
+            "error",
+            "err",
+            "ref",
+            "reference",
+            "desired",
+            "des",
+            "cmd",
+            "command",
+            "force",
+        ),
+        *(
+            "torque",
+            "thrust",
+            "angular",
+            "omega",
+            "gyro",
+            "gyroscope",
+            "mag",
+            "magnetic",
+            "offset",
+            "bias",
+            "std",
+            "sd",
+        ),
+        *("var", "cov", "covariance", "sigma", "uncertainty", "noise", "min", "max", "bbox", "box", "normal", "wind"),
+        *(
+            "waypoint",
+            "wp",
+            "obstacle",
+            "landmark",
+            "camera",
+            "mean",
+            "stddev",
+            "sp",
+            "destination",
+            "jerk",
+            "residual",
+        ),
+    },
+    "orientation": {
+        *(
+            "orientation",
+            "quaternion",
+            "quat",
+            "rotation",
+            "rot",
+            "attitude",
+            "heading",
+            "rpy",
+            "euler",
+            "ori",
+            "angle",
+        ),
+        *("angles", "roll", "pitch", "yaw", "theta"),
+    },
+    "u": {"acceleration", "accelerations", "accel", "acc", "a", "u", "ddot", "input"},
+    "p": {"velocity", "velocities", "vel", "v", "speed", "linear", "twist", "dot"},
+    "q": {
+        "position",
+        "positions",
+        "pos",
+        "location",
+        "loc",
+        "translation",
+        "pose",
+        "place",
+        "point",
+        "centroid",
+        "p?",
+        "q?",
+    },
+}
+_FUSED = {
+    first + axis: (kind, axis)
+    for kind, prefixes in {
+        "q": ("pos", "loc", "t", "c"),
+        "p": ("v", "vel"),
+        "u": ("u", "a", "acc"),
+        "p?": ("p",),
+        "q?": ("q",),
+    }.items()
+    for first in prefixes
+    for axis in "xyzw"
+} | {
+    axis + last: (kind, axis)
+    for axis in AXES
+    for last, kind in (("pos", "q"), ("vel", "p"), ("acc", "u"), ("dot", "p"))
+}
+
+_LENGTHS = {
+    "m": 1.0,
+    "mm": 1e-3,
+    "cm": 1e-2,
+    "dm": 0.1,
+    "km": 1e3,
+    "um": 1e-6,
+    "nm": 1e-9,
+    "ft": 0.3048,
+    "px": 0.0,
+    "bl": 0.0,
+}
+_DURATIONS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
+_SPELLINGS = {
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("µm", "μm", "micron", "microns", "micrometer"), "um"),
+    **dict.fromkeys(("pixel", "pixels", "pix"), "px"),
+    **dict.fromkeys(("feet", "foot"), "ft"),
+    **{"mps": "m/s", "mmps": "mm/s", "cmps": "cm/s"},
+    **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("msec", "msecs", "millisecond", "milliseconds", "millis"), "ms"),
+    **dict.fromkeys(("µs", "μs", "usec", "microsecond", "microseconds"), "us"),
+    **dict.fromkeys(("nsec", "nanosec", "nanosecond", "nanoseconds"), "ns"),
+    **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+}
+_BRACKET = re.compile(r"\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]\s*$")  # x [m], t (s)
+_RATE = re.compile(r"^([a-zµμ]+)(?:\s*(?:/|·|\*|per|\s)\s*([a-zµμ]+)\s*(?:\^|\*\*)?-?([12²])?(?:\s*/\s*([a-zµμ]+))?)?$")
+_PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-zµμ]+|[A-Z]+|\d+")
+
+
+class Unit(NamedTuple):
+    """Unit of a column: as it is spelt, its factor to metres and seconds (0 for pixels), and its power of time."""
+
+    text: str
+    length: str
+    factor: float
+    power: int
+
+
+class Word(NamedTuple):
+    """What a column's name says: kind ("q", "p", "u", ...), axis ("x" to "w"), the words of its owner, and its unit.
+
+    `pattern` is the name without its axis: columns of one vector share it.
+    """
+
+    kind: str
+    axis: str
+    owner: tuple[str, ...]
+    unit: Unit | None
+    pattern: tuple[str, ...]
+
+
+def unit_of(text: str) -> Unit | None:
+    """Return the unit that a text names, such as m, ms or mm/s; None if it names none.
+
+    Examples
+    --------
+    >>> unit_of("mm/s")
+    Unit(text='mm/s', length='mm', factor=0.001, power=1)
+    """
+    match = _RATE.match(text.strip().lower())
+    if match is None:
+        return None
+    first, *rest = (_SPELLINGS.get(each, each) if each else "" for each in match.groups())
+    per, power = rest[0], 2 if rest[1] in ("2", "²") or rest[2] else 1
+    if first in _DURATIONS and not per:
+        return Unit(text.strip(), "", _DURATIONS[first], 0)
+    if first in _LENGTHS and (not per or per in _DURATIONS):
+        factor = (_LENGTHS[first] or 1.0) / (_DURATIONS[per] ** power if per else 1.0)
+        return Unit(text.strip(), first, factor, power if per else 0)
+    return Unit(text.strip(), first, 1.0, 0) if first in ("deg", "rad", "au") else None
+
+
+def words_of(name: Any) -> tuple[list[str], Unit | None]:
+    """Return the words of a column's name in lower case, and its unit, from brackets or a last word such as _mm."""
+    text, unit = str(name).strip(), None
+    if (match := _BRACKET.search(text)) and (not match[1] or (unit := unit_of(match[1]))):
+        text = text[: match.start()]
+    pieces = _PIECES.findall(text)
+    mixed = text != text.upper()  # the A of robotA is a name, that of AX an acceleration
+    words = [x if mixed and len(x) == 1 and x.isupper() and x not in "XYZWT" else x.lower() for x in pieces]
+    last = _SPELLINGS.get(words[-1], words[-1]) if words else ""
+    if unit is None and len(words) > 1 and (last in _LENGTHS or last in _DURATIONS or "/" in last):
+        unit, words = unit_of(last), words[:-1]
+    return words, unit
+
+
+def _known(word: str, kind: set[str]) -> bool:
+    return word in kind or (word.endswith("s") and word[:-1] in kind)
+
+
+def is_time(words: list[str]) -> bool:
+    """Return whether words name the time of a row."""
+    rest = [word for word in words if word not in _FILLERS and word not in _ROLES["q"]]
+    return bool({*rest} & _TIMES) and all(word in _TIMES or word in ("frame", "start") for word in rest)
+
+
+def is_frame(words: list[str]) -> bool:
+    """Return whether words name a count of frames."""
+    rest = [word for word in words if word not in _NUMBERS | _FILLERS]
+    return bool(rest) and all(_known(word, _FRAMES) for word in rest)
+
+
+def is_agent(words: list[str]) -> bool:
+    """Return whether words name the agent of a row."""
+    rest = [word for word in words if word not in _FILLERS]
+    return (
+        bool(rest)
+        and all(_known(word, _AGENTS) or word in _NUMBERS for word in rest)
+        and rest[0] not in ("no", "count")
+    )
+
+
+def is_agents_word(word: str) -> bool:
+    """Return whether a word is one for agents, such as robot."""
+    return _known(word, _AGENTS - {"target"})
+
+
+def coordinate(words: list[str], unit: Unit | None) -> Word | None:
+    """Return what the words of a name say of a coordinate; None if they name none."""
+    at = [k for k, word in enumerate(words) if word in _FUSED or word in "xyzw"]
+    if len(at) != 1:
+        return None
+    word = words[at[0]]
+    kind, axis = _FUSED.get(word, ("", word))
+    others = words[: at[0]] + words[at[0] + 1 :]
+    roles = [next((role for role, known in _ROLES.items() if each in known), "") for each in others]
+    rank = next((role for role in ("other", "orientation", "u", "p") if role in roles), kind or "q")
+    if others == ["p"] or others == ["q"]:  # p_x: velocities here, positions elsewhere; q_x: of a quaternion, perhaps
+        rank = others[0] + "?"
+    owner = tuple(
+        each for each, role in zip(others, roles, strict=True) if not role and each not in _FILLERS and each not in "pq"
+    )
+    pattern = tuple(word.replace(axis, "") if k == at[0] else each for k, each in enumerate(words))
+    return Word(rank, axis, owner, unit, pattern)

@@ -1,0 +1,160 @@
+"""Columns of tables by their names, as tools of the field write them: one reading, which is stated, or a refusal."""
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import FlockanaError
+from flockana.recorded.reading.words import unit_of, words_of
+
+
+def table(path, header, *lines):
+    """A table of rising numbers below a header, or of lines that are given."""
+    count = header.count(",") + 1
+    numbers = [",".join(f"{0.5 * k + j}" for j in range(count)) for k in range(2)]
+    path.write_text("\n".join([header, *(lines or numbers)]) + "\n")
+    return path
+
+
+# header, columns of positions and of velocities, agents
+READ = [
+    ("stamp,x,y,z,qx,qy,qz,qw", "x y z", "", "0"),
+    ("secs,tx,ty,tz,quat_x,quat_y,quat_z,quat_w", "tx ty tz", "", "0"),
+    ("time,x,y,z,b.x,b.y,b.z,b.w", "x y z", "", "0"),
+    ("t,x[3],y[3],x[4],y[4]", "1 2 3 4", "", "3 4"),
+    ("t,x(7),x(8),x(9)", "1 2 3", "", "7 8 9"),
+    ("t,pose.position.x,pose.position.y,pose.orientation.x,twist.linear.x,twist.linear.y", "1 2", "4 5", "0"),
+    ("%time,header.stamp,pose.pose.position.x,pose.pose.position.y", "2 3", "", "0"),
+    ("__time,/uav0/odometry/position/x,/uav0/odometry/position/y", "1 2", "", "0"),
+    ("t,botA_x,botA_y,botB_x,botB_y", "1 2 3 4", "", "bot_A bot_B"),
+    ("t,cf1_x,cf1_y,setpoint1_x,setpoint1_y", "1 2", "", "0"),
+    ("time,bird_red_x,bird_red_y,bird_blue_x,bird_blue_y", "1 2 3 4", "", "bird_red bird_blue"),
+    ("t,x,y,waypoint_x,waypoint_y", "1 2", "", "0"),
+    ("t,px,py,vx,vy", "1 2", "3 4", "0"),
+    ("t,x,y,px,py", "1 2", "3 4", "0"),
+    ("t,xVelocity,yVelocity,xPos,yPos", "3 4", "1 2", "0"),
+    ("t,qx,qy", "1 2", "", "0"),
+]
+
+
+@pytest.mark.parametrize(("header", "q", "p", "ids"), READ, ids=[header for header, *_ in READ])
+def test_columns_are_read_by_their_meaning_and_said(tmp_path, header, q, p, ids):
+    rec = fl.read_recording(table(tmp_path / "it.csv", header))
+    names = header.split(",")
+    at = [names.index(x) if x in names else int(x) for x in q.split()]
+    assert rec.q[0].ravel().tolist() == [float(k) for k in at]
+    assert ([] if rec.p is None else rec.p[0].ravel().tolist()) == [float(x) for x in p.split()]
+    assert rec.ids == tuple(ids.split())
+    text = "; ".join(rec.read_as)
+    assert all(repr(names[k]) in text for k in at[: rec.m])
+    assert text in repr(rec)
+
+
+# header, what the message says
+REFUSED = [
+    ("t,qx,qy,qz,qw", "an orientation or a goal is none"),
+    ("t,x,y,z,w", "positions and a weight, or a quaternion"),
+    ("t,x,y,z,qx,qy,qz", "'x' and 'qx' may both be the position along x"),
+    ("t,x,y,position_x,position_y", "'x' and 'position_x' may both be"),
+    ("t,x,y,px,py,vx,vy", "'x' and 'px' may both be"),
+    ("t,time,x,y", "'t', 'time' may be the times, or one of them another clock"),
+    ("t,loc[0],loc[1]", "the axes of one agent, or agents on a line"),
+    ("t,ann_x,ann_y,ben_x,ben_y", r"agents, or vectors of one agent, .*\"agents\": \['ann', 'ben'\]"),
+    ("t,raw_x,raw_y,kalman_x,kalman_y", "agents, or vectors of one agent"),
+    ("t,head_x,head_y,bot1_x,bot1_y", "agents, or vectors of one agent"),
+    ("t,track,x1,y1,x2,y2", "vectors of the agent of 'track', or agents of their own"),
+    ("t,x,y,x.1,y.1", "one agent, or several"),
+    ("x1,y1,x2,y2", "expected dt=, the time from row to row"),
+    ("when,a,b", "name them by columns="),
+    ("time (s),x [mm],y [m]", "positions are in mm, m, or others: expected one unit"),
+]
+
+
+@pytest.mark.parametrize(("header", "message"), REFUSED, ids=[header for header, _ in REFUSED])
+def test_what_may_be_read_in_two_ways_is_refused_with_both(tmp_path, header, message):
+    with pytest.raises(FlockanaError, match=message):
+        fl.read_recording(table(tmp_path / "it.csv", header))
+
+
+def test_the_argument_that_a_message_names_decides(tmp_path):
+    path = table(tmp_path / "it.csv", "t,ann_x,ann_y,ben_x,ben_y")
+    assert fl.read_recording(path, columns={"agents": ["ann", "ben"]}).ids == ("ann", "ben")
+    assert fl.read_recording(path, columns={"q": ["ben_x", "ben_y"]}).q[0, 0].tolist() == [3.0, 4.0]
+    path = table(tmp_path / "it.csv", "t,time,x,y")
+    assert fl.read_recording(path, columns={"t": "time"}).t.tolist() == [1.0, 1.5]
+    path = table(tmp_path / "it.csv", "when,kite,x,y", "0,a,1,2", "0,b,3,4")
+    with pytest.raises(FlockanaError, match=r"has no times"):
+        fl.read_recording(path)
+    assert fl.read_recording(path, columns={"t": "when", "id": "kite"}).ids == ("a", "b")
+    with pytest.raises(FlockanaError, match=r"has times in 'time' and dt = 0\.1 is given"):
+        fl.read_recording(table(tmp_path / "it.csv", "time,x,y"), dt=0.1)
+
+
+def test_the_column_of_agents_is_the_one_whose_values_return(tmp_path):
+    """As TrackMate writes spots: labels and numbers of spots are unique, and three lines more are no samples."""
+    head = "LABEL,ID,TRACK_ID,POSITION_X,POSITION_Y,POSITION_Z,POSITION_T"
+    words = ("Label,Spot ID,Track ID,X,Y,Z,T", "Label,Spot ID,Track ID,X,Y,Z,T", ",,,(µm),(µm),(µm),(s)")
+    spots = ("ID7,7,0,1,2,0,0", "ID8,8,1,5,2,0,0", "ID9,9,0,1.5,2,0,1", "ID10,10,1,5.5,2,0,1")
+    path = table(tmp_path / "spots.csv", head, *words, *spots)
+    rec = fl.read_recording(path)
+    assert rec.q[:, 1, 0].tolist() == [5.0, 5.5]
+    assert "m=2 leaves it out" in repr(rec)
+    assert "'LABEL', 'ID', whose values do not name an agent" in repr(rec)
+    assert fl.read_recording(path, m=2).m == 2
+    with pytest.raises(FlockanaError, match=r"line 6, column 'POSITION_X': 'one'"):
+        fl.read_recording(table(path, head, *words, spots[0], "ID8,8,1,one,2,0,0", *spots[2:]))
+    twins = table(tmp_path / "it.csv", "t,bot,cell,x", "0,1,1,0", "1,1,2,0", "0,2,2,3", "1,2,1,3")
+    with pytest.raises(FlockanaError, match="'bot', 'cell' may each be the agent"):
+        fl.read_recording(twins)
+
+
+@pytest.mark.parametrize(
+    ("text", "rows", "said"),
+    [
+        ("t  x y\n0  1 2\n1 2   3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
+        ("# t x y\n0 1 2\n1 2 3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
+        ("t;x;y\n0;1,5;2\n1;-2,5;3,25\n", [[1.5, 2.0], [-2.5, 3.25]], "commas are decimal points"),
+        ("t,x,y,,\n0,1,2,,\n1,2,3,,\n", [[1.0, 2.0], [2.0, 3.0]], "2 columns without a name are empty"),
+        ("t,x,y\n0,1,2,\n1,2,,\n", [[1.0, 2.0], [np.nan, np.nan]], ""),
+    ],
+)
+def test_blanks_decimal_commas_and_empty_columns(tmp_path, text, rows, said):
+    (tmp_path / "it.txt").write_text(text)
+    rec = fl.read_recording(tmp_path / "it.txt")
+    np.testing.assert_array_equal(rec.q[:, 0], rows)
+    assert said in repr(rec)
+
+
+def test_velocities_come_into_the_units_of_positions_and_times(tmp_path):
+    rec = fl.read_recording(table(tmp_path / "it.csv", "t [ms],x [cm],vx [m/s]", "0,1,3", "100,2,4"))
+    assert rec.p[:, 0, 0].tolist() == pytest.approx([0.3, 0.4])  # 3 m/s are 300 cm in 1000 ms
+    assert "p times 0.1, from m/s to cm and ms" in repr(rec)
+    assert (unit_of("mm/s^2").factor, unit_of("stones")) == (1e-3, None)
+    assert words_of("posX_mm")[0] == ["pos", "x"]
+
+
+def test_seconds_and_nanoseconds_and_counts_since_1970(tmp_path):
+    pair = table(tmp_path / "it.csv", "stamp.sec,stamp.nanosec,x", "1700000000,750000000,1", "1700000002,0,2")
+    assert fl.read_recording(pair).t.tolist() == [0.75, 2.0]
+    counted = table(tmp_path / "it.csv", "timestamp,x", "1700000000000000000,1", "1700000000250000000,2")
+    rec = fl.read_recording(counted)
+    assert rec.t.tolist() == [0.0, 0.25]
+    assert "t counts nanoseconds since 1970" in repr(rec)
+
+
+def test_stamps_that_differ_by_rounding_or_within_a_jitter_are_one_instant(tmp_path):
+    rows = [f"{0.1 * k!r},a,{k}" for k in range(4)] + [f"{k / 10},b,{k}" for k in range(4)]
+    rec = fl.read_recording(table(tmp_path / "it.csv", "t,id,x", *rows))
+    assert (len(rec.t), rec.gaps) == (4, 0)  # 3 times 0.1 is not 0.3
+    late = table(tmp_path / "it.csv", "t,id,x", *(f"{k + 0.004 * i},{i},{k}" for k in range(3) for i in range(2)))
+    assert fl.read_recording(late).gaps == 6
+    rec = fl.read_recording(late, jitter=0.01)
+    assert (rec.gaps, rec.t[1]) == (0, pytest.approx(1.002))
+    assert "stamps up to 0.004 apart are one instant: 6 are 3" in repr(rec)
+
+
+def test_many_visitors_at_common_times_are_read(tmp_path):
+    """60 agents of whom each is there for 4 of 240 instants: 60 positions for each that is filled."""
+    rows = [f"{4 * i + k},{i},{k}" for i in range(60) for k in range(4)]
+    rec = fl.read_recording(table(tmp_path / "it.csv", "t,ped,x", *rows))
+    assert (rec.n, len(rec.t), rec.gaps) == (60, 240, 60 * 236)
