@@ -88,7 +88,7 @@ class Invariant(NamedTuple):
     """Invariant subspace of separated modes, right and left (2nm, r).
 
     `chains` counts the zero modes along which a velocity persists (Jordan blocks), `drifting` names those that are
-    a zero mode of their own.
+    a zero mode of their own, `neutral` (2nm, k + chains) spans all that does not decay nor grow but as a drift.
     """
 
     zero: tuple[Mode, ...]
@@ -100,6 +100,19 @@ class Invariant(NamedTuple):
     cokernel: FloatArray
     chains: int
     drifting: tuple[str, ...]
+    neutral: FloatArray
+
+
+class Quotient(NamedTuple):
+    """Dynamics x' = A x + `basis`[N:]ᵀ w off the zero modes: x = basisᵀ (pace δq, δp), whatever is along them.
+
+    `force` gives δq'' = force x, which zero modes do not change.
+    """
+
+    A: FloatArray
+    basis: FloatArray
+    force: FloatArray
+    pace: float
 
 
 class SecondOrder:
@@ -267,6 +280,17 @@ class SecondOrder:
         real, imag = (turn("L", "N", part)[:size] for part in parts)
         return values, real + 1j * imag, errors
 
+    @cached_property
+    def quotient(self) -> Quotient:
+        """Return the dynamics off the zero modes: of a state up to neutral motions (dense)."""
+        size, pace, right = self.q.size, self.pace, self.invariant.neutral.copy()
+        if right.shape[1] != np.count_nonzero(self.eigenvalues == 0.0):
+            raise SolverError("zero modes come in chains longer than two here: their quotient is not known")
+        right[:size] *= pace
+        basis = np.linalg.qr(right, mode="complete")[0][:, right.shape[1] :]
+        force = np.hstack([self.stiffness.toarray() / -pace, -self.damping.toarray()]) @ basis
+        return Quotient(basis[:size].T @ (pace * basis[size:]) + basis[size:].T @ force, basis, force, pace)
+
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
         """Return named modes from eigenvalues and displacements, with `others` among them, in order."""
         fields = pure_fields(self.q)
@@ -297,6 +321,7 @@ class SecondOrder:
         nothing = np.zeros_like
         right = [np.vstack([kernel, nothing(kernel)]), np.vstack([self._against(on), on])]
         b = self._against(off, transposed=True)
+        neutral = list(right)
         left = [np.vstack([self.damping.T @ cokernel, cokernel]), np.vstack([off + self.damping.T @ b, b])]
         still = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
         drifting = [name for name, slow in zip(names, still.tolist(), strict=True) if slow]
@@ -326,7 +351,16 @@ class SecondOrder:
             blank = np.zeros_like(unit)
             both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
             right, left = [*right, *both], [*left, *both]
-        spaces = np.hstack(right), np.hstack(left), kernel, cokernel, chains, tuple(sorted(drifting))
+            neutral += [both[0][:, free], both[1][:, alone]]
+        spaces = (
+            np.hstack(right),
+            np.hstack(left),
+            kernel,
+            cokernel,
+            chains,
+            tuple(sorted(drifting)),
+            np.hstack(neutral),
+        )
         return Invariant(tuple(zero), tuple(translational), np.array(values, dtype=np.complex128), *spaces)
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, sqrt
-from typing import TYPE_CHECKING, Any
+from math import atan, inf, sqrt
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -55,32 +55,103 @@ def disturbance_system(flock: Blocks) -> StateSpace:
 def h2_norm(system: StateSpace) -> float:
     """Return the H₂ norm, from white noise of unit intensity in every input to the output.
 
-    The controllability Gramian by Bartels and Stewart's method (scipy); infinite unless the system is stable.
+    The controllability Gramian of the balanced system by Bartels and Stewart's method (scipy); infinite unless the
+    system is stable. White noise in continuous time that reaches an output directly, D != 0, has infinite variance
+    there; in discrete time it adds its own.
 
     Parameters
     ----------
     system : control.StateSpace
-        Strictly proper.
+        In continuous or discrete time.
+
+    Raises
+    ------
+    SolverError
+        If rounding leaves nothing of the norm, as where damping is below rounding of the stiffness.
 
     Examples
     --------
-    x'' + d x' + k x = w has 1/√(2 d k):
+    x'' + d x' + k x = w has 1/√(2 d k), and x(k+1) = a x(k) + w has 1/√(1 − a²):
 
     >>> import control
     >>> round(h2_norm(control.ss([[0, 1], [-8, -1]], [[0], [1]], [[1, 0]], 0)), 12)
     0.25
+    >>> h2_norm(control.ss([[0.6]], [[1]], [[1]], 0, True))
+    1.25
     """
+    balanced = _balanced(system)
+    if not balanced.stable or (balanced.d.any() and not balanced.discrete):
+        return inf
+    power = float(np.trace(balanced.covariance()))
+    if power < 0.0:
+        raise SolverError(
+            f"the power of the outputs comes out as {power:.3g}: a mode decays too slowly for the rounding of A; "
+            "ask for more damping, or for the norm of a part"
+        )
+    return sqrt(power)
+
+
+class Balanced(NamedTuple):
+    """A system whose states are in units of like size: powers of 2, so that nothing is rounded."""
+
+    a: FloatArray
+    b: FloatArray
+    c: FloatArray
+    d: FloatArray
+    discrete: bool
+
+    @property
+    def stable(self) -> bool:
+        """Return whether every mode decays, beyond rounding."""
+        values, errors = eigenvalues(self.a)
+        return bool(np.all((np.abs(values) - 1.0 if self.discrete else values.real) < -errors))
+
+    def covariance(self) -> FloatArray:
+        """Covariance of the outputs of a stable system under white noise of unit intensity in every input."""
+        from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+
+        if not self.discrete:
+            return np.asarray(self.c @ solve_continuous_lyapunov(self.a, -self.b @ self.b.T) @ self.c.T)
+        return np.asarray(self.c @ solve_discrete_lyapunov(self.a, self.b @ self.b.T) @ self.c.T + self.d @ self.d.T)
+
+    def continuous(self) -> Balanced:
+        """Return the system over s = (z − 1)/(z + 1), with the same gains at s = j tan(ω dt/2)."""
+        if not self.discrete:
+            return self
+        one = np.eye(len(self.a))
+        inverse = np.linalg.inv(self.a + one)
+        a, b, c = inverse @ (self.a - one), sqrt(2.0) * inverse @ self.b, sqrt(2.0) * self.c @ inverse
+        return Balanced(a, b, c, self.d - self.c @ inverse @ self.b, discrete=False)
+
+    def gain(self, omega: float) -> float:
+        """Return the largest gain at a frequency, of a system in continuous time."""
+        if omega == inf or not len(self.a):
+            return float(np.linalg.norm(self.d, 2))
+        answer = np.linalg.solve(1j * omega * np.eye(len(self.a)) - self.a, self.b)
+        return float(np.linalg.norm(self.c @ answer + self.d, 2))
+
+    def crossings(self, level: float) -> FloatArray:
+        """Return the frequencies >= 0 at which the gain is `level`, above that of D: eigenvalues of a Hamiltonian."""
+        a, b, c, d = self.a, self.b, self.c, self.d
+        by_input = np.linalg.solve(level**2 * np.eye(d.shape[1]) - d.T @ d, np.hstack([d.T @ c, level * b.T]))
+        to_output = level * c.T @ np.linalg.solve(level**2 * np.eye(d.shape[0]) - d @ d.T, c)
+        inner = a + b @ by_input[:, : len(a)]
+        values = np.linalg.eigvals(np.block([[inner, b @ by_input[:, len(a) :]], [-to_output, -inner.T]]))
+        return np.sort(values.imag[(np.abs(values.real) <= _IMAGINARY * np.abs(values).max()) & (values.imag >= 0)])
+
+
+def _balanced(system: StateSpace) -> Balanced:
+    """Return the matrices of a system, its states balanced."""
+    from scipy.linalg.lapack import dgebal
+
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
-    if system.nstates == 0 or system.noutputs == 0:
-        return 0.0
-    return sqrt(max(0.0, float(np.trace(_covariance(system))))) if _stable(system.A) else inf
-
-
-def _covariance(system: StateSpace) -> FloatArray:
-    """Covariance of the outputs of a stable system under white noise of unit intensity in every input."""
-    from scipy.linalg import solve_continuous_lyapunov
-
-    return np.asarray(system.C @ solve_continuous_lyapunov(system.A, -system.B @ system.B.T) @ system.C.T)
+    a, b, c, d = (np.asarray(x, dtype=np.float64) for x in (system.A, system.B, system.C, system.D))
+    discrete = bool(system.isdtime(strict=True))
+    if not a.size or not c.size or not b.size:
+        zero = np.zeros((0, 0))
+        return Balanced(zero, np.zeros((0, b.shape[1])), np.zeros((c.shape[0], 0)), d, discrete)
+    a, _, _, units, _ = dgebal(a, scale=1)
+    return Balanced(a, b / units[:, None], c * units, d, discrete)
 
 
 @check_kinds
@@ -90,7 +161,7 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
     Parameters
     ----------
     system : control.StateSpace
-        Strictly proper and stable.
+        Stable; in continuous time without direct feedthrough.
     intensity : float
         Of the noise, as `flockana.Disturbed` takes it; the trace is then (intensity · H₂ norm)².
 
@@ -101,7 +172,8 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
     Raises
     ------
     ArgumentError
-        If the system is not stable: then there is no stationary covariance.
+        If the system is not stable, or noise reaches an output directly in continuous time: then there is no
+        stationary covariance.
 
     Examples
     --------
@@ -110,10 +182,15 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
     >>> (stationary_covariance(swing, 2.0).round(12) + 0.0).tolist()
     [[0.25, 0.0], [0.0, 2.0]]
     """
-    intensity = ensure_nonnegative("intensity", intensity)
-    if not _stable(system.A):
+    intensity, balanced = ensure_nonnegative("intensity", intensity), _balanced(system)
+    if not balanced.stable:
         raise ArgumentError("the system is not stable: expected one whose modes all decay, such as disturbance_system")
-    covariance: FloatArray = intensity**2 * _covariance(system)
+    if balanced.d.any() and not balanced.discrete:
+        raise ArgumentError(
+            f"D has an entry {float(np.abs(balanced.d).max()):.3g}: expected 0 in continuous time, for white noise "
+            "that reaches an output directly has no variance there"
+        )
+    covariance: FloatArray = intensity**2 * balanced.covariance()
     return 0.5 * (covariance + covariance.T)
 
 
@@ -144,7 +221,7 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     Parameters
     ----------
     system : control.StateSpace
-        Strictly proper; infinite unless it is stable.
+        In continuous or discrete time; infinite unless it is stable. A peak at infinity is that of D.
     tol : float
         Relative tolerance.
 
@@ -162,36 +239,32 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     >>> round(norm * 24, 9), round(peak**2, 5)
     (1.0, 7.0)
     """
-    ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
-    if system.nstates == 0 or system.noutputs == 0:
-        return 0.0, 0.0
-    tol, a, b, c = ensure_positive("tol", tol), system.A, system.B, system.C
-    if not _stable(a):
+    tol, given = ensure_positive("tol", tol), _balanced(system)
+    if not given.stable:
         return inf, float("nan")
-    poles = np.linalg.eigvals(a)
+    here = given.continuous()
+    gain, omega = largest_gain(here, tol)
+    if gain == 0.0:
+        return 0.0, 0.0
+    return gain, 2.0 * atan(omega) / (1.0 if system.dt is True else float(system.dt)) if given.discrete else omega
+
+
+def largest_gain(system: Balanced, tol: float) -> tuple[float, float]:
+    """Return (H∞ norm, frequency) of a stable system in continuous time."""
+    poles = np.linalg.eigvals(system.a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
-    best = max((_gain(a, b, c, w), w) for w in trials.tolist()[:: max(1, trials.size // 24)])
-    bb, cc = b @ b.T, c.T @ c
+    best = max((system.gain(w), w) for w in (*trials.tolist()[:: max(1, trials.size // 24)], inf))
+    if not len(poles) or best[0] == 0.0:
+        return best
     for _ in range(_ROUNDS):
         level = (1.0 + tol) * best[0]
-        values = np.linalg.eigvals(np.block([[a, bb / level], [-cc / level, -a.T]]))
-        crossing = np.sort(values.imag[(np.abs(values.real) <= _IMAGINARY * np.abs(values).max()) & (values.imag >= 0)])
+        crossing = system.crossings(level)
         middles = np.concatenate([crossing, 0.5 * (crossing[1:] + crossing[:-1])])
-        peak = max(((_gain(a, b, c, w), w) for w in middles.tolist()), default=(0.0, 0.0))
+        peak = max(((system.gain(w), w) for w in middles.tolist()), default=(0.0, 0.0))
         if peak[0] <= level:
             return max(best, peak)
         best = peak
     raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
-
-
-def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
-    return float(np.linalg.norm(c @ np.linalg.solve(1j * omega * np.eye(len(a)) - a, b), 2))
-
-
-def _stable(a: FloatArray) -> bool:
-    """Return whether every mode decays beyond rounding."""
-    values, errors = eigenvalues(a)
-    return bool(np.all(values.real < -errors))
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,18 @@
 
 The loop is broken at one component of one agent's input, all others closed: with A of the closed flock and f its row
 of that input, the open loop is L(s) = −f (s − A₀)⁻¹ b, where A₀ is A without that row and b the unit vector of the
-input. Gain, phase and disk margins are python-control's; the sensitivity peak is the largest 1/|1 + L(jω)|.
+input. Its sensitivity S = 1/(1 + L) = 1 + f (s − A)⁻¹ b is that of the closed, stable flock, off its zero modes. All
+margins are read off S(jω): |S| peaks at the sensitivity peak; the disk margin is 1/max |S − ½|; |L| = 1 where
+Re S = ½, and the phase there is 2 arctan(1/|2 Im S|); a gain k brings a root onto the axis where S = k/(k − 1), hence
+real. Frequencies where Re S or Im S is given are eigenvalues of a matrix, of s² = −ω²: none is missed between the
+points of a grid. The peaks are H∞ norms.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
+from math import atan2, degrees, inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,13 +24,16 @@ from flockana.base.kinds import check_kinds
 from flockana.laws import Law
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
+from flockana.stability.modes import SecondOrder
+from flockana.stability.norms import Balanced, largest_gain
 
 if TYPE_CHECKING:
     from control import StateSpace
 
-_GRID = 400  # frequencies, of disk margins and sensitivity peaks
-_NOTHING = 1e-9  # of the input
-_BEYOND = 100.0  # times the fastest pole, and a hundredth of the slowest: the range of frequencies
+SEARCHED = 1e-6, 1e6  # factors of an input between which growth is looked for where nothing is proved
+_TOLERANCE = 1e-9  # relative: of peaks, and of a crossing
+_NEAR_AXIS = 1e-3  # |Im s²|/|s²| of what may be a crossing, to the rounding of a double one
+_STEPS = 20  # of Newton's method
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,8 @@ class LoopMargins:
 
     agent: int  # agent, axis: Where it is broken
     axis: int
-    # Factors of the input between which the flock stays stable; 0 and infinity where there is no limit
+    # Factors of the input between which the flock stays stable. 0 and infinity only where K and D are symmetric and
+    # definite, so that an agent's gain is a mass; else at most what was searched, `SEARCHED`
     gain: tuple[float, float]
     phase: float  # Phase margin in degrees; infinite without a crossover
     disk: float  # Disk margin (balanced): gain and phase may vary together within it
@@ -153,35 +162,82 @@ def robustness_margins(law: Law, equilibrium: Any) -> RobustnessMargins:
     >>> found.gain, round(found.phase, 2)
     ((0.0, inf), 76.35)
     """
-    flock = linearise(law, equilibrium)
+    return loop_margins(linearise(law, equilibrium))
+
+
+def loop_margins(flock: Linearisation) -> RobustnessMargins:
+    """Return the margins of the loops of a linearised flock, each broken at one agent's input."""
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
-    n, m = flock.q.shape
-    rates = np.abs(flock.eigenvalues)
-    rates = rates[rates > 0.0]
-    omega = np.geomspace(rates.min() / _BEYOND, rates.max() * _BEYOND, _GRID)
-    return RobustnessMargins(tuple(_margins(flock, i, c, omega) for i in range(n) for c in range(m)))
+    problem = flock.second_order
+    widest = (0.0, inf) if _gains_are_masses(problem) else SEARCHED
+    m = flock.q.shape[1]
+    return RobustnessMargins(tuple(_margins(problem, k, m, widest) for k in range(flock.q.size)))
 
 
-def _margins(flock: Linearisation, agent: int, axis: int, omega: FloatArray) -> LoopMargins:
-    import control
+def _gains_are_masses(problem: SecondOrder) -> bool:
+    """Return whether K and D are symmetric, K >= 0, and D > 0 but for what K does not hold either: any mass will do."""
+    if not problem.symmetric:
+        return False
+    k, d = (0.5 * (x + x.T) for x in (problem.stiffness.toarray(), problem.damping.toarray()))
+    stiff = np.linalg.eigvalsh(k)
+    drag, axes = np.linalg.eigh(d)
+    undamped = axes[:, drag <= problem.zero * float(np.abs(drag).max(initial=0.0))]
+    rest = np.linalg.norm(k @ undamped, axis=0) if undamped.size else np.zeros(1)
+    return bool(stiff[0] >= -problem.zero * problem.scale and rest.max() <= problem.zero * problem.scale)
 
-    loop = open_loop(flock, agent, axis)
-    gains, phases, _, *crossings, _ = map(np.ravel, control.stability_margins(loop, returnall=True))
-    there = np.concatenate(crossings)
-    grid = np.sort(np.concatenate([omega, there[np.isfinite(there) & (there > 0.0)]]))
-    disk = float(np.asarray(control.disk_margins(loop, grid)[0]))
-    low = max([0.0, *gains[(gains < 1.0) & (gains > _NOTHING)]])  # at 0 what is neutral touches the axis
-    high, phase = min([inf, *gains[gains > 1.0]]), min([inf, *np.abs(phases)])
-    return LoopMargins(agent, axis, (float(low), float(high)), float(phase), disk, _peak(loop, omega))
+
+def _margins(problem: SecondOrder, index: int, m: int, widest: tuple[float, float]) -> LoopMargins:
+    """Return the margins of the loop broken at one coordinate's input."""
+    flock, size = problem.quotient, problem.q.size
+    a, b, f = flock.A, flock.basis[size + index], flock.force[index]
+    loop = Balanced(a, b[:, None], f[None, :], np.ones((1, 1)), discrete=False)
+    peak = largest_gain(loop, _TOLERANCE)[0]
+    disk = 1.0 / largest_gain(loop._replace(d=np.full((1, 1), 0.5)), _TOLERANCE)[0]
+    phase = min((2.0 * degrees(atan2(0.5, abs(s.imag))) for s in _where_real_part_is_half(a, b, f)), default=inf)
+    factors = [s.real / (s.real - 1.0) for s in _where_real(a, b, f) if s.real != 1.0]
+    low = max((k for k in factors if widest[0] < k < 1.0 and k > SEARCHED[0]), default=widest[0])
+    high = min((k for k in factors if 1.0 < k < min(widest[1], SEARCHED[1])), default=widest[1])
+    return LoopMargins(index // m, index % m, (low, high), phase, disk, max(1.0, peak))
 
 
-def _peak(loop: Any, omega: FloatArray) -> float:
-    """Largest sensitivity, refined about the best of a grid."""
-    from scipy.optimize import minimize_scalar
+def _where_real_part_is_half(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
+    """Values S(jω) with Re S = ½: S(s) + S(−s) − 1 = 1 + 2 f A (s² − A²)⁻¹ b is 0 at eigenvalues s²."""
+    squares = np.linalg.eigvals(a @ a - 2.0 * np.outer(b, f @ a))
+    return _on_the_axis(a, b, f, squares, lambda s: s.real - 0.5, lambda slope: slope.real)
 
-    sizes = 1.0 / np.abs(1.0 + np.ravel(loop(1j * omega)))
-    k = int(np.argmax(sizes))
-    low, high = omega[max(0, k - 1)], omega[min(len(omega) - 1, k + 1)]
-    found = minimize_scalar(lambda w: abs(1.0 + complex(loop(1j * w))), bounds=(low, high), method="bounded")
-    return max(1.0, float(sizes[k]), 1.0 / float(found.fun))  # 1 at the highest frequencies
+
+def _where_real(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
+    """Values S(jω) with Im S = 0: S(s) − S(−s) = 2 s f (s² − A²)⁻¹ b is 0 at zeros s², and at s = 0."""
+    from scipy.linalg import eigvals
+
+    at_rest = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
+    square = a @ a
+    whole = np.block([[square, b[:, None]], [f[None, :], np.zeros((1, 1))]])
+    mass = np.eye(len(whole))
+    mass[-1, -1] = 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        zeros = eigvals(whole, mass)
+    zeros = zeros[np.isfinite(zeros)]
+    return [at_rest, *_on_the_axis(a, b, f, zeros, lambda s: s.imag, lambda slope: slope.imag)]
+
+
+def _on_the_axis(
+    a: FloatArray, b: FloatArray, f: FloatArray, squares: Any, value: Callable[[complex], float], slope: Any
+) -> list[complex]:
+    """Values S(jω) at the roots ω > 0 of a real function of S, by Newton's method from −s² near the positive axis."""
+    near = (squares.real < 0.0) & (np.abs(squares.imag) <= _NEAR_AXIS * np.abs(squares))
+    one, found = np.eye(len(a)), []
+    for omega in np.sqrt(-squares.real[near]).tolist():
+        for _ in range(_STEPS):
+            shifted = 1j * omega * one - a
+            answer = np.linalg.solve(shifted, b)
+            s, turn = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted, answer))
+            step = value(s) / slope(turn) if slope(turn) else inf
+            if abs(value(s)) <= _TOLERANCE * min(1.0, abs(s)) and abs(step) <= _TOLERANCE * omega:
+                found.append(s)
+                break
+            if not 0.0 < omega - step < inf:
+                break
+            omega -= step
+    return found

@@ -1,6 +1,6 @@
 """Norms against closed forms, python-control, and the bounds that hold for every flock."""
 
-from math import inf, sqrt
+from math import inf, pi, sqrt
 
 import control
 import numpy as np
@@ -8,12 +8,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Disturbed, StaticTarget, find_equilibrium, simulate
+from flockana import (
+    Algorithm1,
+    Algorithm2,
+    Algorithm3,
+    Disturbed,
+    StaticTarget,
+    TaylorStep,
+    find_equilibrium,
+    linearise,
+    simulate,
+)
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.blocks import law_blocks
-from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, norms_against_size
+from flockana.stability.blocks import blocks, law_blocks
+from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, norms_against_size, stationary_covariance
 
 ALPHA = AlphaInteraction()
 ORIGIN = StaticTarget((0.0, 0.0))
@@ -32,6 +42,68 @@ def test_a_scalar_oscillator_has_the_textbooks_norms(k, d):
     assert norm == pytest.approx(1.0 / (d * sqrt(k - d * d / 4.0)) if resonant else 1.0 / k, rel=1e-8)
     # the peak is flat: its place is known to the square root of the tolerance
     assert peak == pytest.approx(sqrt(max(0.0, k - d * d / 2.0)), abs=2e-3 * sqrt(k))
+
+
+def test_a_direct_feedthrough_counts_in_each_norm_as_it_must():
+    """S4: 1/(s + 1) + 5 peaks at 6 at rest; its white noise has no variance, but that of a sequence has."""
+    both = control.ss(-1, 1, 1, 5)
+    assert hinf_norm(both) == (pytest.approx(6.0, rel=1e-9), 0.0)
+    assert h2_norm(both) == inf
+    with pytest.raises(ArgumentError, match="D has an entry 5: expected 0 in continuous time"):
+        stationary_covariance(both)
+    high = control.ss(-1, 1, -1, 5)  # 5 − 1/(s + 1) rises to 5
+    assert hinf_norm(high) == (pytest.approx(5.0), inf)
+    step = control.ss([[-0.5]], 1, 1, 2.0, 0.1)
+    assert h2_norm(step) == pytest.approx(sqrt(4.0 / 3.0 + 4.0), rel=1e-14)
+    assert stationary_covariance(step, 3.0).item() == pytest.approx(9.0 * (4.0 / 3.0 + 4.0), rel=1e-14)
+    assert hinf_norm(step) == (pytest.approx(8.0 / 3.0), 0.0)  # 2 + 1/(z + ½) at z = 1
+    assert hinf_norm(control.ss([[-0.5]], 1, -1, 2.0, 0.1)) == (pytest.approx(4.0), pytest.approx(10.0 * pi))
+    assert hinf_norm(control.ss([], [], [], [[3.0, 4.0]]))[0] == 5.0
+    assert h2_norm(control.ss([], [], [], [[3.0, 4.0]], True)) == 5.0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_systems_in_discrete_time_against_a_grid_and_the_impulse_response(seed):
+    rng = np.random.default_rng(seed)
+    a = rng.standard_normal((5, 5))
+    a *= 0.95 / np.abs(np.linalg.eigvals(a)).max()
+    b, c, d = rng.standard_normal((5, 2)), rng.standard_normal((3, 5)), rng.standard_normal((3, 2)) * (seed % 2)
+    system = control.ss(a, b, c, d, 0.2)
+    pulses, state = [d], b
+    for _ in range(900):
+        pulses, state = [*pulses, c @ state], a @ state
+    assert h2_norm(system) == pytest.approx(np.linalg.norm(pulses), rel=1e-10)
+    angles = np.linspace(0.0, pi, 20_001)
+    gains = [np.linalg.norm(system(np.exp(1j * angle)), 2) for angle in angles]
+    norm, peak = hinf_norm(system)
+    assert max(gains) * (1.0 - 1e-12) <= norm < max(gains) * (1.0 + 1e-4)
+    assert np.linalg.norm(system(np.exp(0.2j * peak)), 2) == pytest.approx(norm, rel=1e-9)
+
+
+def test_maps_have_the_norms_of_their_own_time():
+    """S4: the map of a lone agent, against python-control in discrete time."""
+    law = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=3.0), target=StaticTarget((0.0,)))
+    system = linearise(TaylorStep(law, 0.1), [[0.0]]).state_space
+    assert h2_norm(system) == pytest.approx(control.norm(system, 2, method="scipy"), rel=1e-9)
+
+
+@pytest.mark.parametrize("time", [1e-9, 1e-6, 1.0, 1e6])
+def test_units_of_time_change_norms_by_their_power_alone(time):
+    """S5: h2 is in length over force, times the square root of a rate."""
+    law = Algorithm2(target=ORIGIN)
+    q = find_equilibrium(law, hexagonal_spiral(7, 7.0)).q
+    flock = law_blocks(law, q)
+    other = blocks(flock.stiffness / time**2, flock.damping / time, q)
+    assert h2_norm(disturbance_system(other)) / time**1.5 == pytest.approx(0.04182836, rel=1e-6)
+    assert hinf_norm(disturbance_system(other))[0] / time**2 == pytest.approx(0.01109939, rel=1e-6)
+
+
+@pytest.mark.parametrize("drag", [1e-11, 1e-6, 1.0])
+def test_a_pair_that_is_hardly_damped_has_the_norm_of_its_oscillator(drag):
+    """S5: 1/√(2 d k) of their distance over √2."""
+    flock = law_blocks(Algorithm1(gains=Gains(c2_alpha=drag)), [[0.0, 0.0], [7.0, 0.0]])
+    k, d = 2.0 * flock.stiffness[0, 0], 2.0 * flock.damping[0, 0]
+    assert h2_norm(disturbance_system(flock)) == pytest.approx(1.0 / sqrt(2.0 * d * k), rel=1e-4)
 
 
 def test_unstable_and_integrating_systems_have_no_norm():

@@ -2,13 +2,16 @@
 
 from math import atan2, degrees, hypot, inf, sqrt
 
+import control
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.robustness import open_loop, robustness_margins
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.robustness import SEARCHED, loop_margins, open_loop, robustness_margins
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q
@@ -27,9 +30,10 @@ def test_one_agent_in_closed_form(k, d):
     assert found.gain == (0.0, inf)
     w = np.geomspace(1e-3, 1e3, 200_001)
     peak = np.abs(w * w / (w * w - k - 1j * d * w)).max()
-    assert found.sensitivity == pytest.approx(max(peak, 1.0), rel=1e-4)
+    assert found.sensitivity == pytest.approx(max(peak, 1.0), rel=1e-6)
     balanced = 2.0 / np.abs((-(w * w) - k - 1j * d * w) / (w * w - k - 1j * d * w)).max()  # 2 over the peak of S − T
-    assert found.disk == pytest.approx(balanced, rel=1e-2)
+    assert found.disk == pytest.approx(balanced, rel=1e-6)
+    assert found.disk <= balanced * (1.0 + 1e-9)
 
 
 def test_the_loop_is_that_of_one_input_with_all_others_closed():
@@ -40,6 +44,85 @@ def test_the_loop_is_that_of_one_input_with_all_others_closed():
     found = robustness_margins(LAW, REST)
     assert len(found.loops) == REST.size
     assert found.weakest.disk == found.disk <= min(one.disk for one in found.loops)
+
+
+def sensitivities(k, d, omega):
+    """S of each loop by (row of it, the rest): ω² times the diagonal of the inverse of ω² − jωD − K."""
+    one = np.eye(len(k))
+    return np.array([np.diag(w * w * np.linalg.inv(w * w * one - 1j * w * d - k)) for w in omega])
+
+
+@pytest.mark.parametrize("law", [LAW, Algorithm1()])
+@pytest.mark.parametrize("n", [2, 3, 7])
+def test_margins_of_flocks_against_the_inverse_of_their_own_matrix(law, n):
+    """S1: a gain is a mass, so that none harms; phase, disk and peak from a fine grid of the second-order form."""
+    q = find_equilibrium(law, hexagonal_spiral(n, 7.0)).q
+    found, flock = robustness_margins(law, q), linearise(law, q)
+    assert found.gain == (0.0, inf)
+    omega = np.geomspace(0.03, 300.0, 2001)
+    s = sensitivities(flock.stiffness.toarray(), flock.damping.toarray(), omega)
+    for index, one in enumerate(found.loops):
+        row = s[:, index]
+        assert one.sensitivity == pytest.approx(max(1.0, np.abs(row).max()), rel=4e-4)
+        assert one.sensitivity >= np.abs(row).max() * (1.0 - 1e-9)
+        assert one.disk == pytest.approx(1.0 / np.abs(row - 0.5).max(), rel=4e-4)  # what the grid steps over
+        assert one.disk <= 1.0 / np.abs(row - 0.5).max() * (1.0 + 1e-9)
+        loop = 1.0 / row - 1.0
+        crossing = np.flatnonzero(np.diff(np.sign(np.abs(loop) - 1.0)))
+        phases = np.degrees(np.abs(np.angle(-loop[crossing])))
+        assert one.phase == pytest.approx(phases.min(), abs=0.6) if phases.size else one.phase >= 179.0
+
+
+def a_net(seed, n=4):
+    """Masses on springs and dampers that act one way: stable, though neither K nor D is symmetric."""
+    rng = np.random.default_rng(seed)
+    k, d = (rng.uniform(0.0, 1.5, (n, n)) * (rng.random((n, n)) < 0.6) for _ in range(2))
+    k, d = (np.diag(x.sum(axis=1) + rng.uniform(0.1, 0.5, n)) - x for x in (k, 1.5 * d))
+    a = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -d]])
+    links = np.zeros((0, 2), dtype=np.int32)
+    return Linearisation(
+        LAW, np.arange(n, dtype=float)[:, None], np.zeros((n, 1)), 0.0, 0.0, links, csr_array(a), 1e-12
+    )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_one_way_nets_lose_stability_at_the_gains_that_are_said(seed):
+    flock = a_net(seed)
+    if not flock.stable:
+        return
+    n = len(flock.q)
+    found = loop_margins(flock)
+    for index, one in enumerate(found.loops):
+        low, high = one.gain
+        for factor in (low * 1.001, low * 1.02, high * 0.98, high * 0.999, low * 0.999, high * 1.001):
+            scaled = flock.A.copy()
+            scaled[n + index] *= factor
+            grows = np.linalg.eigvals(scaled).real.max() > 0.0
+            inside = low <= factor <= high
+            if SEARCHED[0] < factor < SEARCHED[1] and SEARCHED[0] < low * (low > factor) + high * (high < factor):
+                assert grows == (not inside) or (one.gain == SEARCHED)
+        for factor in np.geomspace(max(low, 1e-4) * 1.001, min(high, 1e4) * 0.999, 60):
+            scaled = flock.A.copy()
+            scaled[n + index] *= factor
+            assert np.linalg.eigvals(scaled).real.max() < 0.0
+        loop = open_loop(flock, index)
+        omega = np.geomspace(1e-3, 1e3, 4001)
+        data = control.frd(loop, omega)
+        phase = control.stability_margins(data)[1]
+        if np.isfinite(phase):
+            assert one.phase <= abs(phase) + 1e-6
+
+
+def test_the_bracket_that_was_searched_is_no_infinity():
+    """A chain: each follower hears the one before, and no gain can turn what is triangular."""
+    n = 3
+    k = np.eye(n) - np.eye(n, k=-1)
+    a = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -k]])
+    links = np.zeros((0, 2), dtype=np.int32)
+    flock = Linearisation(
+        LAW, np.arange(n, dtype=float)[:, None], np.zeros((n, 1)), 0.0, 0.0, links, csr_array(a), 1e-12
+    )
+    assert loop_margins(flock).gain == SEARCHED
 
 
 def test_phase_margins_are_what_a_lag_at_the_crossover_takes():
