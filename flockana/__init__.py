@@ -5,4 +5,26 @@ The public names stand in ``__init__.pyi``, once; each is imported when it is fi
 
 from flockana.base.lazy import attach_stub
 
-__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+_load, _, __all__ = attach_stub(__name__, __file__)
+# what a newcomer's Tab shows; everything else in __all__ is reachable by its name
+_FIRST = (
+    "Algorithm1 Algorithm2 Algorithm3 AlphaInteraction CircleTarget CuckerSmale Flock Gains LinearTarget Recording "
+    "Sphere StaticTarget Tolerances Trajectory Wall animate certify cite claim compare compose ensemble explore "
+    "falsify find_equilibrium fit lattice linearise pair_law player plots read_recording scenario scenarios simulate "
+    "stability symbolic theorem theorems verify"
+)
+
+
+def __getattr__(name: str) -> object:
+    try:
+        return _load(name)
+    except AttributeError:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __all__, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near and not name.startswith("_") else ""
+        raise AttributeError(f"No flockana attribute {name}{hint}", name=name) from None
+
+
+def __dir__() -> list[str]:
+    return [*_FIRST.split(), "__version__"]

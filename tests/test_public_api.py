@@ -59,7 +59,8 @@ print(run.status, [m for m in ("scipy.integrate", "scipy.optimize") if m in sys.
 def test_every_public_name_resolves():
     found = {name: getattr(getattr(flockana, name), "__name__", name) for name in flockana.__all__}
     assert {name: its.rpartition(".")[2] for name, its in found.items()} == {name: name for name in found}
-    assert found.keys() <= {*dir(flockana)}
+    assert found.keys() > {*dir(flockana)} - {"__version__"}
+    assert len(dir(flockana)) < 50
 
 
 def test_functions_win_over_modules_of_the_same_name_and_submodules_are_reachable():
@@ -77,6 +78,8 @@ print(*(len(vars(m)) > 9 for m in (symbolic.dead_zone, symbolic.bearing_distance
 
 
 def test_a_name_that_does_not_exist_is_an_attribute_error():
+    with pytest.raises(AttributeError, match=r"No flockana attribute veirfy; did you mean 'verify'\?"):
+        _ = flockana.veirfy
     with pytest.raises(AttributeError, match="No flockana attribute flock"):
         flockana.flock  # noqa: B018
     with pytest.raises(ImportError):

@@ -58,7 +58,7 @@ def _resolve(kind: str, name: str) -> tuple[Any, Any]:
     """Return the object that a dotted name leads to, and its owner."""
     first, *parts = name.split(".")
     if first != flockana.__name__ or not parts:
-        raise UnknownNameError(kind, name, [f"flockana.{known}" for known in dir(flockana)])
+        raise UnknownNameError(kind, name, [f"flockana.{known}" for known in flockana.__all__])
     holder: Any = flockana
     found: Any = flockana
     for k, part in enumerate(parts):

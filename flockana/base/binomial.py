@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, real_array
+from flockana.base.checks import ensure_finite_scalar, real_array
 from flockana.base.errors import ArgumentError, format_value
 
 _MOST = 2.0**53  # up to which every whole number is a float
@@ -18,7 +18,7 @@ def ensure_level(level: Any) -> float:
     return value
 
 
-def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
+def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tuple[Any, Any]:
     """Return the exact two-sided confidence interval of a probability from a count of successes.
 
     It covers the true share with at least the stated probability for every n, unlike the interval of the normal
@@ -33,7 +33,7 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
 
     Returns
     -------
-    tuple of ndarray
+    tuple of float or ndarray
         Lower and upper ends, of the shape of the counts.
 
     Raises
@@ -46,7 +46,7 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     All of 200 runs agree; the rule of three says at least about 1 − 3/200, one-sided:
 
     >>> low, high = clopper_pearson(200, 200)
-    >>> round(float(low), 4), float(high)
+    >>> round(low, 4), high
     (0.9817, 1.0)
     """
     from scipy.special import betaincinv
@@ -62,4 +62,4 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     # the arguments are kept positive where the end is known without them
     low = np.where(k > 0.0, betaincinv(np.maximum(k, 1.0), n - k + 1.0, tail), 0.0)
     high = np.where(k < n, betaincinv(k + 1.0, np.maximum(n - k, 1.0), 1.0 - tail), 1.0)
-    return low, high
+    return (low, high) if low.shape else (float(low), float(high))

@@ -57,7 +57,7 @@ def verify_command(
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult
 
-    started = time.perf_counter()
+    started, name = time.perf_counter(), _id_of(name)
     if no_report and report is not None:
         raise ArgumentError(f"--report {report}: --no-report writes none; leave out one of them")
     if on is not None:
@@ -86,6 +86,21 @@ def verify_command(
     if failure is not None:
         raise failure
     return code
+
+
+def _id_of(name: str | None) -> str | None:
+    """Return the id of a theorem given as its source prints it, such as "Theorem 3"; other names as they are."""
+    from flockana.base.errors import UnknownNameError
+    from flockana.report.work import ERRATA
+    from flockana.scenarios import scenarios
+    from flockana.theorems import theorem, theorems
+
+    if name is None or name in (*scenarios(), *theorems(), ERRATA):
+        return name
+    try:
+        return theorem(name).id
+    except UnknownNameError:
+        return name  # refused where the tasks are planned, with scenarios among what is suggested
 
 
 def _planned(

@@ -3,7 +3,7 @@
 import inspect
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from hashlib import sha256
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import ensure_kind, ensure_known
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
 from flockana.base.seals import digest
 from flockana.dynamics.trajectory import Trajectory
@@ -33,7 +33,7 @@ from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
 from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.flock import chosen as chosen_flock
-from flockana.theorems import Tolerances, theorem, theorems
+from flockana.theorems import Theorem, Tolerances, theorem, theorems
 
 if TYPE_CHECKING:
     import xarray
@@ -50,7 +50,7 @@ def ensemble(
     q0: Any = None,
     p0: Any = None,
     t_span: Any = None,
-    theorems: Iterable[str] | None = None,
+    theorems: Iterable[str | Theorem] | None = None,
     parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
     metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,
     tolerances: Tolerances | None = None,
@@ -74,9 +74,11 @@ def ensemble(
         Seeds, each >= 0 and given once; with all combinations of options at most a million runs.
     law, q0, p0, t_span : optional
         Instead of a scenario: the parts of a `Flock`; q0 and p0 are functions of the seed if there are several seeds.
-    theorems : iterable of str, optional
-        Which to check, ``"source"`` standing for what the source reports; by default all of the scenario's own and
-        what its source reports, or all that are about the law of a flock. Empty for none.
+    theorems : iterable of str or Theorem, optional
+        Which to check: names, or claims of your own (`claim`), whose margin other processes can have only if it stands
+        at the top of a module (else this one makes the runs, with a warning); ``"source"`` stands for what the source
+        reports. By default all of the scenario's own and what its source reports, or all that are about the law of a
+        flock. Empty for none.
     parameters : mapping of str to scalar or iterable, optional
         Options of the scenario, or numbers of a flock's law by dotted name, such as ``"gains.c1_gamma"``: several
         values make a dimension of the result, one value does not.
@@ -139,7 +141,9 @@ def ensemble(
         name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
     else:
         name, checked = flock.name, _ensure_flock(flock, grid, theorems)
-    request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
+    own = tuple(each for each in checked or () if isinstance(each, Theorem))
+    ids = None if checked is None else tuple(each.id if isinstance(each, Theorem) else each for each in checked)
+    request = Request(name, ids, chosen, tolerances or Tolerances(), flock=flock, own=own)
     all_jobs = grid.jobs()
     with ExitStack() as stack:
         kept = None if store is None else stack.enter_context(Store(store))
@@ -218,17 +222,28 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
     return tuple(reference(each) if callable(each) else ensure_known("metric", each, measures()) for each in metrics)
 
 
-def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
-    if names is None:
+def _ensure_theorems(given: Any) -> tuple[str | Theorem, ...] | None:
+    if given is None:
         return None
-    if isinstance(names, str) or not isinstance(names, Iterable):
-        raise ArgumentError(f"theorems = {names!r}: expected several names, such as ['os-1', '{SOURCE}']")
-    chosen = tuple(dict.fromkeys(names))
-    for name in chosen:
-        ensure_known("theorem", name, (SOURCE, *theorems()))
-        if name != SOURCE and theorem(name).kind != "trajectory":
+    if isinstance(given, str | Theorem) or not isinstance(given, Iterable):
+        raise ArgumentError(f"theorems = {given!r}: expected several, such as ['os-1', '{SOURCE}', claim(...)]")
+    chosen, known = {(each.id if isinstance(each, Theorem) else each): each for each in _named(given)}, theorems()
+    for name, each in chosen.items():
+        if not isinstance(each, Theorem):
+            ensure_known("theorem", name, (SOURCE, *known))
+        elif name == SOURCE or (name in known and each is not theorem(name)):
+            raise ArgumentError(f"theorems: your claim {name!r} has the name of one in the catalogue; rename it")
+        if name != SOURCE and theorem(each).kind != "trajectory":
             raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
-    return chosen
+    return tuple(name if name in known else each for name, each in chosen.items())
+
+
+def _named(given: Iterable[Any]) -> Iterator[Any]:
+    """Yield names and theorems; raise on anything else."""
+    for each in given:
+        if not isinstance(each, str | Theorem):
+            raise ArgumentError(f"theorems: {format_value(each)}: expected names of theorems, or claims of your own")
+        yield each
 
 
 def _ensure_scenario(scenario: Any, grid: Grid) -> str:
@@ -248,7 +263,7 @@ def _ensure_scenario(scenario: Any, grid: Grid) -> str:
     return name
 
 
-def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str, ...]:
+def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str | Theorem, ...]:
     """Return the theorems to check on a flock after building it once with each combination of parameters."""
     if len(grid.seeds) > 1 and not flock.drawn:
         raise ArgumentError(
@@ -265,11 +280,23 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
     shared = request.to_dict(strict=strict)
     own = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
+    for each in request.own:
+        margin = getattr(each.check, "margin", each.check)
+        code = getattr(margin, "__code__", None)
+        shared["own"][f"claim {each.id}"] = [_file_digest(margin, each.id, strict), getattr(code, "co_firstlineno", 0)]
     return {job: digest(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
 
 
 def _source_digest(name: str, *, strict: bool) -> str:
-    file = Path(inspect.getsourcefile(resolve_name(name)) or "")
+    return _file_digest(resolve_name(name), name, strict)
+
+
+def _file_digest(function: Any, name: str, strict: bool) -> str:
+    """Return a digest of the file that defines a user's function."""
+    try:
+        file = Path(inspect.getsourcefile(function) or "")
+    except TypeError:  # an object with no source
+        file = Path()
     if file.is_file():
         return sha256(file.read_bytes()).hexdigest()
     if strict:

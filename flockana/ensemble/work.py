@@ -17,7 +17,7 @@ from flockana.ensemble.digest import numerics_version
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenario
 from flockana.scenarios.checks import SOURCE
-from flockana.theorems import Tolerances, Verdict
+from flockana.theorems import Theorem, Tolerances, Verdict
 
 Scalar = bool | int | float | str
 COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"
@@ -43,6 +43,7 @@ class Request:
     tolerances: Tolerances = field(default_factory=Tolerances)
     mathematics: str = field(default_factory=numerics_version)  # version that the runs must be computed by
     flock: Flock | None = None  # instead of a scenario's name
+    own: tuple[Theorem, ...] = ()  # the user's claims, which `theorems` names
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
         """Return plain data, for the key of a run; raise on a flock without a written form if `strict`."""
@@ -57,7 +58,9 @@ class Request:
                         f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
                     ) from None
                 plain = repr((*parts, flock.options))  # functions as their names, which tell no versions apart
-        return {**asdict(replace(self, flock=None)), "flock": plain}
+        data = asdict(replace(self, flock=None, own=()))
+        del data["own"]  # their ids are among the theorems, their sources in the key
+        return {**data, "flock": plain}
 
 
 @dataclass(frozen=True)
@@ -161,8 +164,9 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     tolerances = request.tolerances
     if request.theorems is None:
         return item.verify(run, tolerances=tolerances)
+    own = {each.id: each for each in request.own}
     chosen = [name for name in request.theorems if name != SOURCE]
-    verdicts = [item.verdict(name, run, tolerances=tolerances) for name in chosen]
+    verdicts = [item.verdict(own.get(name, name), run, tolerances=tolerances) for name in chosen]
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)

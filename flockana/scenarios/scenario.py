@@ -17,7 +17,7 @@ from flockana.laws import DiscreteLaw, Law
 from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.start import LazyField
-from flockana.theorems import Claim, Status, Tolerances, Verdict, verify
+from flockana.theorems import Claim, Status, Theorem, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
 
 OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own about the paper's laws
@@ -131,7 +131,7 @@ class Scenario:
         verdicts = tuple(self.verdict(name, trajectory, tolerances=tolerances) for name in self.theorems)
         return verdicts + self.reported(trajectory, tolerances=tolerances)
 
-    def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
+    def verdict(self, name: str | Theorem, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
         """Return one theorem's verdict on a run of this scenario, rigorous if `enclosed` names the theorem."""
         if self.enclosed is not None and name in self.enclosed.theorems:
             return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)

@@ -1,6 +1,7 @@
 """A claim of the user's own, from a function that says how far a run fulfils it."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,21 +42,33 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
         given = f"{format_value(name)}, {format_value(margin)}"
         raise ArgumentError(f"claim({given}): expected a name and a function of a run")
 
-    def of_run(run: Trajectory) -> Claim:
-        given = margin(run)
+    text = statement or name
+    return Theorem(name, text, text, "own claim", "trajectory", OwnCheck(name, margin, text), references=())
+
+
+@dataclass(frozen=True)
+class OwnCheck:
+    """Check of a user's claim: worker processes take it if they can import its margin."""
+
+    name: str
+    margin: Callable[[Trajectory], Any]
+    statement: str
+
+    def __call__(self, seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+        """Return the claim, judged on a run and its tighter repetition."""
+        return [], [by_both_runs(seen, self.of_run)]
+
+    def of_run(self, run: Trajectory) -> Claim:
+        """Return the claim by the least margin of one run."""
+        given = self.margin(run)
         try:
             values = np.atleast_1d(np.asarray(given, dtype=np.float64))
         except (TypeError, ValueError):
             values = np.array([np.nan])
         if values.size == 0 or np.isnan(values).any():
             shown = format_value(given)
-            raise ArgumentError(f"the margin of {name!r} is {shown}: expected a number, or one for each sample")
+            raise ArgumentError(f"the margin of {self.name!r} is {shown}: expected a number, or one for each sample")
         k = int(np.argmin(values))
         at = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
-        detail = f"{statement or name}: margin {values.flat[k]:.4g} {at}"
-        return judged(name, Enclosure.around(float(values.flat[k]), 0.0), detail=detail)
-
-    def check(seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-        return [], [by_both_runs(seen, of_run)]
-
-    return Theorem(name, statement or name, statement or name, "own claim", "trajectory", check, references=())
+        detail = f"{self.statement}: margin {values.flat[k]:.4g} {at}"
+        return judged(self.name, Enclosure.around(float(values.flat[k]), 0.0), detail=detail)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.files import atomic_write
 from flockana.base.progress import progress_bar
 from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
 from flockana.theorems.catalogue import catalogue, theorem, verify
 from flockana.theorems.of_schemes import claims_on_steps, is_about_steps
 from flockana.theorems.theorem import Theorem, Verdict
 from flockana.theorems.toolkit import Observed, Tolerances, Trajectory, unmet
+
+if TYPE_CHECKING:
+    import pandas
 
 _HEADS = ("theorem", "status", "rigour", "decided by", "title")
 _COLUMN = 28  # characters
@@ -51,6 +57,36 @@ class Verdicts(tuple[Verdict, ...]):
     def to_dict(self) -> list[dict[str, Any]]:
         """Return plain data for JSON."""
         return [verdict.to_dict() for verdict in self]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas table with a row for each claim: its status, how it is known, whose it is, its numbers."""
+        import pandas
+
+        return pandas.DataFrame(
+            [
+                (v.theorem, c.name, c.status, c.rigour, c.by, c.margin, c.error, c.proof or c.disproof, c.explanation)
+                for v in self
+                for c in v.claims
+            ],
+            columns=["theorem", "claim", "status", "rigour", "by", "margin", "error", "proof", "detail"],
+        ).astype({"margin": float, "error": float})
+
+    def to_mat(self, path: str | os.PathLike[str]) -> Path:
+        """Write the table of claims as a MATLAB file with one struct, `claims`, and return its path.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write, such as ``verdicts.mat``.
+        """
+        from scipy.io import savemat
+
+        table = self.to_dataframe()
+        numbers = {name: table[name].to_numpy(float) for name in ("margin", "error")}
+        texts = {name: table[name].fillna("").to_numpy(object) for name in table if name not in numbers}
+        with atomic_write(path) as temporary:
+            savemat(temporary, {"claims": texts | numbers})
+        return Path(path)
 
 
 def _deciding(verdict: Verdict) -> str:

@@ -110,3 +110,8 @@ def interrupts_a_kernel(run):
     if run.t[0] == 3.0:
         raise out_of_a_kernel()
     return 0.0
+
+
+def slowness(run):
+    """How far all speeds stay below 2: a margin of a user's own."""
+    return 2.0 - np.linalg.norm(run.p, axis=2).max(axis=1)
