@@ -15,8 +15,8 @@ from flockana.environment.targets import StaticTarget
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.taylor_step import TaylorStep
 from flockana.scenarios.scenario import Scenario
+from flockana.solvers.taylor_step import TaylorStep
 
 STUDY = "Noise and disturbances"
 DT, SPAN, SEEDS, AGENTS, ASKED = 0.01, 60.0, 200, 50, 10.0
@@ -56,7 +56,7 @@ def _start() -> Flock:
 
 def noisy_flock(seed: int) -> Scenario:
     """A hexagonal spiral under Algorithm 2 in white noise."""
-    from flockana.laws.stepped import Stepped
+    from flockana.solvers.stepped import Stepped
 
     law = Stepped(Disturbed(Algorithm2(target=StaticTarget((0.0, 0.0))), intensity=0.1, seed=seed), DT, 1)
     return Scenario("noisy", "white noise", "a benchmark", law, *_start(), (0.0, SPAN), seed, {})

@@ -9,10 +9,11 @@ import numpy as np
 from benchmarks.flocks import gas
 from benchmarks.rows import Found, Row
 from benchmarks.timing import interleaved, ratio
-from flockana.dynamics.simulate import METHODS, simulate
+from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.path_bounds import closest_approach
 from flockana.scenarios import scenario
+from flockana.solvers.named import METHODS
 
 STUDY = "Whole runs"
 STIFF = ("Radau", "BDF")  # dense Jacobians of 600 states by differences: minutes a run

@@ -63,7 +63,6 @@ from .laws.delayed import Delayed as Delayed
 from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw
 from .laws.disturbed import Disturbed as Disturbed
-from .laws.explicit_euler import ExplicitEuler as ExplicitEuler
 from .laws.law import Law as Law
 from .laws.lossy import Lossy as Lossy
 from .laws.measured import Measured as Measured
@@ -72,9 +71,7 @@ from .laws.olfati_saber import Algorithm2 as Algorithm2
 from .laws.peer_to_peer import PeerToPeer as PeerToPeer
 from .laws.sampled import Sampled as Sampled
 from .laws.saturated import Saturated as Saturated
-from .laws.semi_implicit import SemiImplicitEuler as SemiImplicitEuler
 from .laws.sum_of_terms import SumOfTerms as SumOfTerms
-from .laws.taylor_step import TaylorStep as TaylorStep
 from .laws.terms.alignment import AlignmentTerm as AlignmentTerm
 from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm
@@ -107,6 +104,19 @@ from .scenarios.flock import Flock as Flock
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
 from .scenarios.scenario import scenarios as scenarios
+from .solvers.dop853 import DOP853 as DOP853
+from .solvers.euler_maruyama import EulerMaruyama as EulerMaruyama
+from .solvers.explicit_euler import ExplicitEuler as ExplicitEuler
+from .solvers.fixed_steps import FixedStep as FixedStep
+from .solvers.fixed_steps import FixedSteps as FixedSteps
+from .solvers.heun import Heun as Heun
+from .solvers.rk4 import RK4 as RK4
+from .solvers.rk23 import RK23 as RK23
+from .solvers.rk45 import RK45 as RK45
+from .solvers.scipy_solver import Scipy as Scipy
+from .solvers.semi_implicit_euler import SemiImplicitEuler as SemiImplicitEuler
+from .solvers.solver import AdaptivePair as AdaptivePair
+from .solvers.taylor_step import TaylorStep as TaylorStep
 from .sources.cucker_smale_2007 import CuckerSmale as CuckerSmale
 from .sources.jond_2025 import Alien as Alien
 from .sources.jond_2025 import Box as Box

@@ -28,6 +28,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("measures",),
     ("lattice",),
     ("laws",),
+    ("solvers",),
     ("dynamics",),
     ("recorded",),
     ("lammps",),

@@ -121,8 +121,9 @@ def _feed(total: Any, value: Any, within: tuple[int, ...], modules: Mapping[str,
         for item in items:
             _feed(total, item, within, modules)
         return
-    kind = type(value)
     parts: Mapping[Any, Any] | None = None
+    spelling = None if isinstance(value, type) else getattr(value, "spelling", None)  # of what files hold otherwise
+    kind, spelled = spelling or (type(value), None)
     text = public_name(kind, modules)
     if value is None or isinstance(value, Number | str | bytes | Enum):
         text += f" {value!r}"
@@ -140,6 +141,8 @@ def _feed(total: Any, value: Any, within: tuple[int, ...], modules: Mapping[str,
         parts = value
     elif isinstance(value, Set):
         text += " ".join(sorted(checksum(item, modules) for item in value))
+    elif spelled is not None:
+        parts = spelled
     elif is_dataclass(value):
         parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init and field.compare}
     else:

@@ -21,7 +21,12 @@ from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.modules import modules, source_modules
 from flockana.base.seals import public_name
 
-_ROOMS = ("interactions", "environment", "laws")  # whose objects files may hold, and kinds of sources likewise
+_ROOMS = (
+    "interactions",
+    "environment",
+    "laws",
+    "solvers",
+)  # whose objects files may hold, and kinds of sources likewise
 
 
 @cache
@@ -37,10 +42,10 @@ def parameter_classes() -> dict[str, type]:
 def to_data(value: Any) -> Any:
     """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``."""
     if is_dataclass(value) and not isinstance(value, type):
-        kind, names = type(value), getattr(value, "names_in_files", {})
-        data = {names.get(f.name, f.name): to_data(getattr(value, f.name)) for f in fields(value) if f.init}
-        ours = kind.__module__.startswith("flockana.")
-        if ours and parameter_classes().get(kind.__qualname__) is not kind:
+        kind, values = getattr(value, "spelling", None) or (type(value), _parameters(value))
+        data = {name: to_data(part) for name, part in values.items()}
+        known = parameter_classes().get(kind.__qualname__) if kind.__module__.startswith("flockana.") else kind
+        if known is None or (isinstance(kind, type) and known is not kind):
             raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
         return {"type": public_name(kind), **data}
     if isinstance(value, np.ndarray):
@@ -55,6 +60,12 @@ def to_data(value: Any) -> Any:
         f"cannot write {value!r} to a file: expected parameters made of numbers; "
         "a user's function has no such form, so describe it by a class of its own (see CONTRIBUTING, 'targets')"
     )
+
+
+def _parameters(value: Any) -> dict[str, Any]:
+    """Return the arguments of a dataclass's constructor by their names in files."""
+    names = getattr(value, "names_in_files", {})
+    return {names.get(f.name, f.name): getattr(value, f.name) for f in fields(value) if f.init}
 
 
 def from_data(data: Any) -> Any:

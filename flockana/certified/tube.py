@@ -90,7 +90,7 @@ class Tube:
     stats: dict[str, Any]
 
     def __repr__(self) -> str:
-        known = f"{self.n} agents, m = {self.m}, {type(self.law).__name__}, {len(self.taken)} steps"
+        known = f"{self.n} agents, m = {self.m}, {self.law.title}, {len(self.taken)} steps"
         return f"<Tube of {known}, t = {float(self.t[0]):g} to {float(self.t[-1]):g}, {self.status}>"
 
     def ensure_unedited(self) -> None:

@@ -34,7 +34,7 @@ def read_flock(
     Examples
     --------
     >>> law, q = read_flock("line:3", d=2.0)
-    >>> type(law).__name__, law.alpha.d, q.ravel().tolist()
+    >>> law.title, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
     from flockana.cli.source import ensure_source, read_source
@@ -110,7 +110,7 @@ def _ensured(law: Any, m: int, potential: bool) -> Any:
     if potential or law.conservative:
         return ensure_flock_law(law, m)
     if law.continuous is None:
-        raise ArgumentError(f"{type(law).__name__} is a map from step to step: expected a continuous law to linearise")
+        raise ArgumentError(f"{law.title} is a map from step to step: expected a continuous law to linearise")
     return law
 
 

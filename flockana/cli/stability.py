@@ -99,7 +99,7 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
     poles = None if centre is None else [[pole.real, pole.imag] for pole in centre.poles.tolist()]
     return {
         "source": name,
-        "law": type(law).__name__,
+        "law": law.title,
         "n": n,
         "m": m,
         "links": len(linear.links),

@@ -13,12 +13,11 @@ from flockana.jit import thawed
 from flockana.kernels.advance import Advanced, advance
 from flockana.kernels.march import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
 from flockana.kernels.runge_kutta import Method
-from flockana.kernels.tableaus import tableau
 from flockana.kernels.verlet import COUNT, MADE, fill, no_pairs, spatial_order, with_room
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
+from flockana.solvers.tableau import Tableau
 
-METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _LISTS = 8  # lists made after which agents are sorted by cell again
 _BLOCKS = "scipy-DOP853"  # which looks at pairs in blocks
@@ -31,7 +30,9 @@ class Engine(Stepper):
     Agents are sorted by cell, so that a pair's are close in memory: `order` has every agent's own number.
     """
 
-    def __init__(self, form: Compiled, frame: Frame, plan: Plan, y: FloatArray, f: FloatArray) -> None:
+    def __init__(
+        self, form: Compiled, tableau: Tableau, frame: Frame, plan: Plan, y: FloatArray, f: FloatArray
+    ) -> None:
         self.frame, self.plan, (n, m) = frame, plan, frame.shape
         self.failure, self.evaluations, self.redone = "", 1, 0
         self.stops, self.due = plan.stops[plan.stops > frame.t0], plan.due[plan.due > frame.t0]
@@ -43,7 +44,7 @@ class Engine(Stepper):
         self._system, self._sampled = form.system(frame.view, n, m), 0
         self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * frame.size))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
-        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
+        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
         rtol, floor, longest = plan.control
         given += [float(rtol), tuple(map(float, floor)), float(longest)]
@@ -107,11 +108,12 @@ class Engine(Stepper):
 
 def engine_of(law: Law, start: Start, plan: Plan) -> Engine | None:
     """Return the compiled integrator of a law and a method; None without a compiled form, or with too many pairs."""
-    form = law.compiled(start.q.shape[1]) if plan.method in METHODS else None
-    if form is None or not start.energetic:
+    tableau = plan.solver.tableau
+    form = None if tableau is None else law.compiled(start.q.shape[1])
+    if tableau is None or form is None or not start.energetic:
         return None
     frame = Frame.of(start.t, start.q, start.p, energetic=True)
     y0 = frame.start(start.q, start.p)
     f0 = np.concatenate([y0[frame.size : 2 * frame.size], start.u.ravel(), [start.power]])
-    engine = Engine(form, frame, plan, y0, f0)
+    engine = Engine(form, tableau, frame, plan, y0, f0)
     return engine if engine.list_pairs() else None

@@ -10,16 +10,16 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import discrete, wanted_steps
 from flockana.dynamics.sample import Samples, Tally
-from flockana.laws.stepped import Stepped
+from flockana.solvers.fixed_steps import FixedSteps
 
 
 def followed(
-    law: Stepped, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
+    law: FixedSteps, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
 ) -> Iterator[Samples]:
     """Yield the steps of a wrapped law without noise; raise if a step, or the past, misses an encounter."""
     check, wanted = Encounters.of(law.law, len(q0)), wanted_steps(law, t_span, keep)
     before = State(q0, p0, np.zeros_like(q0))
-    past = law.start(q0, p0)["past"]
+    past = law.start(q0, p0).get("past", np.empty((0, 4, *q0.shape)))
     for k in range(len(past) - 1):
         _ensure_encounters_resolved(
             check, law.dt, State(*past[k, :3]), State(*past[k + 1, :3]), t_span[0] - (len(past) - 1 - k) * law.dt

@@ -1,7 +1,7 @@
 """Driver of all runs of continuous laws: steps that pass all checks, and samples between them.
 
-Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any law by one of scipy's solvers or RK4
-(`flockana.dynamics.solvers`). Beside the state, ∫ dH/dt is integrated as one more variable.
+Steppers are compiled with the law (`flockana.dynamics.compiled`) or interpreted
+(`flockana.dynamics.interpreted`). Beside the state, ∫ dH/dt is integrated as one more variable.
 """
 
 from collections.abc import Iterator
@@ -13,8 +13,8 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.interpreted import Interpreter
 from flockana.dynamics.sample import Sample, Samples, Start, Tally
-from flockana.dynamics.solvers import Solver
 from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.switches import Switches, switched
 from flockana.laws.law import Law
@@ -26,14 +26,14 @@ def integrated(law: Law, start: Start, plan: Plan, keep: FloatArray | None, tall
     # A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
     # with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets
     # the numbers of steps made again and of switches.
-    jumps = isinstance(law, SwitchedLaw) and law.located and not plan.dt
+    jumps = isinstance(law, SwitchedLaw) and law.located and plan.solver.dt is None
     engine = None if jumps else engine_of(law, start, plan)
     if engine is not None:
         yield from _driven(engine, law, start, keep, tally)
         return
     frame = Frame.of(start.t, start.q, start.p, energetic=start.energetic)
     switches = Switches(law, start.q) if jumps else None  # type: ignore[arg-type]
-    solver = Solver(law, frame, plan, frame.start(start.q, start.p), None if switches is None else switches.flow)
+    solver = Interpreter(law, frame, plan, frame.start(start.q, start.p), None if switches is None else switches.flow)
     if switches is None:
         yield from _driven(solver, law, start, keep, tally)
     else:

@@ -40,7 +40,6 @@ from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
 BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
-ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do next hangs on the state alone
 _TOWARD = 0.5  # of the way to a pole that a step of fixed length may go: no error estimate says that it is resolved
 
 
@@ -123,9 +122,10 @@ class StepChecks:
     """Checks that every step of a run must pass (`flockana.kernels.checks`)."""
 
     def __init__(self, law: Law, frame: Frame, plan: Plan) -> None:
-        self._encounters, self._view, fixed = Encounters.of(law, frame.shape[0]), frame.view, plan.dt > 0.0
+        self._encounters, self._view = Encounters.of(law, frame.shape[0]), frame.view
+        fixed = plan.solver.dt is not None
         balance, poles = (0.0, np.inf), self._encounters.poles.size > 0
-        if plan.method.rpartition("-")[2] in ONE_STEP:
+        if plan.solver.one_step and not fixed:
             balance = (BALANCED * plan.control.rtol, BALANCED * plan.control.floor.work)
         energetic = frame.energetic and (poles or not fixed)  # of fixed steps: whether the energy stays finite
         self._rules = Rules(self._encounters.any, energetic, balance, fixed)

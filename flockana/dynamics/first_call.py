@@ -14,7 +14,7 @@ from flockana.laws.law import Law
 
 def first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> Start:
     """Return the start of a run; raise unless the law returns real numbers in the flock's shape, finite there."""
-    name, at = type(law).__name__, f"at the start, t = {t0:g}"
+    name, at = law.title, f"at the start, t = {t0:g}"
     if isinstance(law, Law):
         u, power = law.checked_flow(t0, q0, p0)
         start = Start(t0, q0, p0, u, power, law.hamiltonian(t0, q0, p0))

@@ -10,25 +10,25 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.tolerance import Control, ErrorFloors
+from flockana.solvers.solver import Solver
 
 Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
 EXACT = Control(0.0, ErrorFloors(0.0, 0.0, 0.0))
 
 
 class Plan(NamedTuple):
-    """Plan of a run for an integrator: method, times of stops and samples, tolerances, fixed step."""
+    """Plan of a run for an integrator: solver, times of stops and samples, tolerances."""
 
-    method: str
+    solver: Solver
     stops: FloatArray  # rising times at which a step must end, the last of them the end of the run
     due: FloatArray  # times of samples between steps
     control: Control = EXACT  # tolerances, and the longest step
-    dt: float = 0.0  # step of a method of fixed steps, 0 for others
 
     def describe_failure(self, t: float, why: str) -> str:
         """Return in words why a run ended early."""
-        if self.dt:
-            return f"RK4 left the finite numbers at t = {t:g}: reduce dt = {self.dt:g}"
-        return f"{self.method} gave up at t = {t:g}: {why}"
+        if self.solver.dt:
+            return f"{self.solver.name} left the finite numbers at t = {t:g}: reduce dt = {self.solver.dt:g}"
+        return f"{self.solver.name} gave up at t = {t:g}: {why}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,7 +36,8 @@ def discrete(
         own = np.arange(first + 1, last + 1)
         if wanted is not None:
             own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
-        made, rows, states = _chunk(law, t0 + first * dt, q, p, memory, own - first, last - first)
+        times = t0 + np.arange(float(first), float(last)) * dt  # so a step hangs on its own time, and on no block's
+        made, rows, states = _chunk(law, times, q, p, memory, own - first)
         qs, ps, us, series = states
         good = made.size
         if not finite(qs, ps):
@@ -63,19 +64,18 @@ def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray
 
 
 def _chunk(
-    law: DiscreteLaw, t: float, q: FloatArray, p: FloatArray, memory: Arrays, own: IndexArray, steps: int
+    law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, own: IndexArray
 ) -> tuple[IndexArray, IndexArray, States]:
-    """Return (indices of steps, positions of the wanted ones among them, states after them from `iterate` or `visit`).
+    """Return (indices of steps, positions of the wanted ones among them, states after them).
 
-    They are its own and the last where the law can leave out others; all where it cannot, or where the map has left the
-    finite numbers: which step was the first?
+    They are its own and the last; all where the map has left the finite numbers: which step was the first?
     """
-    if own.size < steps:
-        few = own if own.size and own[-1] == steps else np.append(own, steps)
-        states = law.visit(t, q, p, memory, few)
-        if states is not None and finite(*states[:2]):
-            return few, np.arange(own.size), states
-    return np.arange(1, steps + 1), own - 1, law.iterate(t, q, p, memory, steps)
+    steps = len(times)
+    few = own if own.size and own[-1] == steps else np.append(own, steps)
+    states = law.visit(times, q, p, copied(memory), few)
+    if few.size == steps or finite(*states[:2]):
+        return few, np.arange(own.size), states
+    return np.arange(1, steps + 1), own - 1, law.visit(times, q, p, memory, np.arange(1, steps + 1))
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:

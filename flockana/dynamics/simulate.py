@@ -1,4 +1,4 @@
-"""Integrate a law: adaptive solvers, a fixed-step RK4 for large flocks, or the steps of a discrete law.
+"""Integrate a law by a solver, or make the steps of a map.
 
 Beside the state, ∫ dH/dt is integrated as one more variable, so that every run measures its own error: the residual
 of the energy balance is `Trajectory.energy_residual`.
@@ -13,7 +13,6 @@ import numpy as np
 from flockana.base.checks import (
     FloatArray,
     ensure_fits,
-    ensure_known,
     ensure_positive,
     ensure_state,
     ensure_time_span,
@@ -29,18 +28,15 @@ from flockana.dynamics.driver import integrated
 from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.iterate import count_steps, discrete
-from flockana.dynamics.sample import Sample, Samples, Tally, copied
-from flockana.dynamics.solvers import SCIPY
+from flockana.dynamics.sample import Sample, Samples, Start, Tally, copied
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
-from flockana.laws.stepped import Stepped
-from flockana.laws.wrapped import needs_steps, wrappers_of
-
-ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
-METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
-_ORDERS = {"Euler-Maruyama": 1, "Heun": 2, "RK4": 4}  # schemes of wrapped laws
+from flockana.laws.wrapped import needs_steps, wrappers_within
+from flockana.solvers.fixed_steps import FixedStep, FixedSteps
+from flockana.solvers.named import solver_of
+from flockana.solvers.solver import Solver
 
 
 def simulate(
@@ -49,7 +45,7 @@ def simulate(
     p0: Any,
     t_span: Any,
     *,
-    method: str = "DOP853",
+    method: str | Solver = "DOP853",
     rtol: float = 1e-8,
     atol: float | tuple[float, float] | None = None,
     dt: float | None = None,
@@ -66,16 +62,19 @@ def simulate(
     ----------
     law : Law or DiscreteLaw
         What moves the flock. A discrete law brings its own step; method, tolerances and dt do not apply to it. A
-        `SwitchedLaw` is integrated from switch to switch, except by RK4; a sliding mode ends the run and is reported.
+        `SwitchedLaw` is integrated from switch to switch, except in fixed steps; a sliding mode ends the run and is
+        reported.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities.
     t_span : (float, float)
         Start and end.
-    method : str
-        DOP853, RK45, RK23, Radau, BDF, LSODA, or RK4 with a fixed step. The first three and RK4 are compiled for laws
-        that are (Algorithms 1 and 2 and all sums of such terms); else they are scipy's, as `scipy-DOP853` and so on are
-        for every law. They make the same decisions with the same coefficients. A law that is wrapped by a delay, a
-        clock or noise takes Euler-Maruyama, Heun or, without noise, RK4, all with `dt`; by default the best of them.
+    method : str or Solver
+        A solver such as ``RK4(0.01)``, or its name: DOP853, RK45, RK23, Radau, BDF, LSODA; with `dt` RK4, Heun,
+        ExplicitEuler, SemiImplicitEuler, TaylorStep, Euler-Maruyama. Methods with coefficients are compiled for laws
+        that are (Algorithms 1 and 2 and all sums of such terms), and stepped in Python for others; `scipy-DOP853` and
+        so on are scipy's for every law. They make the same decisions with the same coefficients. A law that is wrapped
+        by a delay, a clock or noise takes a method of fixed steps, with noise Heun or Euler-Maruyama; by default RK4,
+        with noise Heun.
     rtol : float
         Relative tolerance of the adaptive solvers: relative to the state as seen from the mean motion of the start, so
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
@@ -85,7 +84,8 @@ def simulate(
         speed and energy. Or a pair: of positions, a length, and of velocities, a speed. By default a hundredth of
         `rtol` times the law's own length.
     dt : float, optional
-        Step of RK4 and of wrapped laws (required there, meaningless elsewhere). RK4's last step ends on time.
+        Step of a method of fixed steps that is given by name, and of wrapped laws (required there, meaningless
+        elsewhere). Of a continuous law the last step ends on time.
     max_step : float, optional
         Longest step of the adaptive solvers: what is narrower than their steps may be leapt over without a trace.
     t_eval : array_like, optional
@@ -114,7 +114,7 @@ def simulate(
     """
     ensure_law(law)
     if isinstance(law, Law) and needs_steps(law):
-        law, method, dt = _stepped(law, method, dt), "DOP853", None
+        law, method, dt = _in_steps(law, method, dt), "DOP853", None
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -124,33 +124,23 @@ def simulate(
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
     tally, how = Tally(), dict[str, Any]()
+    samples: Iterator[Sample | Samples]
     if isinstance(law, DiscreteLaw):
         if dt is not None or max_step is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt, max_step nor method")
-        method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
+        name, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples: Iterator[Sample | Samples]
-        if isinstance(law, Stepped) and not law.noisy:
+        if isinstance(law, FixedSteps) and wrappers_within(law.law) and not law.noisy:
             samples = followed(law, q0, p0, t_span, keep, tally)
         else:
             samples = discrete(law, q0, p0, t_span, keep, tally)
-    elif _ensure_method(method, dt, max_step) == "RK4":
-        how = {"dt": _ensure_step("dt", dt, t_span)}
-        _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        stops = np.array(list(_stops(t_span, how["dt"], keep)))
-        plan = Plan("RK4", stops, np.empty(0), dt=how["dt"])
-        samples = integrated(law, start, plan, stops if keep is None else keep, tally)
     else:
-        how = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
-        floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
-        longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
-        control, due = Control(how["rtol"], floor, longest), np.empty(0) if keep is None else keep
-        plan = Plan(method, np.array([t_span[1]]), due, control)
-        samples = integrated(law, start, plan, keep, tally)
-        how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
+        plan, how = _plan(solver_of(method, dt), law, start, t_span, keep, (rtol, atol, max_step))
+        name, every = plan.solver.name, plan.solver.dt is not None and keep is None
+        samples = integrated(law, start, plan, plan.stops if every else keep, tally)
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
-    counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
+    counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     if not kept:  # ended before the first time to keep
         kept = [start.sample]
@@ -160,14 +150,40 @@ def simulate(
     return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
 
 
-def _stepped(law: Law, method: str, dt: Any) -> Stepped:
-    """Return a law that needs steps of its own (delay, clock or noise) as a map with steps of dt."""
-    if dt is None:
-        raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, expected one such as dt=0.01")
-    order = 2 if any(one.noisy for one in wrappers_of(law)) else 4
-    if method != "DOP853":
-        order = _ORDERS[ensure_known("method of a wrapped law", method, tuple(_ORDERS))]
-    return Stepped(law, dt, order)
+def _in_steps(law: Law, method: str | Solver, dt: Any) -> FixedSteps:
+    """Return a law that needs fixed steps (delay, clock or noise) as a map."""
+    if isinstance(method, str) and dt is None:
+        raise ArgumentError(f"dt = None: {law.title} is run in fixed steps, expected one such as dt=0.01")
+    if method == "DOP853":
+        method = "Heun" if any(one.noisy for one in wrappers_within(law)) else "RK4"
+    solver = solver_of(method, dt)
+    if not isinstance(solver, FixedStep):
+        raise ArgumentError(f"method = {method!r}: {law.title} is run in fixed steps, such as Heun(0.01)")
+    return FixedSteps(law, solver)
+
+
+def _plan(
+    solver: Solver,
+    law: Law,
+    start: Start,
+    t_span: tuple[float, float],
+    keep: FloatArray | None,
+    tolerances: tuple[Any, Any, Any],
+) -> tuple[Plan, dict[str, Any]]:
+    """Return the plan of a run of a continuous law, and the options that its statistics name."""
+    rtol, atol, max_step = tolerances
+    if solver.dt is not None:
+        if max_step is not None:
+            raise ArgumentError(f"max_step = {max_step!r}: {solver.name} takes steps of dt; make dt shorter")
+        dt = _ensure_step("dt", solver.dt, t_span)
+        _ensure_samples_fit(dt, t_span, start.q, keep)
+        return Plan(solver, np.array(list(_stops(t_span, dt, keep))), np.empty(0)), {"dt": dt}
+    how: dict[str, Any] = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
+    floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
+    longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
+    control, due = Control(how["rtol"], floor, longest), np.empty(0) if keep is None else keep
+    how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
+    return Plan(solver, np.array([t_span[1]]), due, control), how
 
 
 def _stacked(
@@ -214,17 +230,6 @@ def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> I
     for stop in keep.tolist():
         yield from np.linspace(t, stop, max(1, count_steps(t, stop, dt)) + 1)[1:].tolist()
         t = stop
-
-
-def _ensure_method(method: str, dt: float | None, max_step: float | None) -> str:
-    ensure_known("method", method, METHODS)
-    if method == "RK4" and dt is None:
-        raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
-    if method == "RK4" and max_step is not None:
-        raise ArgumentError(f"max_step = {max_step!r}: RK4 takes steps of dt; make dt shorter")
-    if method != "RK4" and dt is not None:
-        raise ArgumentError(f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times")
-    return method
 
 
 def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None:

@@ -8,8 +8,8 @@ from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
+from flockana.dynamics.interpreted import Interpreter
 from flockana.dynamics.sample import Sample, Start, Tally
-from flockana.dynamics.solvers import Solver
 from flockana.laws.switched import Pieces, SwitchedLaw
 
 Way = Callable[[float], FloatArray]
@@ -45,7 +45,7 @@ class Switches:
 
 
 def switched(
-    solver: Solver, switches: Switches, start: Start, keep: FloatArray | None, tally: Tally
+    solver: Interpreter, switches: Switches, start: Start, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample]:
     """Steps from switch to switch, and samples at times to keep; a sliding mode ends the run."""
     frame, flow, t = solver.frame, switches.flow, solver.frame.t0

@@ -126,14 +126,14 @@ class Trajectory(MeasuredRun):
 
     def __repr__(self) -> str:
         """Return a one-line description without the arrays."""
-        span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
+        span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", self.law.title
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
 
     def facts(self) -> dict[str, str]:
         """Return what a table shows: sizes, times, method and status."""
         steps = f", {self.stats['steps']} steps" if "steps" in self.stats else ""
         return {
-            "law": type(self.law).__name__,
+            "law": self.law.title,
             "agents": f"{self.n}, m = {self.m}",
             "time": f"{self.t[0]:g} to {self.t[-1]:g}, {len(self.t)} samples{steps}",
             "method": str(self.stats.get("method", "recorded")),

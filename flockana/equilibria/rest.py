@@ -38,6 +38,6 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
             share *= _SHORTEN
         q, force = q + share * step, after
     raise SolverError(
-        f"no state of rest of {type(law).__name__} found near there: the largest force left is "
+        f"no state of rest of {law.title} found near there: the largest force left is "
         f"{float(np.linalg.norm(force, axis=1).max()):.3g}; start nearer to one, or linearise as it is"
     )

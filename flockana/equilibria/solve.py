@@ -100,7 +100,7 @@ class Equilibrium:
         """Return the rows of the table that a notebook shows."""
         lowest = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
         return {
-            "law": type(self.law).__name__,
+            "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
             "kind": self.kind + (f" of index {self.index}" if self.index else ""),
             "energy": f"{self.energy:.6g}",

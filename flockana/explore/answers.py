@@ -102,7 +102,7 @@ def poles(run: Trajectory) -> dict[str, Any]:
     """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there."""
     law, q = run.law.continuous, run.q[-1]
     if law is None:
-        return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
+        return {"note": f"{run.law.title} is a map of its own: it has no poles in continuous time"}
     if q.size > _POLES:
         text = f"{q.size} coordinates: this page computes the poles of at most {_POLES}; use flockana stability"
         return {"note": text}

@@ -148,8 +148,8 @@ def from_file(path: str) -> Start:
         f"saved = fl.Trajectory.load({str(path)!r})",
         f"law, q0, p0, t_span, options = saved.law, saved.q[0].copy(), saved.p[0].copy(), {span}, {options}",
     )
-    title = f"{Path(path).name}: {run.n} agents, {type(run.law).__name__}"
-    checked = theorems_of(type(run.law).__name__)
+    title = f"{Path(path).name}: {run.n} agents, {run.law.title}"
+    checked = theorems_of(run.law.title)
     return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked, recorded=run)
 
 

@@ -145,7 +145,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
         with_parameter(law, name, float(law_parameter(law, name)))
     except (AttributeError, TypeError, ValueError):
         raise ArgumentError(
-            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
+            f"{name}: {law.title} has no such number; expected a dotted name, such as gains.c1_alpha"
         ) from None
     return low, high
 

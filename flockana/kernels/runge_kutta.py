@@ -1,8 +1,9 @@
 """One step of an explicit Runge-Kutta pair on (positions, velocities, work), its error estimate and its interpolant.
 
-A tableau is (A, C, E, P): row s of A has the weights of the step itself, so that stage s is the rate at its end; rows
-beyond it are stages of the interpolant alone. E has one row, the error estimate, or two, those of DOP853; P the
-interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in row rows[s] of the step's rates.
+A tableau (`flockana.solvers.tableau`) is (A, C, E, P): row s of A has the weights of the step itself, so that stage s
+is the rate at its end; rows beyond it are stages of the interpolant alone. E has one row, the error estimate, or two,
+those of DOP853; P the interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in row rows[s] of the step's
+rates.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from flockana.kernels.verlet import COUNT, covers
 
 
 class Method(NamedTuple):
-    """A method (`flockana.kernels.tableaus.Tableau`), and the tolerances of a run."""
+    """A method (`flockana.solvers.tableau.Tableau`), and the tolerances of a run."""
 
     a: Any
     c: Any
@@ -27,6 +28,7 @@ class Method(NamedTuple):
     rows: Any
     stages: Any
     exponent: Any
+    lead: Any
     rtol: Any  # relative tolerance
     floor: Any  # absolute ones: of positions, velocities and work
     longest: Any  # longest step
@@ -128,6 +130,9 @@ def stages_of(step, method, begin, end, system, pairs):
     for s in range(begin, end):
         into = step.reached if s == method.stages else step.trial
         combine(step.y, step.h, method.a[s], rates, rows, s, into)
+        if method.lead != 0.0:  # of one stage, whose rate is in row 0
+            for k in range(into.size // 2):
+                into[k] += method.lead * step.h * step.h * rates[0, into.size // 2 + k]
         rate_of(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
 
 

@@ -65,9 +65,7 @@ def read_lammps(
 
     ensure_law(law)
     if law.continuous is not law:
-        raise ArgumentError(
-            f"{type(law).__name__} is a map from step to step: expected a continuous law, as LAMMPS's is"
-        )
+        raise ArgumentError(f"{law.title} is a map from step to step: expected a continuous law, as LAMMPS's is")
     start = ensure_finite_scalar("start", start)
     step = None if dt is None else ensure_positive("dt", dt)
 

@@ -126,7 +126,7 @@ def export_lammps(
     clock = _clock(law, start, end, dt, samples)
     table = pair_table(term, points, first)
     result = script.translated(law, q0.shape[1], table, nearest=consensus == "nearest")
-    title = f"{len(q0)} agents of {type(law).__name__}, t = {start:g} to {end:g}"
+    title = f"{len(q0)} agents of {law.title}, t = {start:g} to {end:g}"
     texts = {
         script.SCRIPT: script.script_text(title, q0.shape[1], table, clock, result),
         script.DATA: script.data_text(q0, p0, term.pair.range, title),
@@ -150,7 +150,7 @@ def _translatable(law: Any) -> tuple[Law, PairTerm]:
     term = None if continuous is None else continuous.term(PairTerm)
     if continuous is None or term is None:
         raise ArgumentError(
-            f"{type(law).__name__} has no pair term for LAMMPS to tabulate: expected a sum of terms with one, such as "
+            f"{law.title} has no pair term for LAMMPS to tabulate: expected a sum of terms with one, such as "
             "Algorithm1, Algorithm2 or DeadZoneFlocking"
         )
     if not np.isfinite(term.pair.range):
@@ -181,7 +181,7 @@ def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float
 def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> script.Clock:
     """Return equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
-        raise ArgumentError(f"dt = None: {type(law).__name__} has no time of its own; give a step")
+        raise ArgumentError(f"dt = None: {law.title} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
     every = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
     return script.Clock(start, (end - start) / (samples * every), samples * every, every)

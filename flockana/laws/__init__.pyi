@@ -6,7 +6,6 @@ from .directed import DirectedNet as DirectedNet
 from .discrete import DiscreteLaw as DiscreteLaw
 from .discrete import ensure_law as ensure_law
 from .disturbed import Disturbed as Disturbed
-from .explicit_euler import ExplicitEuler as ExplicitEuler
 from .law import Law as Law
 from .lossy import Lossy as Lossy
 from .measured import Measured as Measured
@@ -17,10 +16,7 @@ from .olfati_saber import paper_pair as paper_pair
 from .peer_to_peer import PeerToPeer as PeerToPeer
 from .sampled import Sampled as Sampled
 from .saturated import Saturated as Saturated
-from .semi_implicit import SemiImplicitEuler as SemiImplicitEuler
-from .stepped import Stepped as Stepped
 from .sum_of_terms import SumOfTerms as SumOfTerms
-from .taylor_step import TaylorStep as TaylorStep
 from .terms.alignment import AlignmentTerm as AlignmentTerm
 from .terms.navigation import Navigation as Navigation
 from .terms.obstacles import ObstacleTerm as ObstacleTerm

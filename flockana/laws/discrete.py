@@ -31,16 +31,19 @@ class DiscreteLaw(LawOfMotion):
     position_factor : float or None
         f of a map q' = q + dt p + f dt² u, p' = p + dt u, u the input of `continuous` at the start of the step: what
         `linearise` needs to know. None of any other map.
+    stability_function : tuple of float or None
+        Coefficients r of a map whose step is Σ r_k (h A)^k where `continuous` is linear with the matrix A.
     in_place : bool
         Whether agents move one after the other, and each sees those before it already moved.
     """
 
     position_factor: float | None = None
+    stability_function: tuple[float, ...] | None = None
     in_place: bool = False
 
     dt: float
-    approximates: ClassVar[bool] = False  # whether it is a scheme that integrates `law`, and no law of its own
-    steps_at_once: ClassVar[int] = 1
+    approximates: ClassVar[bool] = False  # whether it integrates `law`, and is no law of its own
+    steps_at_once: ClassVar[int] = 1  # at most, however quick they are
     private: ClassVar[tuple[str, ...]] = ()  # names in the memory that a run does not record
     extra_units: ClassVar[Mapping[str, Powers]] = {}
 
@@ -89,8 +92,8 @@ class DiscreteLaw(LawOfMotion):
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:
         """Return the results of `steps` calls of `step`, stacked along a first axis, unchecked.
 
-        `simulate` asks for `steps_at_once` steps at a time. A law whose step costs less than a call from Python
-        overrides both; it must give what `step` gives, to the bit.
+        A law whose step costs less than a call from Python, and does not hang on the time, overrides both; it must
+        give what `step` gives, to the bit.
 
         Parameters
         ----------
@@ -99,28 +102,45 @@ class DiscreteLaw(LawOfMotion):
         steps : int
             How many, at least 1.
         """
-        states, memories = [], []
-        for k in range(steps):
-            q, p, u, memory = self.step(t + k * self.dt, q, p, memory)
-            states.append((q, p, u))
-            memories.append({name: np.array(value) for name, value in memory.items()})
-        stacked = [np.stack(series) for series in zip(*states, strict=True)]
-        series = {name: np.stack([each[name] for each in memories]) for name in memory}
-        return stacked[0], stacked[1], stacked[2], series
+        times = t + self.dt * np.arange(float(steps))
+        return self._step_by_step(times, q, p, memory, np.arange(1, steps + 1))
 
-    def visit(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States | None:
-        """Return `iterate` at some steps only, where that costs less; None by default.
+    def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
+        """Return the results of some of the steps that begin at the times given; `simulate` asks for this.
 
-        Once the state is not finite it must stay so, as the steps in between are not seen.
+        Once the state is not finite it stays so, as the steps in between are not seen. At most `steps_at_once` are
+        asked for at a time.
 
         Parameters
         ----------
+        times : ndarray, shape (K,)
+            Beginnings of the steps.
         memory : mapping of str to ndarray
-            What else the law remembers; not to be changed in place either, as the steps may be made again.
+            What else the law remembers.
         wanted : ndarray of int, shape (S,)
-            The steps, numbered from 1, rising.
+            The steps whose results are returned, numbered from 1, rising; the last of them is the last that is made.
         """
-        return None
+        if type(self).iterate is DiscreteLaw.iterate:
+            return self._step_by_step(times, q, p, memory, wanted)
+        *states, series = self.iterate(float(times[0]), q, p, memory, int(wanted[-1]))
+        qs, ps, us = (values[wanted - 1] for values in states)
+        return qs, ps, us, {name: values[wanted - 1] for name, values in series.items()}
+
+    def _step_by_step(
+        self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
+    ) -> States:
+        """Return what `visit` does, by calls of `step`."""
+        states, memories, marks, lost = [], [], set(wanted.tolist()), False
+        for k, t in enumerate(times[: wanted[-1]].tolist(), 1):
+            if not lost:
+                q, p, u, memory = self.step(t, q, p, memory)
+                lost = not (np.isfinite(q).all() and np.isfinite(p).all())
+            if k in marks:
+                states.append((q, p, u))
+                memories.append({name: np.array(value) for name, value in memory.items()})
+        stacked = [np.stack(series) for series in zip(*states, strict=True)]
+        series = {name: np.stack([each[name] for each in memories]) for name in memory}
+        return stacked[0], stacked[1], stacked[2], series
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """Return the memory before the first step; empty by default."""

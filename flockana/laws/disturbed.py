@@ -193,7 +193,7 @@ class Disturbed(Wrapper):
 
     def compiled_push(self, m: int) -> Compiled | None:
         """The law with its pushes and without its noise, as `compiled` gives it."""
-        inner = self.law.compiled_push(m) if isinstance(self.law, Disturbed) else self.law.compiled(m)
+        inner = self.law.compiled_push(m)
         form = None if callable(self.force) or self.times else inner
         if form is None:
             return None

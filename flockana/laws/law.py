@@ -53,8 +53,7 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
 
 
 Arrays = Mapping[str, FloatArray]  # by name
-# ``block(q, p, steps, wanted=None)`` returns q, p after each wanted step, numbered from 1, and u before it
-Block = Callable[..., tuple[FloatArray, FloatArray, FloatArray]]
+Block = Callable[..., tuple[FloatArray, FloatArray, FloatArray] | None]  # of steps, as `Law.block` returns it
 _Term = TypeVar("_Term", bound="Term")
 _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field": None}
 
@@ -105,6 +104,11 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
                 own = vars(self).get("law")  # that it wraps or steps
                 return getattr(own, name) if isinstance(own, Law) else _LACKING[name]
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
+
+    @property
+    def title(self) -> str:
+        """Name of the law in messages and tables: that of its class."""
+        return type(self).__name__
 
     @property
     def continuous(self) -> Law | None:
@@ -293,16 +297,6 @@ class Law(LawOfMotion):
         self.check_agents(q.shape[0])
         return ensure_finite_scalar("t", t), q, p
 
-    def block(self, solver: Any) -> Block | None:
-        """Return a compiled loop of the law's own for many steps of a solver, None if it has none.
-
-        Parameters
-        ----------
-        solver : SemiImplicitEuler, or another solver
-            Which steps the law; its step is ``solver.dt``.
-        """
-        return None
-
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return `flow`; raise unless it is an array of real numbers in the flock's shape and a real number."""
         given: Any = self.flow(t, q, p)
@@ -342,6 +336,23 @@ class Law(LawOfMotion):
 
     def compiled(self, m: int) -> Compiled | None:
         """Return the law for compiled integrators (`flockana.dynamics.compiled`); None if it has no such form."""
+        return None
+
+    def compiled_push(self, m: int) -> Compiled | None:
+        """Return the compiled form without the noise that kicks velocities."""
+        return self.compiled(m)
+
+    def block(self, solver: Any) -> Block | None:
+        """Return the law's own compiled block of steps by a solver, ``(times, q, p, wanted) -> (q, p, u)``.
+
+        None unless a law has one; a block may give None where it does not serve. Arguments and results are those of
+        `DiscreteLaw.visit`.
+
+        Parameters
+        ----------
+        solver : FixedStep
+            Method and step.
+        """
         return None
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:

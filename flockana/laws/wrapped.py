@@ -208,10 +208,14 @@ def needs_steps(law: Any) -> bool:
     return isinstance(law, Wrapper) and any(one.stepped for one in law.wrappers)
 
 
+def wrappers_within(law: Any) -> tuple[Wrapper, ...]:
+    """Return the wrappers of a law, the outermost first; empty without any."""
+    return tuple(law.wrappers) if isinstance(law, Wrapper) else ()
+
+
 def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
     """Wrappers of a law, or of the law that a map steps; empty without any."""
-    within = law.continuous
-    return tuple(within.wrappers) if isinstance(within, Wrapper) else ()
+    return wrappers_within(law.continuous)
 
 
 def input_of(law: Law, step: Step, view: View) -> FloatArray:

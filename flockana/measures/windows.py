@@ -52,7 +52,7 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     """Return windows of a run's samples over which its nets are jointly connected."""
     # A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
     if not hasattr(run.law, "links") and run.law.pair is None:
-        raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
+        raise ArgumentError(f"{run.law.title} has no net: expected a run of a law with a range")
     own = getattr(run.law, "links", None)
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
 

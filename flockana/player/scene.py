@@ -100,7 +100,7 @@ def scene(
     header = {
         "n": run.n,
         "m": run.m,
-        "title": title or f"{run.n} agents, {type(run.law).__name__}",
+        "title": title or f"{run.n} agents, {run.law.title}",
         "reach": around.reach,
         "length": around.length,
         "edge_counts": [len(pairs) for pairs in around.edges],

@@ -91,7 +91,7 @@ class Comparison:
         return tuple((float(self.t[k]), self.ids[i], float(size[k, i])) for k, i in at)
 
     def __str__(self) -> str:
-        name = type(self.law).__name__
+        name = self.law.title
         lines = [f"{name} explains {self.share} of the recorded accelerations (from {self.basis})"]
         for one in self.shares:
             known = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
@@ -108,7 +108,7 @@ class Comparison:
         """Return plain data."""
         kept = ("basis", "explained", "explained_refitted", "caution")
         return {
-            "law": type(self.law).__name__,
+            "law": self.law.title,
             "shares": [one._asdict() for one in self.shares],
             "findings": list(self.findings),
             "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
@@ -147,9 +147,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
     given = ensure_law(law)
     continuous = given.continuous if isinstance(given, DiscreteLaw) else given
     if continuous is None:
-        raise ArgumentError(
-            f"{type(law).__name__} steps no continuous law: expected a law, or a scheme such as TaylorStep"
-        )
+        raise ArgumentError(f"{law.title} steps no continuous law: expected a law, or a scheme such as TaylorStep")
     continuous.check_dimension(rec.m)
     continuous.check_agents(rec.n)
     data = accelerations(rec)

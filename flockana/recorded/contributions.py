@@ -39,7 +39,7 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     """Return the parts of a law: one for each gain, or the law as a whole."""
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
-        return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
+        return (Contribution("law", law.title, "the law as a whole", 1.0, _acts(law)),)
     parts, gained = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
         (symbol, text), own = SYMBOLS[name], getattr(gains, name)

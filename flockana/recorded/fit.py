@@ -67,7 +67,7 @@ class Fit:
         return {k: (v - width * self.errors[k], v + width * self.errors[k]) for k, v in self.values.items()}
 
     def __str__(self) -> str:
-        lines = [f"{type(self.law).__name__} fitted; residual {self.misfit:.3g} times the accuracy"]
+        lines = [f"{self.law.title} fitted; residual {self.misfit:.3g} times the accuracy"]
         for name, (low, high) in self.intervals.items():
             lines.append(f"  {name} = {self.values[name]:.5g}, between {low:.5g} and {high:.5g} (95 %)")
         return "\n".join([*lines, *(f"  {text}" for text in self.unidentifiable)])
@@ -110,7 +110,7 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     ensure_recording(rec)
     own = ensure_law(law)
     if isinstance(own, DiscreteLaw):
-        raise ArgumentError(f"{type(law).__name__} is a map: expected a continuous law, such as the one that it steps")
+        raise ArgumentError(f"{law.title} is a map: expected a continuous law, such as the one that it steps")
     own.check_dimension(rec.m)
     own.check_agents(rec.n)
     parameters = FreeParameters.of(law, free)

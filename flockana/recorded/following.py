@@ -118,7 +118,7 @@ def _over_windows(rec: Recording, law: Any) -> Following:
 
     if isinstance(law, DiscreteLaw):
         raise ArgumentError(
-            f"noisy positions under the map {type(law).__name__}: expected its continuous law, or velocities and bound="
+            f"noisy positions under the map {law.title}: expected its continuous law, or velocities and bound="
         )
     duration, smooth = usual_window(rec, law), rec.with_velocities()
     assert smooth.p is not None

@@ -27,7 +27,7 @@ class FreeParameters:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:
                 known = ", ".join(_names(law)) or "it has none"
-                raise ArgumentError(f"free = None: {type(law).__name__} has no gains; name parameters: {known}")
+                raise ArgumentError(f"free = None: {law.title} has no gains; name parameters: {known}")
         if not isinstance(names, list | tuple) or not names or len(set(map(str, names))) < len(names):
             got = format_value(names)
             raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
@@ -69,7 +69,7 @@ def with_parameter(law: Any, name: str, value: Any) -> Any:
         return replace(law, **{head: with_parameter(getattr(law, head), rest, value) if rest else value})
     except (AttributeError, TypeError):
         raise ArgumentError(
-            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
+            f"{name}: {law.title} has no such number; expected a dotted name, such as gains.c1_alpha"
         ) from None
 
 

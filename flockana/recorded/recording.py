@@ -361,7 +361,7 @@ def ensure_recording(rec: Any) -> Recording:
 def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
     """Return the samples of a run as a recording."""
     u = None if isinstance(run.law, DiscreteLaw) else run.u
-    return Recording(run.t, run.q, run.p, u, source=f"a run of {type(run.law).__name__}", **accuracy)
+    return Recording(run.t, run.q, run.p, u, source=f"a run of {run.law.title}", **accuracy)
 
 
 def _digits(t: FloatArray) -> int:

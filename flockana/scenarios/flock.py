@@ -56,7 +56,7 @@ class Flock:
     def __repr__(self) -> str:
         begin, end = self.t_span
         agents = "a drawn start" if self.drawn else f"{len(self.q0)} agents"
-        return f"<Flock {self.name!r}: {agents}, {type(self.law).__name__}, t = {begin:g} to {end:g}>"
+        return f"<Flock {self.name!r}: {agents}, {self.law.title}, t = {begin:g} to {end:g}>"
 
     @property
     def drawn(self) -> bool:

@@ -100,7 +100,7 @@ class Scenario:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
     def __repr__(self) -> str:
-        (n, m), law, (begin, end) = self.shape, type(self.law).__name__, self.t_span
+        (n, m), law, (begin, end) = self.shape, self.law.title, self.t_span
         return f"<Scenario {self.name!r}: {self.title}; {n} agents, m = {m}, {law}, t = {begin:g} to {end:g}>"
 
     @property

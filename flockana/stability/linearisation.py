@@ -70,7 +70,7 @@ class Linearisation:
     def facts(self) -> dict[str, str]:
         """Return what a table shows: sizes, zero modes, poles and the slowest modes."""
         known = {
-            "law": type(self.law).__name__,
+            "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
             "residual": f"{self.residual:.2g} of the law's forces",
         }
@@ -215,7 +215,7 @@ class Linearisation:
         split = self.second_order.split
         if not split.exact:
             raise ArgumentError(
-                f"{type(self.law).__name__} does not split into shape and centre of mass here: {split.leak:.2g} of a "
+                f"{self.law.title} does not split into shape and centre of mass here: {split.leak:.2g} of a "
                 "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
                 "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
                 "use modes and state_space"

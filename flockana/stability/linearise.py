@@ -124,7 +124,7 @@ def linearise(
     residual = _residual(law, t, q, p, matrix)
     if not residual <= tolerance and not allow_residual:
         raise ArgumentError(
-            f"the state is no equilibrium of {type(law).__name__}: its residual is {residual:.3g}, expected at most "
+            f"the state is no equilibrium of {law.title}: its residual is {residual:.3g}, expected at most "
             f"{tolerance:g}; start from find_equilibrium(...), or ask for allow_residual=True"
         )
     if not allow_residual:
@@ -140,7 +140,7 @@ def linearise(
 
 def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
     """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
-    if law.continuous is not None and law.position_factor is not None:
+    if law.continuous is not None and (law.position_factor is not None or law.stability_function is not None):
         return linearise_map(law, linearise(law.continuous, equilibrium, p, **how))
     q = _positions(law, equilibrium)
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
@@ -184,8 +184,7 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
         j = other[i, 1] if other[i, 1] != i else other[i, 0]  # of coincident agents either may come first
         why = f", where agents {min(i, j)} and {max(i, j)} are {distance[i, 1]:.3g} apart"
     raise ArgumentError(
-        f"{type(law).__name__} has no Jacobian at this state{why}: expected distinct agents, "
-        "none at the centre of an obstacle"
+        f"{law.title} has no Jacobian at this state{why}: expected distinct agents, none at the centre of an obstacle"
     )
 
 
@@ -217,7 +216,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
         changes = (abs(moved[size:, part]).max() for part in (slice(0, size), slice(size, None)))
         if any(change > _STEADY * scale for change, scale in zip(changes, (stiff, drag), strict=True)):
             raise ArgumentError(
-                f"the Jacobian of {type(law).__name__} changes along the motion of this state (within {later:.2g} "
+                f"the Jacobian of {law.title} changes along the motion of this state (within {later:.2g} "
                 "time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
                 "allow_residual=True linearises at the instant"
             )

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial import Polynomial
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
@@ -101,16 +102,20 @@ class MapLinearisation:
     states, inputs : tuple of str
         Their names: q0_x, …, p0_x, …, or heading0, …; what the map remembers beside by its own names.
     second_order : SecondOrder or None
-        The equation of w = (z − 1)/dt; None of a map of headings, and of one whose steps are differentiated.
+        The equation of w, of which `growth` makes multipliers; None of a map of headings, and of one whose steps are
+        differentiated.
     off : float
         Share of its size by which A may be off: of one whose steps are differentiated.
+    growth : tuple of float
+        Coefficients r of z = Σ r_k (dt w)^k: w = (z − 1)/dt of a map with one stage; of others w is an eigenvalue of
+        the flow, and R(dt w) the stability function of the solver.
 
     Examples
     --------
     The R² notebook's step of a pair at its distance: what rotates or translates it stays.
 
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.laws.taylor_step import TaylorStep
+    >>> from flockana.solvers.taylor_step import TaylorStep
     >>> from flockana.stability import linearise
     >>> pair = linearise(TaylorStep(Algorithm1(), 0.01), [[0.0, 0.0], [7.0, 0.0]])
     >>> [(mode.name, round(mode.decay_per_step, 4)) for mode in pair.modes], pair.stable
@@ -128,6 +133,7 @@ class MapLinearisation:
     inputs: tuple[str, ...] = field(repr=False)
     second_order: SecondOrder | None = field(repr=False, default=None)
     off: float = 0.0
+    growth: tuple[float, ...] = (1.0, 1.0)
 
     @property
     def dt(self) -> float:
@@ -143,8 +149,12 @@ class MapLinearisation:
     @property
     def multipliers(self) -> ComplexArray:
         """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
-        values = self._dense[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
+        values = self._dense[0] if self.second_order is None else self._grown(self.second_order.eigenvalues)
         return values[np.lexsort((values.imag, -np.abs(values)))]
+
+    def _grown(self, w: Any, derivative: int = 0) -> Any:
+        """R(dt w), or a derivative of R there."""
+        return Polynomial(self.growth).deriv(derivative)(self.dt * w)
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:
@@ -154,7 +164,7 @@ class MapLinearisation:
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
         """Modes other than the neutral motions, slowest first; one for each real multiplier or conjugate pair."""
-        found: list[tuple[complex, Any, str, float]]
+        found: list[tuple[complex, Any, str, float]] = []
         if self.second_order is None:
             values, vectors, errors = self._dense
             kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
@@ -163,7 +173,11 @@ class MapLinearisation:
             h, modes = self.dt, self.second_order.modes
             names = ("" if mode.name.isdigit() else mode.name for mode in modes)
             rows = zip(modes, names, strict=True)
-            found = [(1.0 + h * mode.eigenvalue, mode.shape, name, h * mode.error) for mode, name in rows]
+            for mode, name in rows:
+                z, error = complex(self._grown(mode.eigenvalue)), h * mode.error * abs(self._grown(mode.eigenvalue, 1))
+                found.append(
+                    (z, mode.shape, name, error) if z.imag >= 0.0 else (z.conjugate(), mode.shape.conj(), name, error)
+                )
         found.sort(key=lambda one: 1.0 - abs(one[0]))
         numbered = enumerate(found, start=1)
         return tuple(MapMode(z, shape, name or str(k), self.dt, error) for k, (z, shape, name, error) in numbered)
@@ -222,20 +236,28 @@ def _moved_before(matrix: Any, m: int) -> Any:
 
 
 def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
-    """Linearisation of a map q' = q + h p + f h² u, p' = p + h u from that of the law that it steps."""
+    """Linearisation of a map from that of the law that it steps: by `position_factor`, else by `stability_function`."""
     q, (n, m), size = flow.q, flow.q.shape, flow.q.size
     ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")
+    names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
+    known = law, q, flow.p, flow.t, flow.residual
+    if law.position_factor is None and law.stability_function is not None:
+        step, push = law.dt * flow.A, law.dt * np.eye(2 * size)[:, size:]
+        a, b = np.zeros_like(step), np.zeros_like(push)
+        for k in range(len(law.stability_function) - 1, -1, -1):  # R(h A), and its part that acts on a force
+            b = a @ push
+            a = a @ step + law.stability_function[k] * np.eye(2 * size)
+        return MapLinearisation(*known, a, b, *names, flow.second_order, growth=law.stability_function)
     h, f = law.dt, float(law.position_factor or 0.0)
     stiffness, damping = flow.stiffness, flow.damping
-    one, zero, known = np.eye(size), np.zeros((size, size)), flow.A[size:]
+    one, zero = np.eye(size), np.zeros((size, size))
     move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
-    a, b = move + push @ known, push
+    a, b = move + push @ flow.A[size:], push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
         moved = -np.hstack([_moved_before(part, m).toarray() for part in (stiffness, damping)])
         a, b = (np.linalg.solve(np.eye(2 * size) - push @ moved, part) for part in (a - push @ moved, push))
     equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
-    names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
-    return MapLinearisation(law, q, flow.p, flow.t, flow.residual, a, b, *names, equation)
+    return MapLinearisation(*known, a, b, *names, equation)
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
@@ -254,7 +276,7 @@ def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapL
 
 def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
     """Linearisation of any map about a steady motion by differences of its steps, memory and all; refused at a kink."""
-    (n, m), name, memory = q.shape, type(law).__name__, {k: np.array(v) for k, v in law.start(q, p).items()}
+    (n, m), name, memory = q.shape, law.title, {k: np.array(v) for k, v in law.start(q, p).items()}
     shapes = {"q": q.shape, "p": p.shape} | {key: value.shape for key, value in memory.items()}
     own, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
     unit, time = (length, law.dt) if own is None else (own.length, own.time)

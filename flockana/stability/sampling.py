@@ -175,7 +175,7 @@ def sampling_margin(law: Any, equilibrium: Any) -> SamplingMargin:
     if isinstance(law, DiscreteLaw):
         if law.continuous is None or law.position_factor is None:
             raise ArgumentError(f"law = {law!r}: expected a continuous law, or a map that steps one")
-        name, factor, in_place = type(law).__name__, law.position_factor, law.in_place
+        name, factor, in_place = law.title, law.position_factor, law.in_place
         law = law.continuous
     flow = linearise(law, equilibrium)
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")

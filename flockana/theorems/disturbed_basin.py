@@ -36,7 +36,7 @@ def _law(seen: Observed) -> Hypothesis:
     if type(core) in (Algorithm1, Algorithm2) and callable(law.force):
         return Hypothesis(name, "unmet", detail="no bound is known of a force that is a function: expected a table")
     if type(core) not in (Algorithm1, Algorithm2) or law.intensity or core.gains.per_agent:
-        return Hypothesis(name, "unmet", detail=f"the law is {type(law).__name__}, expected Disturbed(Algorithm2(...))")
+        return Hypothesis(name, "unmet", detail=f"the law is {law.title}, expected Disturbed(Algorithm2(...))")
     return Hypothesis(name, "met")
 
 

@@ -180,7 +180,7 @@ def _law(seen: Observed) -> Hypothesis:
     if not is_own(seen.law):
         return law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3, composed=True)(seen)
     terms = ", ".join(type(term).__name__ for term in seen.law.terms)
-    return condition("the law is a sum of terms", True, detail=f"{type(seen.law).__name__}: {terms}")
+    return condition("the law is a sum of terms", True, detail=f"{seen.law.title}: {terms}")
 
 
 def _rates(run: Trajectory) -> FloatArray:

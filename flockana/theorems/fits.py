@@ -31,7 +31,7 @@ def _ensure_fits(run: Trajectory) -> bool:
         if difference[k] <= allowed + _rounded_input(run, k):
             continue
         raise ArgumentError(
-            f"u at t = {run.t[k]:g} is off by {difference[k]:.3g} from the input of {type(run.law).__name__} at that "
+            f"u at t = {run.t[k]:g} is off by {difference[k]:.3g} from the input of {run.law.title} at that "
             "state: expected a run as simulate returned it; was it edited, or is it of another law?"
         )
     return True

@@ -87,7 +87,7 @@ def law_is(
             for member, kind in _MEMBERS.items()
             if hasattr(law, member) and type(getattr(law, member)) not in (kind, *welcome)
         ]
-        detail = ", ".join([type(law).__name__, *(other if known else [])])
+        detail = ", ".join([law.title, *(other if known else [])])
         if one_gain and known and not other and law.gains.per_agent:
             return common_gains(run)
         return condition(f"{name} is applied", known and not other, detail=detail)
@@ -191,7 +191,7 @@ def has_lattice(run: Observed) -> Hypothesis:
         The run.
     """
     known = run.law.lattice is not None
-    return condition("the law has a scale d and a range r", known, detail=type(run.law).__name__)
+    return condition("the law has a scale d and a range r", known, detail=run.law.title)
 
 
 def alpha_gain(run: Observed) -> list[Hypothesis]:

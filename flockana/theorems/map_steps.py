@@ -13,7 +13,6 @@ SAME = 1e-8  # of the largest number: other machine code steps to 1e-13, another
 SLACK = 100.0  # how often what a nudge grows to a sample may be off: rounding grows alike where the map is chaotic
 _NUDGE = 1e-13  # of positions: more than other machine code rounds in a step
 _SPREAD = 12  # intervals that are made again
-_AT_ONCE = 64  # steps made in one go by a law that cannot leave out any
 
 
 def ensure_steps_of_map(run: Trajectory) -> None:
@@ -28,7 +27,7 @@ def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
     for name, off, difference in _differences(run, k, steps):
         if not (off <= SAME or (steps > 1 and off <= SAME + SLACK * _growth(run, k, steps, name))):
             raise ArgumentError(
-                f"{name} at t = {run.t[k + 1]:g} is off by {difference:.3g} from where {type(run.law).__name__} leads "
+                f"{name} at t = {run.t[k + 1]:g} is off by {difference:.3g} from where {run.law.title} leads "
                 f"from the sample at t = {run.t[k]:g}: expected a law that is the same function each time"
             )
 
@@ -57,11 +56,6 @@ def _recompute(run: Trajectory, k: int, steps: int, nudge: float) -> dict[str, F
     law: DiscreteLaw = run.law
     q, p, t = run.q[k] * (1.0 + nudge), run.p[k].copy(), float(run.t[k])
     memory: Any = {name: series[k].copy() for name, series in run.extra.items()}
-    found = law.visit(t, q, p, memory, np.array([steps]))
-    for done in range(0, steps, _AT_ONCE) if found is None else ():
-        count = min(steps - done, _AT_ONCE)
-        found = law.iterate(t + done * law.dt, q, p, memory, count)
-        q, p, memory = found[0][-1], found[1][-1], {name: np.array(values[-1]) for name, values in found[3].items()}
-    assert found is not None
+    found = law.visit(t + law.dt * np.arange(float(steps)), q, p, memory, np.array([steps]))
     series = dict(zip("qpu", found[:3], strict=True)) | dict(found[3])
     return {name: np.asarray(values[-1], float) for name, values in series.items()}

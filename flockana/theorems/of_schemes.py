@@ -1,4 +1,4 @@
-"""Verdicts of theorems on motion for the runs of schemes (`ExplicitEuler`, `SemiImplicitEuler`, `TaylorStep`).
+"""Verdicts of theorems on motion for runs in fixed steps (`FixedSteps`).
 
 A theorem about a flow is vacuous of a run in steps; definitions about samples hold of one as they stand. Of the energy
 identity and of Theorem 6 the library says more: the energy loses in each step what it loses along the flow, and changes
@@ -11,8 +11,8 @@ from functools import cache
 
 import numpy as np
 
-from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
+from flockana.solvers.fixed_steps import FixedSteps
 from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, judged
 
@@ -41,15 +41,15 @@ def scheme_note(item: Theorem) -> str:
 def is_about_steps(item: Theorem, seen: Observed) -> bool:
     """Return whether a run is in steps of a scheme whose law the theorem is about, and the scheme is not."""
     law = seen.law
-    if not isinstance(law, Scheme) or item.kind != "trajectory" or item.law is None:
+    if not isinstance(law, FixedSteps) or item.kind != "trajectory" or item.law is None:
         return False
     return item.law(seen).status == "unmet" and item.law(_of_law(seen, law)).status != "unmet"
 
 
 def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
-    law: Scheme = seen.law
-    detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
+    law: FixedSteps = seen.law
+    detail = f"the run is in steps of {law.dt:g} of {law.law.title} by {law.title}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
     if item.id not in claims_on_steps() or len(seen.t) < 2:
         return (missed,), item.vacuous_claims(missed)
@@ -59,7 +59,7 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, since, list(needs), tolerances))
 
 
-def _of_law(seen: Observed, law: Scheme) -> Observed:
+def _of_law(seen: Observed, law: FixedSteps) -> Observed:
     """The states of a scheme's run as samples of its law, nothing known between them."""
     run = seen.run
     work = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here

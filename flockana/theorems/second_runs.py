@@ -20,6 +20,7 @@ from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.beta import InsideObstacleError
 from flockana.laws.discrete import DiscreteLaw
+from flockana.solvers.named import solvers
 from flockana.theorems.step_resolution import demand_of, steps_of, unresolved
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
@@ -92,7 +93,9 @@ def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float
     options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
     if "rtol" in stats:
         method = stats.get("method", "DOP853")
-        options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
+        if method in _LOW_ORDER or method not in solvers():
+            method = "DOP853"
+        options = {"method": method, "rtol": max(factor * stats["rtol"], FINEST)}
         options["atol"] = units.times(stats.get("atol"), factor)
     if longest is None:
         longest = stats.get("max_step")

@@ -12,11 +12,13 @@ import pytest
 from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.between import Between, Recorder, merged
-from flockana.dynamics.compiled import METHODS as COMPILED
 from flockana.dynamics.sample import Sample, Samples
-from flockana.dynamics.simulate import METHODS, simulate
+from flockana.dynamics.simulate import simulate
 from flockana.measures.metrics import cohesion_radii, min_distances
 from flockana.measures.path_bounds import closest_approach, cohesion_bound
+from flockana.solvers.named import METHODS
+
+COMPILED = ("DOP853", "RK45", "RK23", "RK4")
 
 LAW = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=0.2), target=StaticTarget((0.0, 0.0)))
 ENDS = (0.0, 6.0)

@@ -28,6 +28,9 @@ from flockana.kernels import alpha
 from flockana.kernels.lift import lift
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.solvers.dop853 import DOP853
+from flockana.solvers.rk4 import RK4
+from flockana.solvers.scipy_solver import Scipy
 from flockana.sources.li_dead_zone import DeadZoneInteraction
 from tests.programs import posix
 
@@ -110,7 +113,7 @@ def engine(law, q, p, plan, t=0.0):
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
     control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
-    made_of = engine(law, q0, p0, Plan("DOP853", np.array([0.7]), np.empty(0), control), 0.5)
+    made_of = engine(law, q0, p0, Plan(DOP853(), np.array([0.7]), np.empty(0), control), 0.5)
     made = made_of.advance(StepChecks(law, made_of.frame, made_of.plan))
     t, f = float(made_of.block.t[made]), made_of.block.f[made]
     states, work = made_of.states(made)
@@ -185,7 +188,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
     ours, plain = (simulate(one, q, p, (0.0, 3.0), rtol=1e-7) for one in (law, stepped))
     np.testing.assert_allclose(ours.q[-1], plain.q[-1], atol=1e-5)
     assert body.clearance(ours.path.q.reshape(-1, 2)).min() < law.beta.d
-    assert engine(law, q, p, Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
+    assert engine(law, q, p, Plan(RK4(2.0), np.array([3.0]), np.empty(0))) is not None
 
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
@@ -252,7 +255,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Strong(),
         Algorithm1(Weighed()),
     ]
-    dop853, lsoda = (Plan(method, np.array([0.5]), np.empty(0)) for method in ("DOP853", "LSODA"))
+    dop853, lsoda = (Plan(solver, np.array([0.5]), np.empty(0)) for solver in (DOP853(), Scipy("LSODA")))
     for law in plain:
         assert engine(law, q, p, dop853) is None, law
     assert engine(Algorithm1(), q, p, lsoda) is None

@@ -84,8 +84,8 @@ class ByThrees(Counter):
 class Visiting(ByThrees):
     """The same, which gives the steps that are wanted and no others."""
 
-    def visit(self, t, q, p, memory, wanted):
-        *states, series = self.iterate(t, q, p, {"count": memory["count"].copy()}, int(wanted[-1]))
+    def visit(self, times, q, p, memory, wanted):
+        *states, series = self.iterate(times[0], q, p, {"count": memory["count"].copy()}, int(wanted[-1]))
         return *(values[wanted - 1] for values in states), {"count": series["count"][wanted - 1]}
 
 

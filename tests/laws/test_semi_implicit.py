@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
+from flockana import DeadZoneFlocking, DeadZoneInteraction, FixedSteps, SemiImplicitEuler, TaylorStep
 
 Q, P = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 14.0]]), np.array([[0.1, 0.0], [0.0, 0.2], [0.0, 0.0]])
 
@@ -35,8 +35,8 @@ def test_a_step_is_by_the_laws_own_force_whatever_it_inherits(law):
     np.testing.assert_allclose(SemiImplicitEuler(law, 0.01).iterate(0.0, Q, P, {}, 1)[1][-1], p, rtol=0.0, atol=1e-13)
 
 
-class Drifting(SemiImplicitEuler):
-    """A scheme of one's own, which remembers something."""
+class Drifting(FixedSteps):
+    """A map of one's own, which remembers something."""
 
     def start(self, q, p):
         return {"drift": np.zeros(1)}
@@ -47,7 +47,7 @@ class Drifting(SemiImplicitEuler):
 
 
 def test_a_scheme_that_steps_otherwise_does_so_many_steps_at_once():
-    scheme = Drifting(DeadZoneFlocking(), 0.01)
+    scheme = Drifting(DeadZoneFlocking(), SemiImplicitEuler(0.01))
     q, _, _, memory = scheme.iterate(0.0, Q, P, scheme.start(Q, P), 3)
     assert memory["drift"].tolist() == [[1.0], [2.0], [3.0]]
     still = SemiImplicitEuler(DeadZoneFlocking(), 0.01).iterate(0.0, Q, P, {}, 1)[0]
@@ -57,9 +57,9 @@ def test_a_scheme_that_steps_otherwise_does_so_many_steps_at_once():
 def test_only_a_scheme_that_steps_as_compiled_gives_some_steps_of_many():
     wanted = np.array([2, 5])
     law = SemiImplicitEuler(DeadZoneFlocking(), 0.01)
-    *states, memory = law.visit(0.0, Q, P, {}, wanted)
+    *states, memory = law.visit(0.01 * np.arange(5), Q, P, {}, wanted)
     assert memory == {}
     for found, every in zip(states, law.iterate(0.0, Q, P, {}, 5), strict=False):
         np.testing.assert_array_equal(found, every[wanted - 1])
-    for other in (Drifting(DeadZoneFlocking(), 0.01), SemiImplicitEuler(Pulled(), 0.01)):
-        assert other.visit(0.0, Q, P, other.start(Q, P), wanted) is None
+    assert Pulled().block(SemiImplicitEuler(0.01)) is None
+    assert DeadZoneFlocking().block(TaylorStep(0.01)) is None

@@ -11,7 +11,9 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.explore.parameters import changed, numbers, tree_of
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.stepped import Stepped
+from flockana.solvers.euler_maruyama import EulerMaruyama
+from flockana.solvers.fixed_steps import FixedSteps
+from flockana.solvers.stepped import Stepped
 from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
@@ -41,10 +43,10 @@ def test_steps_are_the_same_in_any_pieces():
     np.testing.assert_array_equal(q, whole[0][-1])
 
 
-class Interpreted(Stepped):
+class Interpreted(FixedSteps):
     """Steps one by one, as those of a law that is not compiled."""
 
-    def _marched(self, *_):
+    def _compiled(self, *_):
         return None
 
 
@@ -55,13 +57,16 @@ def test_compiled_steps_of_noise_are_those_made_one_by_one(target):
     law = Disturbed(noisy, force=(0.1, 0.2), swing=(0.3, 0.1), frequency=0.2, intensity=0.2)
     p, wanted = 0.1 * Q[::-1], np.array([1, 255, 256, 257, 600])
     found, one_by_one = (
-        each.visit(2.0, Q, p, each.start(Q, p), wanted) for each in (Stepped(law, 0.01, 1), Interpreted(law, 0.01, 1))
+        each.visit(2.0 + 0.01 * np.arange(600), Q, p, each.start(Q, p), wanted)
+        for each in (FixedSteps(law, EulerMaruyama(0.01)), Interpreted(law, EulerMaruyama(0.01)))
     )
     for fast, slow, size in zip(found[:3], one_by_one[:3], (1.0, 1.0, 100.0), strict=True):
         np.testing.assert_allclose(fast, slow, rtol=0.0, atol=1e-11 * size)
-    assert Stepped(law, 0.01, 1)._marched(2.0, Q, p, 0, wanted) is not None
+    begins = 2.0 + 0.01 * np.arange(600)
+    start = FixedSteps(law, EulerMaruyama(0.01)).start(Q, p)
+    assert FixedSteps(law, EulerMaruyama(0.01))._compiled(begins, Q, p, start, wanted) is not None
     memory = {name: values[-1] for name, values in found[3].items()}
-    later = [each(law, 0.01, 1).iterate(8.0, Q, p, memory, 30)[1] for each in (Stepped, Interpreted)]
+    later = [each(law, EulerMaruyama(0.01)).iterate(8.0, Q, p, memory, 30)[1] for each in (FixedSteps, Interpreted)]
     np.testing.assert_allclose(later[0], later[1], rtol=0.0, atol=1e-11)
 
 
@@ -87,7 +92,7 @@ def test_runs_are_the_same_at_any_number_of_workers():
 
 def test_knobs_of_an_explorer_are_those_of_every_wrapper():
     found = {number.path for number in numbers(Stepped(ALL, 0.01))}
-    assert {"dt", "law.intensity", "law.law.limit", "law.law.law.period", "law.law.law.law.delay"} <= found
+    assert {"solver.dt", "law.intensity", "law.law.limit", "law.law.law.period", "law.law.law.law.delay"} <= found
     changes = tree_of(Stepped(ALL, 0.01), {"law.intensity": 0.3, "law.law.law.law.delay": 0.01})
     law = changed(Stepped(ALL, 0.01), changes).law
     assert (law.intensity, law.law.law.law.delay, law.law.law.period) == (0.3, 0.01, 0.02)

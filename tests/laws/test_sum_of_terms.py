@@ -8,8 +8,8 @@ from flockana.environment.beta import ObstacleField
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.terms.obstacles import ObstacleTerm
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.li_dead_zone import DeadZoneInteraction

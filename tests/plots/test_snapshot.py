@@ -10,9 +10,9 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 import flockana as fl
 from flockana import Algorithm1, Box, DirectedNet, Law, Sphere, Trajectory, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.plots.animation import film_view
 from flockana.plots.snapshot import draw_sample, in_view
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking

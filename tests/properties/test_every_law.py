@@ -17,8 +17,8 @@ from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, 
 from flockana.base.modules import modules
 from flockana.base.serialize import from_data, to_data
 from flockana.laws.law import LawOfMotion
-from flockana.laws.stepped import Stepped
 from flockana.laws.wrapped import Wrapper
+from flockana.solvers.stepped import Stepped
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
 from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking

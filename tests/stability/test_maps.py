@@ -9,7 +9,7 @@ from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.jond_2025 import ZoneNoise, ZoneWeights
 from flockana.sources.vicsek_1995.laws import HeadingAveraging

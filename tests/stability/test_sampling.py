@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, TaylorStep, find_equilibrium, linearise, simulate
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.stability.sampling import sampling_margin, scalar_period

@@ -8,7 +8,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.taylor_step import TaylorStep
+from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.isola_2024 import MSNDiscretisation
 from flockana.sources.jond_2025 import MinimalFlocking
 from flockana.stability.linearise import linearise

@@ -10,7 +10,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws import Algorithm1, Algorithm2, TaylorStep
+from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
 from flockana.scenarios.entry import Report, Scenario, Status, refuted, vacuous, verified
@@ -24,6 +24,7 @@ from flockana.scenarios.findings import (
     rerun,
     same_accuracy,
 )
+from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.notebook_r2.laws import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate

@@ -2,9 +2,7 @@
 
 from math import sqrt
 
-from flockana.laws.explicit_euler import ExplicitEuler
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.taylor_step import TaylorStep
+from flockana.solvers.fixed_steps import FixedSteps
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
 from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
 from flockana.theorems.hypotheses import condition, positive_room
@@ -16,8 +14,8 @@ _ROUNDING = 1e-14  # relative, of a product of three numbers
 def _law(seen: Observed) -> Hypothesis:
     """The hypothesis that a run is of the law in steps, which move positions by old or new velocities or their mean."""
     law = seen.law
-    steps = type(law) in (ExplicitEuler, SemiImplicitEuler, TaylorStep) and type(law.law) is CuckerSmale
-    name = type(law).__name__ + (f" of {type(law.law).__name__}" if hasattr(law, "law") else "")
+    steps = type(law) is FixedSteps and law.position_factor in (0.0, 0.5, 1.0) and type(law.law) is CuckerSmale
+    name = law.title + (f" of {law.law.title}" if hasattr(law, "law") else "")
     return condition("steps of the Cucker-Smale law are applied", steps, detail=name)
 
 

@@ -1,14 +1,16 @@
 """A flock under Algorithm 2 as it is built: sensors, messages, clocks, actuators and wind are not perfect."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from flockana.environment import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws import Algorithm2, Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Stepped
+from flockana.laws import Algorithm2, Delayed, Disturbed, Lossy, Measured, Sampled, Saturated
 from flockana.scenarios.entry import Scenario, vacuous, verified
+from flockana.solvers.stepped import Stepped
 
 DT, LAG, PERIOD, LOSS, LIMIT, NOISE, WIND = 0.01, 0.01, 0.02, 0.05, 20.0, 0.002, 0.5
 
@@ -24,7 +26,7 @@ def _as_built(seed: int = 0) -> Scenario:
         f"late, with noise, lose one message in {1.0 / LOSS:g}, compute every {PERIOD:g} and accelerate by at most "
         f"{LIMIT:g}; white noise of intensity {WIND:g} pushes them. Steps of {DT:g}."
     )
-    stepped = Stepped(Disturbed(applied, intensity=WIND, seed=seed), DT, 2)
+    stepped: Any = Stepped(Disturbed(applied, intensity=WIND, seed=seed), DT, 2)
     return Scenario("as-built", title, source, stepped, q, np.zeros_like(q), (0.0, 20.0), seed, vacuous("os-3"))
 
 

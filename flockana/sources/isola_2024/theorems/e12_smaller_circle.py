@@ -28,7 +28,7 @@ def measured_ratio(seen: Observed) -> Enclosure:
 
 def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     applies = type(run.law) is Algorithm2 and not run.law.gains.per_agent
-    kind = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
+    kind = f"{run.law.title}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
     path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
     swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
     detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"

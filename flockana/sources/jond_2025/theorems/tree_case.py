@@ -105,7 +105,7 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
 
 def minimal_law(seen: Observed) -> Hypothesis:
     """Return the hypothesis that a run is of the minimal law."""
-    return condition("the minimal law is applied", type(seen.law) is MinimalFlocking, detail=type(seen.law).__name__)
+    return condition("the minimal law is applied", type(seen.law) is MinimalFlocking, detail=seen.law.title)
 
 
 def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:

@@ -14,7 +14,6 @@ from flockana.interactions.gains import ensure_gain
 from flockana.laws.candidates import Candidate
 from flockana.laws.discrete import IndexArray
 from flockana.laws.law import Arrays, Block
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
@@ -107,17 +106,17 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, kept)
 
     def block(self, solver: Any) -> Block | None:
-        """Return many semi-implicit Euler steps in one compiled loop; None for other solvers, or for a subclass.
+        """Return the loop of `semi_implicit` for semi-implicit Euler steps of this law itself, not of a subclass.
 
         Parameters
         ----------
-        solver : SemiImplicitEuler, or another solver
-            Which steps the law.
+        solver : FixedStep
+            Method and step.
         """
         known = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
-        if not known or not isinstance(solver, SemiImplicitEuler):
+        if not known or solver.position_factor != 1.0:
             return None
-        return lambda q, p, steps, wanted=None: self.semi_implicit(q, p, solver.dt, steps, wanted)
+        return lambda times, q, p, wanted: self.semi_implicit(q, p, solver.dt, len(times), wanted)
 
     @property
     def located(self) -> bool:

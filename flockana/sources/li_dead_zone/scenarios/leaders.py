@@ -4,9 +4,9 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.environment import LinearTarget
-from flockana.laws import SemiImplicitEuler
 from flockana.scenarios.entry import Scenario, refuted, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 from flockana.sources.li_dead_zone.scenarios.published_run import DT, describe_choices
 

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_positive
-from flockana.laws import DiscreteLaw, SemiImplicitEuler
+from flockana.laws import DiscreteLaw
 from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
 from flockana.scenarios.one_start import LawEntry
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.components import Components, components_of
@@ -21,7 +21,7 @@ _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in
 
 def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
     """Return the dead-zone law of a run, also of its semi-implicit Euler map; None under any other law."""
-    law: Any = run.law.law if type(run.law) is SemiImplicitEuler else run.law
+    law: Any = run.law.law if type(getattr(run.law, "solver", None)) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
     return law if exact else None
 
@@ -31,7 +31,7 @@ def hypotheses(seen: Observed) -> list[Hypothesis]:
     law = dead_zone_law(seen.run)
     least = min_distance(seen.run.q[0])
     return [
-        condition("the dead-zone law is applied", law is not None, detail=type(seen.law).__name__),
+        condition("the dead-zone law is applied", law is not None, detail=seen.law.title),
         condition("agents start at distinct places", least > 0.0, least),
     ]
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.environment.targets import CircleTarget, LinearTarget
 from flockana.lattice import hexagonal_patch
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking

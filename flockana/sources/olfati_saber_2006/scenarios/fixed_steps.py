@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.environment import LinearTarget
-from flockana.laws import Algorithm2, TaylorStep
+from flockana.laws import Algorithm2
 from flockana.measures.metrics import velocity_mismatch
 from flockana.scenarios.entry import Builder, Start, entry, refuted, verified
 from flockana.scenarios.findings import (
@@ -15,6 +15,7 @@ from flockana.scenarios.findings import (
     report,
     rerun,
 )
+from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.olfati_saber_2006.scenarios.free_space import random_start
 
 _N, _END = 40, 40.0

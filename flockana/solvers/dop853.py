@@ -7,8 +7,17 @@ its integrators load.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import polynomial
+
+from flockana.solvers.solver import AdaptivePair, FloatArray
+from flockana.solvers.tableau import Tableau, shared_rows
+
 STAGES = 12
-ORDER = 7  # of the error estimate
 
 # fmt: off
 # Times of the stages, of the end of the step, and of the three stages more that the dense output takes.
@@ -71,3 +80,38 @@ D: tuple[dict[int, float], ...] = (
      9: -37.45832313645163, 10: 104.0996495089623, 11: 29.8402934266605, 12: -43.53345659001114,
      13: 96.32455395918828, 14: -39.17726167561544, 15: -149.72683625798564},
 )
+# fmt: on
+
+
+class DOP853(AdaptivePair):
+    """Dormand and Prince's method of order 8, with dense output of order 7: the default of `simulate`."""
+
+    order = 8
+    error_order = 7
+
+    @cached_property
+    def tableau(self) -> Tableau:
+        """Coefficients; the interpolant in powers of θ, where as published it goes by θ and 1 − θ in turns."""
+        count = len(C)
+        a, estimates = _dense_rows(A, count), _dense_rows((E5, E3), STAGES + 1)
+        whole, first, last = a[STAGES], np.eye(count)[0], np.eye(count)[STAGES]
+        rows = np.vstack([whole, first - whole, 2.0 * whole - (first + last), _dense_rows(D, count)])
+        interpolant, ways = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
+        power = np.ones(1)
+        for k, row in enumerate(rows):
+            power = np.asarray(polynomial.polymul(power, ways[k % 2]), dtype=np.float64)
+            interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
+        places, exponent = shared_rows(a, estimates, interpolant), -1.0 / (self.error_order + 1)
+        return Tableau(a, np.array(C), estimates, interpolant, places, STAGES, exponent)
+
+    @property
+    def scipy_class(self) -> Any:
+        """Scipy's own."""
+        import scipy.integrate
+
+        return scipy.integrate.DOP853
+
+
+def _dense_rows(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:
+    """Return rows of `count` numbers from their nonzero entries."""
+    return np.array([[row.get(k, 0.0) for k in range(count)] for row in rows])

@@ -1,21 +1,13 @@
-"""Taylor steps of any continuous law: q + p dt + ½ u dt², p + u dt, with u at the step's beginning."""
+"""Taylor steps: q + p dt + ½ u dt², p + u dt, with u at the step's beginning."""
 
-from dataclasses import dataclass
-
-from flockana.laws.scheme import Scheme
+from flockana.solvers.fixed_steps import FixedStep
 
 
-@dataclass(frozen=True)
-class TaylorStep(Scheme):
+class TaylorStep(FixedStep):
     """q' = q + dt p + ½ dt² u(t, q, p), p' = p + dt u: what a constant input does, all agents at once.
 
-    The R² notebook's iteration, and the plainest reading of a source that prints a step and no scheme. It is of first
-    order: the input is not looked at again within the step, so that fast vibrations are fed with energy.
-
-    Parameters
-    ----------
-    law, dt : Law, float
-        As of every `Scheme`: the continuous law, and the step.
+    The R² notebook's iteration, and the plainest reading of a source that prints a step and no method. It is of order
+    1: the input is not looked at again within the step, so that fast vibrations are fed with energy.
 
     Examples
     --------
@@ -31,4 +23,5 @@ class TaylorStep(Scheme):
     (0.25, 1.0, 2.0)
     """
 
+    order = 1
     position_factor = 0.5

@@ -1,6 +1,6 @@
-"""Integrators of laws that are not compiled: scipy's solvers and the classical Runge-Kutta method, step by step.
+"""Steps of laws that are not compiled, one by one in Python.
 
-scipy's solvers with a past (BDF, LSODA) begin anew where a step is made again.
+Solvers with a past (BDF, LSODA) begin anew where a step is made again.
 """
 
 from collections.abc import Callable
@@ -11,43 +11,21 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.encounters import ONE_STEP, StepChecks, at_a_pole
+from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Flow, Frame, Plan
 from flockana.dynamics.sample import finite
 from flockana.dynamics.stepper import Stepper
-from flockana.kernels.march import GROWTH, Block
+from flockana.kernels.march import Block
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.law import Law
-
-SCIPY = "scipy-"  # what the name of a method begins with if it is to be scipy's in any case
-
-
-class ClassicalRungeKutta:
-    """The classical Runge-Kutta method of order 4, stepped towards a time as scipy's solvers are."""
-
-    def __init__(
-        self, fun: Callable[..., FloatArray], t: float, y: FloatArray, t_bound: float, f: FloatArray, first_step: float
-    ) -> None:
-        self.fun, self.t, self.y, self.t_bound, self.f, self.h_abs = fun, t, y, t_bound, f, first_step
-        self.status = "running"
-
-    def step(self) -> None:
-        """Make one step."""
-        t, y, k1, left = self.t, self.y, self.f, self.t_bound - self.t
-        h = left if left <= self.h_abs else self.h_abs
-        k2 = self.fun(t + 0.5 * h, y + 0.5 * h * k1)
-        k3 = self.fun(t + 0.5 * h, y + 0.5 * h * k2)
-        k4 = self.fun(t + h, y + h * k3)
-        self.y = y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
-        self.t, self.h_abs = (self.t_bound, np.inf) if h == left else (t + h, GROWTH * h)
-        self.status, self.f = "finished" if h == left else "running", self.fun(self.t, self.y)
+from flockana.solvers.solver import Limits
 
 
-class Solver(Stepper):
-    """A law, or another flow, stepped by one of scipy's solvers or by the classical Runge-Kutta method."""
+class Interpreter(Stepper):
+    """Integrator that steps a law, or another flow, in Python."""
 
     def __init__(self, law: Law, frame: Frame, plan: Plan, y: FloatArray, flow: Flow | None = None) -> None:
-        self.law, self.frame, self.plan, self.method = law, frame, plan, plan.method.removeprefix(SCIPY)
+        self.law, self.frame, self.plan = law, frame, plan
         self.failure, self.evaluations, self.redone = "", 0, 0
         self.stops, self.due = plan.stops, plan.due[plan.due > frame.t0]
         self.order, self.pairs = np.arange(frame.shape[0], dtype=np.uint64), no_pairs(0, frame.shape[1])
@@ -60,7 +38,7 @@ class Solver(Stepper):
         self.block.t[0], self.block.y[0], self.block.energy[0] = t, y, np.nan
         self.stops = self.stops[self.stops > t]
         if self.stops.size:
-            if self.plan.dt:
+            if self.plan.solver.dt:
                 self.block.f[0] = self._rhs(t, y)
             self._open(self.stops[0], None)
             self._write(0)
@@ -69,7 +47,7 @@ class Solver(Stepper):
         """Return a flow that counts its evaluations, and stops a solver once values are not finite."""
         self.evaluations += 1
         u, rate = flow(t, q, p)
-        if self.method == "LSODA" and not finite(u):  # LSODA would try to step over it for ever
+        if self.plan.solver.name == "LSODA" and not finite(u):  # it would try to step over it for ever
             raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
         return u, rate
 
@@ -77,18 +55,9 @@ class Solver(Stepper):
         """Return a new solver from the first row towards a time, with the given first step if possible."""
         t, y = float(self.block.t[0]), self.block.y[0].copy()
         self._course: Callable[[float], FloatArray] | None = None
-        if self.plan.dt:
-            first = np.inf if first is None else first
-            self._solver: Any = ClassicalRungeKutta(self._rhs, t, y, until, self.block.f[0].copy(), first)
-            return
-        import scipy.integrate
-
-        sizes = (self.frame.size, self.frame.size, int(self.frame.energetic))
-        atol = np.repeat(self.plan.control.floor, sizes)
-        options: dict[str, Any] = {"rtol": self.plan.control.rtol, "atol": atol, "max_step": self.plan.control.longest}
-        if first is not None and self.method in ONE_STEP:
-            options["first_step"] = min(first, until - t, self.plan.control.longest)
-        self._solver = getattr(scipy.integrate, self.method)(self._rhs, t, y, until, **options)
+        sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
+        limits = Limits(until, control.rtol, np.repeat(control.floor, sizes), control.longest, first)
+        self._solver: Any = self.plan.solver.open(self._rhs, t, y, self.block.f[0].copy(), limits)
 
     def _write(self, row: int) -> bool:
         """Write the solver's state and rate; return whether they are finite."""
@@ -111,7 +80,7 @@ class Solver(Stepper):
             if not shorter:
                 return 1
             self.redone += 1
-            self._open(self.stops[0] if self.plan.dt else float(self.block.t[0]) + shorter, shorter)
+            self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + shorter, shorter)
         return 0
 
     def step(self) -> bool:

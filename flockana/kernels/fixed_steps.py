@@ -1,0 +1,92 @@
+"""Fixed steps of a compiled law as a map: exact steps, nothing checked or made again, many in one call."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.jit import inlined, kernel
+from flockana.kernels.runge_kutta import rate_of
+
+
+class Coefficients(NamedTuple):
+    """Coefficients of a method of fixed steps."""
+
+    a: Any  # weights of the stages, and in its last row those of the step
+    c: Any  # their times, as shares of the step
+    stages: Any
+    one: Any  # whether it has one stage, and positions q + h p + f h² u
+    lead: Any  # f
+
+
+@inlined
+def _combine(y, h, weights, count, rates, out):
+    """y + h Σ weights_j K_j, position and velocity."""
+    for i in range(out.size - 1):
+        total = 0.0
+        for j in range(count):
+            if weights[j] != 0.0:
+                total += weights[j] * rates[j, i]
+        out[i] = y[i] + h * total
+
+
+@inlined
+def _finite(y):
+    known = True
+    for i in range(y.size - 1):
+        known = known and np.isfinite(y[i])
+    return known
+
+
+@kernel
+def fixed_steps(times, h, y, kicks, wanted, method, system, pairs, out):
+    """Write (q, p, u) after the steps wanted, numbered from 1; return whether the pairs fit into the list.
+
+    `times` are those at which steps begin; `kicks` has a row of changes of the velocities for each step, or none. Pairs
+    are listed anew for each input, so that the order of sums hangs on the positions alone. y is overwritten; once it is
+    not finite it stays so.
+    """
+    (n, m), row, reach = (system.order.size, system.frame.shape[1]), 0, system.reach[0]
+    size, stages, noisy = n * m, method.stages, kicks.size > 0
+    rates, trial, u = np.zeros((stages, y.size)), np.zeros(y.size), np.empty(size)
+    for k in range(wanted[-1]):
+        for s in range(stages):
+            if s == 0:
+                for i in range(2 * size):
+                    trial[i] = y[i]
+            else:
+                _combine(y, h, method.a[s], s, rates, trial)
+                if noisy:
+                    for i in range(size):
+                        trial[size + i] += kicks[k, i]
+            if _finite(trial):
+                if reach > 0.0 and system.listed(trial[:size].reshape(n, m), reach, pairs) < 0:
+                    return False
+                rate_of(times[k] + method.c[s] * h, trial, rates[s], system, pairs)
+            else:
+                rates[s] = np.nan
+        for i in range(size):
+            total = 0.0
+            for j in range(stages):
+                if method.a[stages, j] != 0.0:
+                    total += method.a[stages, j] * rates[j, size + i]
+            u[i] = total
+        if method.one:
+            for i in range(size):
+                before, after = y[size + i], y[size + i] + h * u[i]
+                y[i] = y[i] + h * after if method.lead == 1.0 else y[i] + h * before + (method.lead * h * h) * u[i]
+                y[size + i] = after
+        else:
+            _combine(y, h, method.a[stages], stages, rates, trial)
+            for i in range(size):
+                y[i], y[size + i] = trial[i], y[size + i] + h * u[i]
+        if noisy:
+            for i in range(size):
+                y[size + i] += kicks[k, i]
+        if wanted[row] == k + 1:
+            for i in range(size):
+                a, c = i // m, i % m
+                out[0, row, a, c], out[1, row, a, c], out[2, row, a, c] = y[i], y[size + i], u[i]
+            row += 1
+    return True

@@ -1,0 +1,340 @@
+"""Methods of fixed steps, and laws in their steps: maps."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, isclose
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_fits, ensure_kind, ensure_positive, normalise
+from flockana.base.errors import ArgumentError
+from flockana.base.overrides import overrides_consistently
+from flockana.kernels.fixed_steps import Coefficients, fixed_steps
+from flockana.kernels.verlet import Pairs, no_pairs, with_room
+from flockana.laws.delayed import Delayed
+from flockana.laws.discrete import DiscreteLaw, IndexArray, States
+from flockana.laws.law import Arrays, Law, LawOfMotion
+from flockana.laws.wrapped import Step, View, Wrapper, input_of, needs_steps, wrappers_within
+from flockana.solvers.past import Past, Row
+from flockana.solvers.solver import Limits, Rate, Rows, Solver
+from flockana.solvers.stepper import FixedStepper
+from flockana.solvers.tableau import Tableau, tableau_of_steps
+
+_STEPPED = SimpleNamespace(__module__="flockana.solvers.stepped", __qualname__="Stepped")
+_WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
+
+
+@dataclass(frozen=True)
+class _Stepwise(Solver):
+    """Solver with a step."""
+
+    dt: float
+
+    units: ClassVar[Any] = {"dt": (0, 1)}
+
+    def __post_init__(self) -> None:
+        normalise(self, ensure_positive, "dt")
+
+
+class FixedStep(_Stepwise):
+    """Explicit one-step method with a fixed step.
+
+    A subclass gives coefficients: stage s is the rate at y + h Σ_j a_sj K_j and t + h Σ_j a_sj, the step ends at
+    y + h Σ_j b_j K_j. A method with one stage may say instead how far positions lead: q' = q + h p + f h² u.
+
+    ``simulate(law, ..., method=RK4(0.01))`` integrates the law: steps are checked, shortened and land on the times
+    asked for. ``FixedSteps(law, RK4(0.01))`` is a map, whose steps are exactly `dt` long; ``RK4(law, 0.01)`` is short
+    for it.
+
+    Parameters
+    ----------
+    dt : float
+        Step, in time units.
+
+    Attributes
+    ----------
+    a, b : sequences of floats
+        Weights of the stages, a row each, and of the step; by default those of one stage.
+    position_factor : float or None
+        f of a method with one stage; None of others.
+    """
+
+    a: ClassVar[Rows] = ((),)
+    b: ClassVar[Sequence[float]] = (1.0,)
+    position_factor: ClassVar[float | None] = None
+    order_of_wrapped: ClassVar[int] = 0  # by which files name it where it steps a wrapped law
+
+    def __new__(cls, *given: Any, **named: Any) -> Any:
+        """Return the solver; given a law too, the law in its steps."""
+        law, *rest = (named.pop("law"), *given) if "law" in named else given or (None,)
+        stepped: Any = law
+        if not isinstance(law, LawOfMotion):
+            return super().__new__(cls)
+        return FixedSteps(stepped, cls(*rest, **named) if rest or named else cls(0.01))
+
+    @cached_property
+    def tableau(self) -> Tableau:
+        """Coefficients for compiled steps."""
+        return tableau_of_steps(self.a, self.b, self.position_factor or 0.0)
+
+    @property
+    def stability_function(self) -> tuple[float, ...]:
+        """Coefficients of the stability function R(z) = 1 + Σ_k bᵀ Aᵏ⁻¹ 1 zᵏ of a step."""
+        a, b = self.tableau.a[:-1, :-1], self.tableau.a[-1, :-1]
+        powers = [np.linalg.matrix_power(a, k) @ np.ones(len(b)) for k in range(len(b))]
+        return (1.0, *(float(b @ power) for power in powers))
+
+    def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102
+        return FixedStepper(self.tableau, rate, t, y, f, limits)
+
+
+@dataclass(frozen=True)
+class FixedSteps(DiscreteLaw):
+    """Map that steps a law by a solver: steps of exactly `dt`, none of them checked or made again.
+
+    What it claims is about the map. ``simulate(law, ..., method=RK4(0.01))`` is evidence about the law instead: there
+    steps are checked, shortened and land on the times asked for. ``RK4(law, 0.01)`` is short for
+    ``FixedSteps(law, RK4(0.01))``.
+
+    A law with delays, clocks or noise is run by such a map in any case. Steps must divide delays and sampling periods;
+    the past between steps is a Hermite cubic.
+
+    Parameters
+    ----------
+    law : Law
+        What is stepped.
+    solver : FixedStep
+        Method and step, such as ``RK4(0.01)``.
+
+    Raises
+    ------
+    ArgumentError
+        If the law is no continuous one, the solver has no fixed step, a step does not divide a delay or period, or the
+        law is noisy and the solver takes no noise.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.solvers.heun import Heun
+    >>> FixedSteps(Algorithm1(), Heun(0.1)).dt, Heun(Algorithm1(), 0.1) == FixedSteps(Algorithm1(), Heun(0.1))
+    (0.1, True)
+    """
+
+    law: Law
+    solver: FixedStep
+
+    approximates = True
+    steps_at_once = 4096
+    private = ("step", "past", "held")
+
+    def __post_init__(self) -> None:
+        ensure_kind("law", self.law, Law, "a continuous law such as DeadZoneFlocking()")
+        ensure_kind("solver", self.solver, FixedStep, "a solver with a fixed step, such as RK4(0.01)")
+        dt = self.dt
+        for clock in (clock for one in self._wrappers for clock in one.clocks):
+            if clock / dt < 1.0 - _WHOLE or not isclose(clock / dt, round(clock / dt), rel_tol=_WHOLE):
+                raise ArgumentError(
+                    f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
+                    f"{clock / max(1, ceil(clock / dt)):.12g}"
+                )
+        for late in self._late:
+            late._ensure_remembered(self._memory)
+        if self.noisy and not self.solver.takes_noise:
+            raise ArgumentError(
+                f"{self.solver.name}: {type(self.law).__name__} draws random numbers; expected a solver that takes "
+                "noise, such as Heun(dt) or EulerMaruyama(dt)"
+            )
+
+    @property
+    def spelling(self) -> tuple[Any, Mapping[str, Any]] | None:
+        """Class and arguments by which files hold it: the solver's class, called with a law; None of a subclass."""
+        if type(self) is not FixedSteps:
+            return None
+        known = {"law": self.law, "dt": self.dt}
+        if self._wrappers and self.solver.order_of_wrapped:  # as files of format 1 have it
+            return _STEPPED, known | {"order": self.solver.order_of_wrapped}
+        return type(self.solver), known
+
+    @property
+    def title(self) -> str:
+        """Name of the law in messages and tables: that of the solver's class."""
+        return type(self.solver).__name__ if type(self) is FixedSteps else type(self).__name__
+
+    @property
+    def dt(self) -> float:  # type: ignore[override]  # the solver's
+        """Step, in time units."""
+        return self.solver.dt
+
+    @property
+    def position_factor(self) -> float | None:  # type: ignore[override]  # the solver's
+        """f of q' = q + h p + f h² u; None of a solver with more stages, and of a law with a memory."""
+        return None if needs_steps(self.law) else self.solver.position_factor
+
+    @property
+    def stability_function(self) -> tuple[float, ...] | None:  # type: ignore[override]  # the solver's
+        """Coefficients r of R: a step of a linear law with the matrix A is Σ r_k (h A)^k; None with a memory."""
+        return None if needs_steps(self.law) else self.solver.stability_function
+
+    @property
+    def noisy(self) -> bool:
+        """Whether the law draws random numbers."""
+        return any(one.noisy for one in self._wrappers)
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
+        """Keys of the law's bibliography."""
+        return self.law.references
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        # the energy of the law that is stepped, whose balance the map does not keep
+        return self.law.hamiltonian(t, q, p)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+
+    @cached_property
+    def _wrappers(self) -> tuple[Wrapper, ...]:
+        return wrappers_within(self.law)
+
+    @cached_property
+    def _late(self) -> tuple[Delayed, ...]:
+        return tuple(one for one in self._wrappers if isinstance(one, Delayed))
+
+    @cached_property
+    def _memory(self) -> float:
+        """Longest time that the law looks back: delays within each other add up."""
+        return sum(one.memory for one in self._wrappers)
+
+    @cached_property
+    def past_steps(self) -> int:
+        """Steps of the past that are kept, the present one among them."""
+        return 2 + ceil(self._memory / self.dt - _WHOLE) if self._memory > 0.0 else 0
+
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
+        """Return the memory of a law that needs one; its past is the history of a delayed law, else uniform motion."""
+        if not needs_steps(self.law):
+            return {}
+        rows = (self.past_steps, *q.shape)
+        ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
+        past = np.empty((0, 4, *q.shape))
+        if self.past_steps:
+            with_history = next((one for one in self._late if one.history_t is not None), self._late[0])
+            before, speeds, push = with_history._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            past = np.stack([before, speeds, push, push], axis=1)
+        return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
+
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
+        q, p, u, after = self._made(np.array([t]), q, p, memory, np.array([1]))
+        return q[0], p[0], u[0], {name: values[-1] for name, values in after.items()}
+
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
+        if overrides_consistently(type(self), "iterate", ("step", "start")):
+            return self._made(t + self.dt * np.arange(float(steps)), q, p, memory, np.arange(1, steps + 1))
+        return super().iterate(t, q, p, memory, steps)
+
+    def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:  # noqa: D102
+        if overrides_consistently(type(self), "visit", ("iterate", "step", "start")):
+            return self._made(times, q, p, memory, wanted)
+        own = super().visit if type(self).iterate is not FixedSteps.iterate else self._step_by_step
+        return own(times, q, p, memory, wanted)
+
+    def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
+        """Return (q, p, u, memory) after the steps wanted: by the law's own block, by a compiled one, or in Python."""
+        block = self.law.block(self.solver)
+        if block is not None and (states := block(times, q, p, wanted)) is not None:
+            return *states, {}
+        made = self._compiled(times, q, p, memory, wanted)
+        return self._interpreted(times, q, p, memory, wanted) if made is None else made
+
+    def _compiled(
+        self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
+    ) -> States | None:
+        """Return the steps from one compiled call; None if the law is not compiled, or has too many pairs."""
+        (n, m), steps = q.shape, int(wanted[-1])
+        if (form := self.law.compiled_push(m)) is None:
+            return None
+        system = form.system((float(times[0]), np.zeros(m), np.zeros(m)), n, m)
+        system = system._replace(reach=(system.reach[0], 0.0))
+        table, kicks = self.solver.tableau, np.empty((0, n * m))
+        if memory:
+            first = int(memory["step"])
+            pushes = (one._kicks(first, steps, self.dt, (n, m)) for one in self._wrappers if one.noisy)  # type: ignore[attr-defined]
+            kicks = sum(pushes, np.zeros((steps, n, m))).reshape(steps, n * m)
+            after = {"step": np.array([float(first + steps)]), "past": np.empty((1, 0, 4, n, m))}
+            memory = after | {"held": np.full((1, len(self._wrappers), n, m), np.nan)}
+        method = Coefficients(table.a, table.c, table.stages, self.solver.position_factor is not None, table.lead)
+        y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
+        wanted = np.asarray(wanted)
+        pairs: Pairs | None = no_pairs(n, m)
+        while not fixed_steps(times, self.dt, y.copy(), kicks, wanted, method, system, pairs, out):
+            if (pairs := with_room(pairs)) is None:  # type: ignore[arg-type]
+                return None
+        return out[0], out[1], out[2], memory
+
+    def _interpreted(
+        self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
+    ) -> States:
+        """Return the steps made one by one in Python."""
+        shape, first = q.shape, int(memory["step"]) if memory else 0
+        past = Past(deque([tuple(row) for row in memory["past"]] if memory else [], self.past_steps or 1), self.dt)
+        held = {k: one for k, one in enumerate(memory["held"], 1) if np.isfinite(one).all()} if memory else {}
+        now = Step(first, self.dt, lambda _: (q, p), held)
+        kept, row = np.empty((3, len(wanted), *shape)), 0
+        for k, t in enumerate(times[: wanted[-1]].tolist()):
+            now.number, now.begins = first + k, True
+            if self.past_steps:
+                now.past = past.seen_at(t)
+            q, p, u, departs = self._advance(now, t, q, p, past)
+            if self.past_steps:
+                past.rows.append((q, p, departs, departs))
+            if k + 1 == wanted[row]:
+                kept[:, row] = q, p, u
+                row += 1
+        if not memory:
+            return kept[0], kept[1], kept[2], {}
+        stored = np.full((len(self._wrappers), *shape), np.nan)
+        for key, value in now.held.items():
+            stored[key - 1] = value
+        after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
+        after["past"] = np.array(past.rows) if self.past_steps else np.empty((0, 4, *shape))
+        return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
+
+    def _advance(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: Past) -> Row:
+        """Return (q, p, input of the step, input at its end) after one step."""
+        h, factor, table = self.dt, self.solver.position_factor, self.solver.tableau
+        u = input_of(self.law, now, View(t, q, p))
+        now.begins = False
+        if self.past_steps:
+            past.begin(u, first=now.number == 0)
+        kick = self._kick(now, p.shape)
+        speeds, inputs = [p], [u]
+        for s in range(1, table.stages):
+            place = q + h * _combination(table.a[s], speeds)
+            speeds.append(p + h * _combination(table.a[s], inputs) + kick)
+            inputs.append(input_of(self.law, now, View(t + table.c[s] * h, place, speeds[-1])))
+        u, after = _combination(table.a[-1], inputs), p + h * _combination(table.a[-1], inputs)
+        if factor is None:
+            q = q + h * _combination(table.a[-1], speeds)
+        else:  # velocities first, where positions follow them
+            q = q + h * after if factor == 1.0 else q + h * p + (factor * h * h) * u
+        return q, after + kick, u, inputs[-1]
+
+    def _kick(self, now: Step, shape: tuple[int, ...]) -> Any:
+        """Change of the velocities by white noise in a step."""
+        kicks = (one.kick(now, shape) for one in self._wrappers)
+        return sum((kick for kick in kicks if kick is not None), 0.0)
+
+
+def _combination(weights: FloatArray, parts: Sequence[FloatArray]) -> FloatArray:
+    """Σ weights_j parts_j over the weights that are not 0."""
+    total: Any = 0.0
+    for weight, part in zip(weights.tolist(), parts, strict=False):
+        if weight:
+            total = total + weight * part
+    return total

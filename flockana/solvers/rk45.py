@@ -1,0 +1,9 @@
+"""Dormand and Prince's method of order 5, with scipy's coefficients."""
+
+from flockana.solvers.scipy_solver import ScipyPair
+
+
+class RK45(ScipyPair):
+    """Dormand and Prince's method of order 5: compiled where the law is."""
+
+    order = 5

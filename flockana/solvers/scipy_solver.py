@@ -1,0 +1,74 @@
+"""Adapter of scipy's solvers: each of them for every law, and the coefficients of its Runge-Kutta pairs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import ensure_choice
+from flockana.solvers.solver import AdaptivePair, FloatArray, Limits, Rate, Solver, open_scipy
+from flockana.solvers.tableau import Tableau, shared_rows
+
+KINDS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
+_WITH_A_PAST = ("BDF", "LSODA")
+
+
+@dataclass(frozen=True)
+class Scipy(Solver):
+    """One of scipy's solvers, stepped in Python for every law.
+
+    Parameters
+    ----------
+    kind : {"DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"}
+        Name of scipy's class.
+
+    Examples
+    --------
+    >>> Scipy("Radau").name, Scipy("RK45").name, Scipy("BDF").one_step
+    ('Radau', 'scipy-RK45', False)
+    """
+
+    kind: str
+
+    def __post_init__(self) -> None:
+        ensure_choice("kind", self.kind, KINDS)
+
+    @property
+    def name(self) -> str:
+        """Scipy's name, with a prefix where flockana compiles a method of that name."""
+        return self.kind if self.kind in ("Radau", "BDF", "LSODA") else f"scipy-{self.kind}"
+
+    @property
+    def one_step(self) -> bool:  # type: ignore[override]  # by kind
+        """Whether the next step hangs on the state alone."""
+        return self.kind not in _WITH_A_PAST
+
+    def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102
+        import scipy.integrate
+
+        return open_scipy(getattr(scipy.integrate, self.kind), rate, t, y, limits, one_step=self.one_step)
+
+
+class ScipyPair(AdaptivePair):
+    """Pair with the coefficients of scipy's class of the same name."""
+
+    @property
+    def scipy_class(self) -> Any:
+        """Scipy's own."""
+        import scipy.integrate
+
+        return getattr(scipy.integrate, self.name)
+
+    @cached_property
+    def tableau(self) -> Tableau:
+        """Coefficients for compiled steps."""
+        theirs = self.scipy_class
+        stages = theirs.n_stages
+        a = np.zeros((stages + 1, stages + 1))
+        a[:stages, : theirs.A.shape[1]], a[stages, :stages] = theirs.A, theirs.B
+        estimates, interpolant = theirs.E[None].copy(), theirs.P.copy()
+        rows, exponent = shared_rows(a, estimates, interpolant), -1.0 / (theirs.error_estimator_order + 1)
+        return Tableau(a, np.append(theirs.C, 1.0), estimates, interpolant, rows, stages, exponent)

@@ -1,0 +1,124 @@
+"""What a solver is: a frozen object that `simulate(..., method=)` takes."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.solvers.tableau import Tableau, tableau_of_pair
+
+FloatArray = npt.NDArray[np.float64]
+Rate = Callable[[float, FloatArray], FloatArray]
+Rows = Sequence[Sequence[float]]
+
+
+class Limits(NamedTuple):
+    """Limits of an interpreted run: the time to end at, tolerances, the longest step, and the first if it is known."""
+
+    until: float
+    rtol: float
+    atol: FloatArray
+    longest: float
+    first: float | None
+
+
+class Solver(ABC):
+    """Integration method of a law.
+
+    Attributes
+    ----------
+    order : int
+        Order of its steps.
+    dt : float or None
+        Step of a method of fixed steps.
+    one_step : bool
+        Whether the next step hangs on the state alone, and not on earlier steps.
+    takes_noise : bool
+        Whether it can step a law that draws random numbers.
+    """
+
+    order: ClassVar[int]
+    one_step: ClassVar[bool] = True
+    takes_noise: ClassVar[bool] = False
+    dt: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Name by which `simulate(..., method=)` knows it."""
+        return type(self).__name__
+
+    @property
+    def tableau(self) -> Tableau | None:
+        """Coefficients for compiled steps; None if it steps in Python only."""
+        return None
+
+    @abstractmethod
+    def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:
+        """Return an interpreted stepper with the interface of `scipy.integrate.OdeSolver`.
+
+        Parameters
+        ----------
+        rate : callable
+            Right-hand side, (t, y) -> dy/dt.
+        t, y, f
+            Time, state, and its rate.
+        limits : Limits
+            Where it ends, and what its steps are bounded by.
+        """
+
+
+class AdaptivePair(Solver):
+    """Explicit Runge-Kutta pair: steps as long as its error estimate allows.
+
+    A subclass gives coefficients. Stage s is the rate at y + h Σ_j a_sj K_j and t + h Σ_j a_sj, the step ends at
+    y + h Σ_j b_j K_j, and h Σ_j error_j K_j estimates its error, the last K being the rate at the end.
+
+    Attributes
+    ----------
+    a, b : sequences of floats
+        Weights of the stages, a row each, and of the step.
+    error : sequence of floats
+        Weights of the error estimate, one more than there are stages.
+    error_order : int
+        Order of the estimate.
+    interpolant : sequence of sequences, optional
+        P in y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j; by default the cubic through both ends and their rates.
+    """
+
+    a: ClassVar[Rows]
+    b: ClassVar[Sequence[float]]
+    error: ClassVar[Sequence[float]]
+    error_order: ClassVar[int]
+    interpolant: ClassVar[Rows | None] = None
+
+    @cached_property
+    def tableau(self) -> Tableau:
+        """Coefficients for compiled steps."""
+        return tableau_of_pair(self.a, self.b, self.error, self.error_order, self.interpolant)
+
+    @property
+    def scipy_class(self) -> Any:
+        """Class of scipy's that makes the same steps in Python."""
+        import scipy.integrate
+
+        known, stages = self.tableau, self.tableau.stages
+        facts = {"order": self.order, "error_estimator_order": self.error_order, "n_stages": stages}
+        arrays = {"A": known.a[:stages, :stages], "B": known.a[stages, :stages], "C": known.c[:stages]}
+        arrays |= {"E": known.estimates[0], "P": known.interpolant}
+        return type(self.name, (scipy.integrate.RK45,), facts | arrays)
+
+    def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102
+        return open_scipy(self.scipy_class, rate, t, y, limits, one_step=True)
+
+
+def open_scipy(kind: Any, rate: Rate, t: float, y: FloatArray, limits: Limits, *, one_step: bool) -> Any:
+    """Return one of scipy's steppers; the first step is passed on to methods without a past."""
+    options: dict[str, Any] = {"rtol": limits.rtol, "atol": limits.atol, "max_step": limits.longest}
+    if limits.first is not None and one_step:
+        options["first_step"] = min(limits.first, limits.until - t, limits.longest)
+    return kind(rate, t, y, limits.until, **options)

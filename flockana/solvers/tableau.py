@@ -1,0 +1,95 @@
+"""Coefficients of explicit Runge-Kutta methods, as `flockana.kernels.runge_kutta` reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.int64]
+
+
+class Tableau(NamedTuple):
+    """Coefficients (A, C, E, P) of a method, where rates are kept, stages of a step, exponent of the error, lead.
+
+    The exponent is 0 for a method of fixed steps. Stage s is kept in row `rows[s]`: a rate that nothing reads again
+    gives its place to a later one, which at a million agents is a hundred megabytes. `lead` f adds f h² u to the
+    positions of a method with one stage, whose velocities they so lead.
+    """
+
+    a: FloatArray
+    c: FloatArray
+    estimates: FloatArray
+    interpolant: FloatArray
+    rows: IndexArray
+    stages: int
+    exponent: float
+    lead: float = 0.0
+
+
+def tableau_of_pair(
+    a: Sequence[Sequence[float]],
+    b: Sequence[float],
+    error: Sequence[float],
+    error_order: int,
+    interpolant: Sequence[Sequence[float]] | None,
+) -> Tableau:
+    """Return the tableau of an adaptive pair."""
+    whole, (stages, estimates) = _square(a, b), (len(b), np.array([error], dtype=np.float64))
+    powers = _hermite(whole[stages]) if interpolant is None else np.array(interpolant, dtype=np.float64)
+    rows, exponent = shared_rows(whole, estimates, powers), -1.0 / (error_order + 1)
+    return Tableau(whole, _times(whole), estimates, powers, rows, stages, exponent)
+
+
+def tableau_of_steps(a: Sequence[Sequence[float]], b: Sequence[float], lead: float) -> Tableau:
+    """Return the tableau of a method of fixed steps.
+
+    Examples
+    --------
+    >>> tableau_of_steps(((), (0.5,)), (0.0, 1.0), 0.0).c.tolist()
+    [0.0, 0.5, 1.0]
+    """
+    whole, count = _square(a, b), len(b) + 1
+    estimates, interpolant = np.zeros((1, count)), np.zeros((count, 1))
+    rows = shared_rows(whole, estimates, interpolant)
+    return Tableau(whole, _times(whole), estimates, interpolant, rows, len(b), 0.0, lead)
+
+
+def _square(a: Sequence[Sequence[float]], b: Sequence[float]) -> FloatArray:
+    """Return the weights of all stages and of the step as one square matrix."""
+    whole = np.zeros((len(b) + 1, len(b) + 1))
+    for s, row in enumerate([*a, b]):
+        whole[s, : len(row)] = row
+    return whole
+
+
+def _times(whole: FloatArray) -> FloatArray:
+    """Return the times of the stages as shares of the step, that of its end exactly 1."""
+    return np.append(whole[:-1].sum(axis=1), 1.0)
+
+
+def _hermite(weights: FloatArray) -> FloatArray:
+    """Return the cubic through both ends of a step and their rates, in powers of θ."""
+    powers = np.outer(weights, (0.0, 3.0, -2.0))
+    powers[0] += (1.0, -2.0, 1.0)
+    powers[-1] += (0.0, -1.0, 1.0)
+    return powers
+
+
+def shared_rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:
+    """Return a place for each stage's rate, reusing that of a rate which no later stage reads."""
+    count, stages = len(a), estimates.shape[1] - 1
+    last = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
+    for s in range(stages + 1):
+        if estimates[:, s].any():
+            last[s] = max(last[s], stages + 1)  # the error is estimated before the interpolant's own stages
+    for s in (0, stages, *np.flatnonzero(interpolant.any(axis=1))):
+        last[s] = count
+    rows = list[int]()
+    for s in range(count):
+        taken = {rows[k] for k in range(s) if last[k] > s}
+        rows.append(min(set(range(count)) - taken))
+    return np.array(rows)
