@@ -222,13 +222,13 @@ def stepped_equation(
     from scipy.sparse import csr_array, eye_array
     from scipy.sparse.linalg import spsolve
 
-    before = _moved_before(k, m), _moved_before(damping, m)
+    before = moved_before(k, m), moved_before(damping, m)
     mass = eye_array(k.shape[0]) + dt * before[1] + factor * dt * dt * before[0]
     solved: Any = (spsolve(mass.tocsc(), part.tocsc()) for part in (k, d + dt * before[0]))
     return tuple(csr_array(part) for part in solved)  # type: ignore[return-value]
 
 
-def _moved_before(matrix: Any, m: int) -> Any:
+def moved_before(matrix: Any, m: int) -> Any:
     """Entries of a matrix that act on an agent with a smaller index."""
     entries = matrix.tocoo(copy=True)
     entries.data = np.where(entries.coords[1] // m < entries.coords[0] // m, entries.data, 0.0)
@@ -254,7 +254,7 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
     move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
     a, b = move + push @ flow.A[size:], push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
-        moved = -np.hstack([_moved_before(part, m).toarray() for part in (stiffness, damping)])
+        moved = -np.hstack([moved_before(part, m).toarray() for part in (stiffness, damping)])
         a, b = (np.linalg.solve(np.eye(2 * size) - push @ moved, part) for part in (a - push @ moved, push))
     equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
     return MapLinearisation(*known, a, b, *names, equation)

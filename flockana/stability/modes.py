@@ -23,7 +23,7 @@ from flockana.equilibria.terminal import rigid_motions
 from flockana.stability.components import IndexArray, StrongComponents, strong_components
 from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
 from flockana.stability.rounding import eigen_of_one, root_error, slowest_first
-from flockana.stability.zero_modes import ZERO, Kernel, Split, agent_scales, joined_kernel, kernel_of, split
+from flockana.stability.zero_modes import ZERO, Kernel, Quotient, Split, agent_scales, joined_kernel, kernel_of, split
 
 _HUGE = 1e100  # answer of followers that is too long to be squared
 _SYMMETRIC = 1e-10  # relative
@@ -101,18 +101,6 @@ class Invariant(NamedTuple):
     chains: int
     drifting: tuple[str, ...]
     neutral: FloatArray
-
-
-class Quotient(NamedTuple):
-    """Dynamics x' = A x + `basis`[N:]ᵀ w off the zero modes: x = basisᵀ (pace δq, δp), whatever is along them.
-
-    `force` gives δq'' = force x, which zero modes do not change.
-    """
-
-    A: FloatArray
-    basis: FloatArray
-    force: FloatArray
-    pace: float
 
 
 class SecondOrder:
@@ -208,6 +196,11 @@ class SecondOrder:
         values, vectors, errors = self._others
         kept = values.imag >= 0.0
         return self.named(values[kept], vectors[:, kept], errors[kept], self.invariant.translational)
+
+    @property
+    def stable(self) -> bool:
+        """Return whether every mode off the zero modes decays beyond rounding; True without such modes."""
+        return all(mode.decays for mode in self.modes)
 
     @cached_property
     def eigenvalues(self) -> ComplexArray:

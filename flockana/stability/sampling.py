@@ -12,8 +12,8 @@ singular, so that for f >= 1 the margin is the least h with a singular M. Explic
 its margin is the least −2 Re λ/|λ|². Else the margin lies between the bound and the first growth that a search meets.
 """
 
-from dataclasses import dataclass, field, replace
-from math import inf, nan, sqrt
+from dataclasses import dataclass, field
+from math import inf, isnan, nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -23,14 +23,13 @@ from flockana.base.checks import FloatArray, ensure_fits, ensure_nonnegative, en
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
+from flockana.stability.growth import CLOSE, Growth, Steps, first_growth
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
-from flockana.stability.maps import stepped_equation
+from flockana.stability.maps import moved_before, stepped_equation
+from flockana.stability.modes import SecondOrder
 
-CLOSE = 1e-6  # relative distance of the certified bound from the margin
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
-_TRIALS = 24  # steps at which a search looks
-_NEAR, _FAR = 0.02, 4.0  # times the first guess: where a search begins and ends
 _UNDAMPED = 1e-10  # of the largest damping rate
 
 
@@ -67,12 +66,12 @@ class SamplingMargin:
     scheme : str
         Name of the scheme.
     period : float
-        Margin: below it, and above `least`, no growth was found; beyond it one mode grows. 0 if none is stable.
+        Margin: beyond it one mode grows. 0 if none is stable; infinite where nothing can grow; NaN if it is not known.
     least : float
         Certified: every shorter period is stable. By default the margin itself.
     modes : tuple of ModePeriod
         Modes with their periods, the first to go first. In closed form where K and D commute; else those that flip (of
-        explicit Euler all), and the one that goes first.
+        explicit Euler all), and the one that goes first, if it is known.
 
     Examples
     --------
@@ -179,10 +178,11 @@ def sampling_margin(law: Any, equilibrium: Any) -> SamplingMargin:
         law = law.continuous
     flow = linearise(law, equilibrium)
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
-    return _margin(name, flow, factor, in_place=in_place)
+    return margin_of_flow(name, flow, factor, in_place=in_place)
 
 
-def _margin(name: str, flow: Linearisation, factor: float, *, in_place: bool) -> SamplingMargin:
+def margin_of_flow(name: str, flow: Linearisation, factor: float = 0.5, *, in_place: bool = False) -> SamplingMargin:
+    """Return the sampling margin of a linearised flock under a hold, or of a map with a `factor` (see the module)."""
     k, d = flow.stiffness.toarray(), flow.damping.toarray()
     symmetric, shape = flow.second_order.symmetric, flow.q.shape
     if factor == 0.0 and not in_place:
@@ -190,14 +190,13 @@ def _margin(name: str, flow: Linearisation, factor: float, *, in_place: bool) ->
     elif symmetric and not in_place:
         found = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
     else:
-        flip = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), max(factor, 1.0))
-        guess = flip if flip < inf else 1.0
-        found = 0.0, _searched(flow, factor, guess * _NEAR, guess * _FAR, in_place=in_place)
+        found = _first_to_grow(flow, factor, in_place=in_place)
     least, modes = found
-    modes = sorted(modes, key=lambda mode: mode.period)
+    modes = sorted(modes, key=lambda mode: -inf if isnan(mode.period) else mode.period)
     period = modes[0].period if modes else inf
+    modes = [mode for mode in modes if not isnan(mode.period)]
     kept = (ModePeriod(x.period, x.multiplier, np.reshape(x.shape, shape)) for x in modes)
-    return SamplingMargin(name, period, min(least, period), tuple(kept))
+    return SamplingMargin(name, period, least if isnan(period) else min(least, period), tuple(kept))
 
 
 def _explicit(flow: Linearisation) -> tuple[float, list[ModePeriod]]:
@@ -222,8 +221,10 @@ def _symmetric(flow: Linearisation, k: FloatArray, d: FloatArray, factor: float)
     if factor >= 1.0:
         return inf, flips
     turn = _least_damped(k, d) / (1.0 - factor)
-    least = min(turn, flip)
-    return least, flips if flip <= turn else [*_searched(flow, factor, least, flip), *flips]
+    if flip <= turn:
+        return inf, flips
+    least, first = _first_to_grow(flow, factor, stable_below=turn)
+    return least, [*first, *flips]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
@@ -270,38 +271,43 @@ def _least_damped(k: FloatArray, d: FloatArray) -> float:
     return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held.size else inf
 
 
-def _searched(
-    flow: Linearisation, factor: float, low: float, high: float, *, in_place: bool = False
-) -> list[ModePeriod]:
-    """Return the first step at which a search upwards from a stable one meets growth, refined by halving."""
-    from scipy.optimize import brentq
-
-    if low <= 0.0:
-        return [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
-    zero, m = flow.second_order.invariant, flow.q.shape[1]
-
-    def critical(h: float) -> ModePeriod:
-        """Return the mode of the largest |z| off the neutral motions, whose w = (z − 1)/h are the smallest."""
-        parts = stepped_equation(flow.stiffness, flow.damping, h, factor, m, in_place=in_place)
-        k, d = (part.toarray() for part in parts)
-        values, vectors = np.linalg.eig(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
-        moving = np.argsort(np.abs(values), kind="stable")[len(zero.zero) + zero.chains :]
-        z = 1.0 + h * values[moving]
-        worst = int(np.argmax(np.abs(z) + EPS * z.imag))
-        shape = vectors[: len(k), moving[worst]]
-        return ModePeriod(h, complex(z[worst]), shape / np.linalg.norm(shape))
-
-    def growth(h: float) -> float:
-        return abs(critical(h).multiplier) - 1.0
-
-    before, step = (1.0 + CLOSE) * low, low
-    if growth(before) <= 0.0:  # else the bound is the margin
-        for h in np.geomspace(before, max(high, 2.0 * low), _TRIALS)[1:].tolist():
-            if growth(h) > 0.0:
-                step = float(brentq(growth, before, h, xtol=1e-12 * h, rtol=1e-12))
-                break
-            before = h
+def _first_to_grow(
+    flow: Linearisation, factor: float, *, in_place: bool = False, stable_below: float = 0.0
+) -> tuple[float, list[ModePeriod]]:
+    """Return (certified bound, the mode that grows first) component by component; period NaN where it is not known."""
+    problem, m = flow.second_order, flow.q.shape[1]
+    before = [moved_before(x, m) if in_place else 0.0 * x for x in (flow.stiffness.tocsr(), flow.damping.tocsr())]
+    first, least, part_of = Growth(inf, inf), inf, None
+    for k, part in enumerate(problem.parts or (problem,)):
+        rows = problem.net.indices[k] if problem.net else np.arange(flow.q.size)
+        steps = _steps(part, [x[rows][:, rows].toarray() for x in before], factor)
+        if in_place and part.invariant.chains:  # what drifts is pushed on by those who have moved before
+            growth = Growth(nan, 0.0)
+        elif not part.stable and factor <= 1.0:
+            growth = Growth(0.0, 0.0)
         else:
-            return []
-    found = critical(step)
-    return [replace(found, multiplier=found.multiplier / abs(found.multiplier))]
+            growth = first_growth(steps, part.pace, stable_below)
+        least = min(least, growth.least)
+        if not growth.period >= first.period:
+            first, part_of = growth, steps
+    if part_of is None or first.period == inf:
+        return least, []
+    if not first.period > 0.0:
+        shape = flow.modes[0].shape if flow.modes else flow.q
+        return least, [ModePeriod(first.period, 1.0 + 0.0j, shape)]
+    z = max(part_of.multipliers(first.period).tolist(), key=lambda z: (round(abs(z), 9), z.imag))
+    k, d = (
+        x.toarray() for x in stepped_equation(flow.stiffness, flow.damping, first.period, factor, m, in_place=in_place)
+    )
+    w = (z - 1.0) / first.period
+    shape = np.linalg.svd(w * w * np.eye(len(k)) + w * d + k)[2][-1].conj()
+    return least, [ModePeriod(first.period, z / abs(z), shape)]
+
+
+def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:
+    """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: entries that act at once."""
+    off, size = problem.quotient, problem.q.size
+    low, zero = off.basis[size:], np.zeros((len(off.A),) * 2)
+    stiffness = problem.stiffness.toarray()
+    e1, e2 = low.T @ before[1] @ low, factor * low.T @ before[0] @ low
+    return Steps(e1, e2, e1 + off.A, e2 - low.T @ (factor * stiffness + before[0]) @ low + zero)

@@ -134,3 +134,15 @@ def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, 
 
 def _orthonormal(basis: FloatArray) -> FloatArray:
     return np.linalg.qr(basis)[0] if basis.shape[1] else basis
+
+
+class Quotient(NamedTuple):
+    """Dynamics x' = A x + `basis`[N:]ᵀ w off the zero modes: x = basisᵀ (pace δq, δp), whatever is along them.
+
+    `force` gives δq'' = force x, which zero modes do not change.
+    """
+
+    A: FloatArray
+    basis: FloatArray
+    force: FloatArray
+    pace: float
