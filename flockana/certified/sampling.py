@@ -10,6 +10,7 @@ from flockana.base.binomial import clopper_pearson
 from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_seed, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.certified.basin import Basin
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.equilibria.terminal import rigid_motions
 
@@ -75,6 +76,7 @@ def sample_basin(
             w = rng.standard_normal(basin.rest.size)
             w -= motions @ (motions.T @ w)
             start = basin.rest + centre + (size / np.linalg.norm(w) * w).reshape(basin.rest.shape)
-            run = simulate(basin.law, start, np.zeros_like(start) + drift, (0.0, end), t_eval=[0.0, end])
+            p0, span = np.zeros_like(start) + drift, (0.0, end)
+            run = ensure_uninterrupted(simulate(basin.law, start, p0, span, t_eval=[0.0, end]))
             returned[k] += basin.holds(run.q[-1], run.p[-1])
     return SampledBasin(basin, sizes, returned, runs)

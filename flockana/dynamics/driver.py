@@ -20,6 +20,8 @@ from flockana.dynamics.switches import Switches, switched
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
 
+_MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
+
 
 def integrated(law: Law, start: Start, plan: Plan, keep: FloatArray | None, tally: Tally) -> Iterator[Sample | Samples]:
     """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step."""
@@ -44,7 +46,7 @@ def _driven(
     stepper: Stepper, law: Law, start: Start, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample | Samples]:
     """Yield steps up to the last stop, and samples at the times that are due."""
-    checks = StepChecks(law, stepper.frame, stepper.plan)
+    checks, (since, before) = StepChecks(law, stepper.frame, stepper.plan), (start.t, 0)
     tally.notes["redone"] = 0
     if keep is None or keep[0] == start.t:  # not a rounding beside it, as in the frame
         yield start.sample
@@ -54,10 +56,32 @@ def _driven(
         if good:
             tally.steps += good
             yield from _parted(stepper, good, keep)
-        if stepper.failure:
-            tally.fail(stepper.failure)
+        failure, at = stepper.failure, float(stepper.block.t[good])
+        if stepper.plan.solver.dt:
+            passed = len(stepper.plan.stops) - int((stepper.stops > at).sum())
+            failure = failure or stepper.plan.describe_cuts(tally.steps, passed)
+        elif tally.steps >= before + _MANY:
+            failure = failure or _collapse(stepper, law, good, (at - since) / (tally.steps - before))
+            since, before = at, tally.steps
+        if failure:
+            tally.fail(failure)
             return
         stepper.continue_from(good)
+
+
+def _collapse(stepper: Stepper, law: Law, good: int, mean: float) -> str:
+    """Return in words that the last steps are far too short for the law's own time, '' if their mean length is not."""
+    if law.scales is None or mean >= _SHORT * law.scales.time:
+        return ""
+    text = f"steps collapse at t = {stepper.block.t[good]:g}: the last {_MANY} are {mean:.2g} long on average"
+    q = stepper.states(good)[0][-1, 0]
+    if len(q) == 1:
+        return text
+    from scipy.spatial import cKDTree
+
+    apart, others = map(np.asarray, cKDTree(q).query(q, k=2))
+    i = int(apart[:, 1].argmin())
+    return f"{text}; the nearest agents, {i} and {int(others[i, 1])}, are {apart[i, 1]:.3g} apart"
 
 
 def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:

@@ -13,6 +13,7 @@ from flockana.dynamics.tolerance import Control, ErrorFloors
 from flockana.solvers.solver import Solver
 
 Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
+_PIECES, _SPARE = 64, 16  # shorter steps for each fixed one, on average, beyond those of the first few
 EXACT = Control(0.0, ErrorFloors(0.0, 0.0, 0.0))
 
 
@@ -29,6 +30,16 @@ class Plan(NamedTuple):
         if self.solver.dt:
             return f"{self.solver.name} left the finite numbers at t = {t:g}: reduce dt = {self.solver.dt:g}"
         return f"{self.solver.name} gave up at t = {t:g}: {why}"
+
+    def describe_cuts(self, steps: int, passed: int) -> str:
+        """Return in words why a run ends whose fixed steps are cut into very many, so many stops passed; or ''."""
+        if not self.solver.dt or steps <= _PIECES * (passed + _SPARE):
+            return ""
+        t = float(self.stops[min(passed, len(self.stops) - 1)])
+        return (
+            f"steps of dt = {self.solver.dt:g} are cut into more than {_PIECES} each before t = {t:g}, as agents "
+            "fly too far in one, or the method is unstable: reduce dt"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,13 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
     return trajectory
 
 
+def ensure_uninterrupted(run: Trajectory) -> Trajectory:
+    """Return the run; raise KeyboardInterrupt if Ctrl-C ended it, for work that needs all of it."""
+    if run.status == "interrupted":
+        raise KeyboardInterrupt
+    return run
+
+
 def is_flock(trajectory: Trajectory) -> BoolArray:
     """Return a mask of the samples at which the net G(q) is connected, shape (T,)."""
     result: BoolArray = ensure_run(trajectory).metrics().connectivity.values == 1.0

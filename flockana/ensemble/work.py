@@ -12,6 +12,7 @@ from flockana.base.errors import ArgumentError, FileError, SolverError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.seals import SEAL, digest
 from flockana.base.serialize import to_data, to_data_mapping
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import numerics_version
 from flockana.measures.measure import measures
@@ -121,9 +122,7 @@ def run_one(request: Request, job: Job) -> Record:
     try:
         with restore_interrupts():
             item = build(request, job)
-            run = item.run()
-            if run.status == "interrupted":
-                raise KeyboardInterrupt
+            run = ensure_uninterrupted(item.run())
             if run.status == COMPLETE:
                 record = _judge_run(request, job, item, run)
             else:  # of a part of the run no claim about the whole follows

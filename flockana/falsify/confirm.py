@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from flockana.base.units import times
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
@@ -21,9 +22,8 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
     # A map has no tolerance: its verdict stays as it is.
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
-    run = simulate(case.law, case.q0, case.p0, case.t_span, **tightened_options(case.options))
-    if run.status == "interrupted":
-        raise KeyboardInterrupt
+    options = tightened_options(case.options)
+    run = ensure_uninterrupted(simulate(case.law, case.q0, case.p0, case.t_span, **options))
     again = judge(run).claims if run.status == "complete" else ()
     sure = {claim.name for claim in again if claim.status == "refuted"}
     reason = "a run at a thousandth of the tolerance takes this back"

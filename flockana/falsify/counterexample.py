@@ -15,6 +15,7 @@ from flockana.base.errors import FileError, FlockanaError
 from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
@@ -75,10 +76,7 @@ class Counterexample:
         KeyboardInterrupt
             If it was interrupted.
         """
-        run = simulate(self.law, self.q0, self.p0, self.t_span, **self.options)
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        return run
+        return ensure_uninterrupted(simulate(self.law, self.q0, self.p0, self.t_span, **self.options))
 
     def verify(self, run: Trajectory, *, theorem: Theorem | None = None) -> Verdict:
         """Check the theorem on a run of the counterexample.

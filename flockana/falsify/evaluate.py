@@ -7,6 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.interrupts import restore_interrupts
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, grade
@@ -61,9 +62,7 @@ class Problem:
         def judge(again: Trajectory) -> Verdict:
             return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
 
-        run = case.run()
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
+        run = ensure_uninterrupted(case.run())
         # of a part of a run no claim about the whole follows
         return run, confirmed(judge(run), judge, case) if run.status == "complete" else None
 

@@ -113,6 +113,40 @@ def energy(t, x, v, numbers, panels, listed):
     return numbers[0] * (total + beyond * numbers[3] if beyond > 0 else total)  # it may be infinite there
 
 
+@register_jitable
+def _linked(x, ends, begin, end, near, s2):
+    """Write a part of the links, given as numbers of agents in turns, as pairs and their squared distances."""
+    for k in range(begin, end):
+        i, j, square = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
+        for c in range(M):
+            square += (x[j, c] - x[i, c]) ** 2
+        s2[k - begin], near[0, k - begin], near[1, k - begin] = square, i, j
+    return end - begin
+
+
+@kernel
+def act_links(t, x, v, u, numbers, panels, listed):
+    """Add the forces of links to u and return their power; `numbers` are c1, c2, the count of links, they, and par."""
+    total, links, near = 0.0, np.int64(numbers[2]), listed.near
+    par, pairs = as_tuple(numbers[3 + 2 * links :]), (near[0], near[1])
+    room = (listed.room[0], listed.room[1], listed.room[2])
+    for begin in range(0, links, BLOCK):
+        count = _linked(x, numbers[3:], begin, min(begin + BLOCK, links), near, room[0])
+        total += _add(count, pairs, room, x, v, u, par, (numbers[0], numbers[1]))
+    return -numbers[1] * total
+
+
+@kernel
+def energy_links(t, x, v, numbers, panels, listed):
+    """c1 Σ ψ over links."""
+    total, links = 0.0, np.int64(numbers[2])
+    for begin in range(0, links, BLOCK):
+        count = _linked(x, numbers[3:], begin, min(begin + BLOCK, links), listed.near, listed.room[0])
+        for k in range(count):
+            total += potential(listed.room[0, k], numbers[3 + 2 * links :], panels)
+    return numbers[0] * total
+
+
 @inlined
 def _sweep(start, rows, flock, r2, par, gains, pairs, room):
     """The forces of a flock (q, p, u) sorted into a grid."""

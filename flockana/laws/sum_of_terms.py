@@ -61,7 +61,7 @@ class SumOfTerms(Law):
         return u, rate
 
     def compiled(self, m: int) -> Compiled | None:
-        """Return the law's terms in compiled form; None if a term has none."""
+        """Return the law's terms in compiled form; None if a term has none, or needs agents unsorted beside a list."""
         if not overrides_consistently(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels: list[TermKernel] = []
@@ -70,7 +70,8 @@ class SumOfTerms(Law):
             if known is None:
                 return None
             kernels += [known] if isinstance(known, TermKernel) else known
-        return Compiled(tuple(kernels), self.moving)
+        form = Compiled(tuple(kernels), self.moving)
+        return None if form.reach and any(kernel.numbered for kernel in kernels) else form
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
         """Σ U^T, unchecked."""

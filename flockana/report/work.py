@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
 from flockana.base.interrupts import restore_interrupts
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import worker_pool
 from flockana.laws import DiscreteLaw
@@ -77,9 +78,7 @@ def check(task: Work) -> Done:
             if task.fixed:
                 return fixed_page(verify(task.name))
             item = scenario(task.name, task.seed)
-            run = item.run()
-            if run.status == "interrupted":
-                raise KeyboardInterrupt
+            run = ensure_uninterrupted(item.run())
             verdicts = tuple(item.verdict(name, run) for name in task.only) or item.verify(run)
             return scenario_page(item, run, verdicts, figures=task.figures)
     except FlockanaError as error:

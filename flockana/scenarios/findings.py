@@ -10,6 +10,7 @@ import numpy.typing as npt
 from flockana.base.errors import UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory as Trajectory
 from flockana.measures.metrics import giant_share
@@ -68,7 +69,8 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
 
 def rerun(run: Trajectory, law: Any, **options: Any) -> Trajectory:
     """Return the run of another law from the same start over the same time."""
-    return simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **options)
+    span = float(run.t[0]), float(run.t[-1])
+    return ensure_uninterrupted(simulate(law, run.q[0], run.p[0], span, **options))
 
 
 def same_accuracy(run: Trajectory) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.base.vectors import lengths
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
@@ -255,7 +256,8 @@ def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) ->
     """Return positions and velocities of the nonlinear flock, in the frame of the equilibrium."""
     times = flock.t + t
     span = float(times[0]), float(times[-1])
-    run = simulate(flock.law, flock.q + dq, flock.p + dp, span, t_eval=times, rtol=_RTOL)
+    start = flock.q + dq, flock.p + dp
+    run = ensure_uninterrupted(simulate(flock.law, *start, span, t_eval=times, rtol=_RTOL))
     return run.q - t[:, None, None] * flock.p, run.p - flock.p
 
 

@@ -15,6 +15,7 @@ from flockana.base.checks import ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.base.modules import modules, source_modules
 from flockana.base.seals import ensure_sealed
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.wrapped import wrappers_of
@@ -232,7 +233,7 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
         if callable(q0) or callable(p0):
             raise ArgumentError("the start is a function of a seed: expected Flock(law, q0, p0, t_span).verify(seed)")
         p = np.zeros(np.shape(q0)) if p0 is None else p0
-        return simulate(law, q0, p, T_SPAN if t_span is None else t_span)
+        return ensure_uninterrupted(simulate(law, q0, p, T_SPAN if t_span is None else t_span))
     if not isinstance(trajectory, Trajectory):
         if hasattr(trajectory, "drawn"):  # a flock, of a layer above
             raise ArgumentError("trajectory is a Flock: expected flock.run(seed), or flock.verify(seed)")

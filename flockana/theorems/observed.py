@@ -19,6 +19,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import ErrorFloors
 from flockana.dynamics.trajectory import Trajectory
@@ -247,7 +248,7 @@ class Observed(ResultCache):
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
     """Simulate a law and return the run with its numerical error; for the cases that errata show."""
-    return Observed.of(simulate(law, q0, p0, t_span, **options))
+    return Observed.of(ensure_uninterrupted(simulate(law, q0, p0, t_span, **options)))
 
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:

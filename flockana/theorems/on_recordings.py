@@ -15,6 +15,7 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import centres
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
@@ -180,7 +181,8 @@ def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
     """Return the law's solution from the recorded start, with enclosures that hold the recording."""
-    run = simulate(law, follow.q0, follow.p0, (float(rec.t[0]), float(rec.t[-1])), t_eval=rec.t)
+    span = float(rec.t[0]), float(rec.t[-1])
+    run = ensure_uninterrupted(simulate(law, follow.q0, follow.p0, span, t_eval=rec.t))
     seen = Observed.of(run)
     p = np.broadcast_to(follow.p, rec.q.shape)
     zeros = np.zeros(rec.q.shape)

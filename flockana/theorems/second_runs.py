@@ -15,6 +15,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics.between import Between
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
@@ -101,10 +102,8 @@ def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float
         longest = stats.get("max_step")
     if longest is not None:
         options["max_step"] = longest
-    made = simulate(run.law, run.q[0], run.p[0], span, t_eval=times, **options)
-    if made.status == "interrupted":
-        raise KeyboardInterrupt  # it is no doubt about the first run
-    return made
+    # an interrupted one is no doubt about the first run
+    return ensure_uninterrupted(simulate(run.law, run.q[0], run.p[0], span, t_eval=times, **options))
 
 
 def doubt_about(run: Trajectory) -> str:

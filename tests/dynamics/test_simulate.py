@@ -357,3 +357,31 @@ def test_an_absolute_tolerance_is_a_length_so_that_units_do_not_matter(method):
     slow = fl.rescale(law, time=2.0**-20)
     there = simulate(slow, q, p * 2.0**20, (0.0, 2.0**-20), method=method, rtol=1e-6, atol=1e-6)
     assert there.floors == run.in_units(1.0, 2.0**-20).floors
+
+
+def test_rk4_that_blows_up_fails_at_once_and_says_why():
+    """Its steps far beyond stability, cut where agents would fly out of range at once, are not cut without end."""
+    law = Algorithm2(gains=Gains(c2_gamma=2e5), target=StaticTarget((0.0, 0.0)))
+    q, p = [[0.0, 0.0], [5.0, 1.0], [3.0, 6.0]], [[1.0, 0.0], [0.0, 0.3], [0.2, 0.0]]
+    run = simulate(law, q, p, (0.0, 10.0), method="RK4", dt=0.01)
+    assert run.status == "failed"
+    assert "reduce dt" in run.message
+    assert (run.t[-1] < 0.2, run.stats["steps"] < 5000) == (True, True)
+
+
+def test_steps_that_collapse_at_a_collision_end_a_run_and_name_the_pair():
+    """A bound pair of a logarithmic potential, whose friction lets it spiral into the pole."""
+    pair = fl.pair_law("k*log(s)", adjacency="(1-s/r)**2", range=3, length=2, parameters={"k": 1.0})
+    law = Algorithm2(alpha=pair, target=StaticTarget((0.0, 0.0)))
+    run = simulate(law, [[-0.5, 0.0], [0.5, 0.0], [9.0, 9.0]], [[0.0, -0.7], [0.0, 0.7], [0.0, 0.0]], (0.0, 1e3))
+    assert run.status == "failed"
+    told = re.fullmatch(
+        r"steps collapse at t = (\S+): the last 10000 are \S+ long on average; the nearest agents, (\d) and (\d), are "
+        r"(\S+) apart",
+        run.message,
+    )
+    assert told is not None, run.message
+    assert {told[2], told[3]} == {"0", "1"}
+    assert float(told[1]) == pytest.approx(run.t[-1], rel=1e-5)
+    assert float(told[4]) == pytest.approx(np.linalg.norm(run.q[-1, 0] - run.q[-1, 1]), rel=1e-2)
+    assert run.stats["steps"] < 60_000

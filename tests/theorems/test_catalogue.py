@@ -84,3 +84,21 @@ def test_configurations_are_checked_in_all_units():
 def test_a_run_that_no_integrator_made_is_refused():
     with pytest.raises(ArgumentError, match="expected a run as simulate returned it"):
         verify("os-1", made_up(Algorithm1(), [PAIR, 2.0 * PAIR]))
+
+
+class Interrupted(Algorithm1):
+    """Ctrl-C at the fifth evaluation, and never again."""
+
+    def flow(self, t, q, p):
+        global LEFT
+        LEFT -= 1
+        if LEFT == 0:
+            raise KeyboardInterrupt
+        return super().flow(t, q, p)
+
+
+def test_an_interrupted_run_ends_a_verdict(monkeypatch):
+    """It is no run to judge, however much of it there is."""
+    monkeypatch.setitem(globals(), "LEFT", 200)
+    with pytest.raises(KeyboardInterrupt):
+        verify("os-1", law=Interrupted(), q0=[[0.0, 0.0], [8.0, 0.0]], p0=[[0.1, 0.0], [0.0, 0.0]], t_span=(0.0, 9.0))

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.terms.term import Derivatives, Term
+from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,11 @@ class LinkTerm(Term):
         par = self.pair.par
         forces_of = self.pair.kernels.sums(q.shape[1], par.size).forces_of
         return -self.damping * float(forces_of(q, p, *self._ends, par, self.stiffness, self.damping, u))
+
+    def compiled(self, m: int) -> TermKernel:  # noqa: D102
+        ends, sums = np.array(self.links, dtype=np.float64).ravel(), self.pair.kernels.sums(m, self.pair.par.size)
+        numbers = np.concatenate([[self.stiffness, self.damping, len(self.links)], ends, self.pair.par])
+        return TermKernel(sums.act_links, sums.energy_links, numbers, self.pair.panels, 0.0, numbered=True)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * float(self.pair.kernels.potential(q, *self._ends, self.pair.par, self.pair.panels))

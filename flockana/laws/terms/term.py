@@ -32,6 +32,8 @@ class TermKernel(NamedTuple):
         Chebyshev panels, if they read any.
     reach : float
         Within which they need all pairs; 0 if they need none.
+    numbered : bool
+        Whether they name agents by their numbers, so that agents must not be sorted.
     """
 
     act: Kernel
@@ -39,6 +41,7 @@ class TermKernel(NamedTuple):
     numbers: FloatArray
     panels: FloatArray
     reach: float
+    numbered: bool = False
 
     def on_agents(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
         """Run `act` of a term without pairs in a frame at rest.

@@ -45,3 +45,18 @@ test_bad_input = refused(
     (lambda: fl.simulate(LinkKeeping(((0, 1),)), Q, P, (0.0, 1.0)), r"link \(0, 1\) is 1.2 long"),
     (lambda: LinkKeeping(((0, 7),)).acceleration(0.0, Q, P), "name agent 7"),
 )
+
+
+def test_it_is_compiled_beside_terms_without_a_list_alone():
+    rng = np.random.default_rng(1)
+    law = LinkKeeping(((0, 1), (2, 1)), r=2.0, k=1.5, c=0.5)
+    q, p = rng.uniform(0.0, 1.0, (4, 3)), rng.normal(size=(4, 3))
+    ours, plain = (fl.simulate(law, q, p, (0.0, 3.0), method=name) for name in ("DOP853", "scipy-DOP853"))
+    assert ours.stats["steps"] == plain.stats["steps"]
+    np.testing.assert_allclose(ours.q, plain.q, atol=1e-9)
+    np.testing.assert_allclose(ours.extra["work"], plain.extra["work"], atol=1e-8)
+    assert np.abs(ours.energy_residual).max() < 1e-6
+    assert law.compiled(3) is not None
+    listed = fl.PairTerm(fl.AlphaInteraction(), 1.0, 1.0)
+    both = type("Both", (LinkKeeping,), {"terms": (*law.terms, listed)})(law.links)
+    assert both.compiled(3) is None  # agents are sorted for the list, and links name them by their numbers
