@@ -143,9 +143,9 @@ from .stability.modes import Mode as Mode
 from .stability.slowest import slowest_modes as slowest_modes
 from .theorems.catalogue import theorem as theorem
 from .theorems.catalogue import theorems as theorems
-from .theorems.catalogue import verify as verify
 from .theorems.errata import errata as errata
 from .theorems.own import claim as claim
 from .theorems.theorem import Theorem as Theorem
 from .theorems.theorem import Tolerances as Tolerances
 from .theorems.theorem import Verdict as Verdict
+from .theorems.verification import verify as verify

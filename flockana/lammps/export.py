@@ -26,6 +26,7 @@ from flockana.lammps.table import inner_cutoff, pair_table
 from flockana.laws.discrete import ensure_law
 from flockana.laws.law import Law
 from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.with_start import WithStart
 from flockana.measures.metrics import min_distance
 
 CONSENSUS = ("missing", "nearest")
@@ -110,9 +111,8 @@ def export_lammps(
     >>> [path.name for path in result.files], result.force_error < 1e-4, len(result.missing)
     (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
     """
-    flock = law.scenario(seed) if hasattr(law, "scenario") else law
-    if hasattr(flock, "q0"):  # a flock or a scenario, of a layer above
-        law, q0, p0, t_span = flock.law, flock.q0, flock.p0, flock.t_span
+    if isinstance(law, WithStart):
+        law, q0, p0, t_span = law.law_and_start(seed)
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
     _ensure_own(folder / name for name in (script.SCRIPT, script.DATA, script.TABLE, script.README))

@@ -9,18 +9,21 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws import ensure_law
+from flockana.laws.with_start import WithStart
 from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario
 from flockana.theorems import Tolerances
-from flockana.theorems.catalogue import T_SPAN
-from flockana.theorems.together import Verdicts, theorems_about, verify_together
+from flockana.theorems.evidence import NotEvidence
+from flockana.theorems.on_runs import RunEvidence, theorems_about
+from flockana.theorems.verdicts import Verdicts
+from flockana.theorems.verification import T_SPAN, ensure_tolerances
 
 _SOURCE = "a flock of the user's own"
 
 
 @dataclass(frozen=True, eq=False)
-class Flock:
+class Flock(NotEvidence, WithStart):
     """A law with a start and a time span.
 
     Parameters
@@ -39,6 +42,8 @@ class Flock:
     >>> flock.scenario(seed=1).q0.shape, flock.run(seed=1).status
     ((5, 2), 'complete')
     """
+
+    advice = "trajectory is a Flock: expected flock.run(seed), or flock.verify(seed)"
 
     law: Any
     q0: Any
@@ -67,6 +72,9 @@ class Flock:
         """Return positions and velocities, each of shape (n, m)."""
         return draw_start(self.q0, self.p0, ensure_seed(seed))
 
+    def law_and_start(self, seed: int) -> tuple[Any, Any, Any, tuple[float, float]]:  # noqa: D102
+        return self.law, *self.start(seed), self.t_span
+
     def scenario(self, seed: int = 0, **parameters: Any) -> Scenario:
         """Return the flock as a scenario.
 
@@ -91,7 +99,7 @@ class Flock:
     def verify(self, seed: int = 0, *, tolerances: Tolerances | None = None, progress: bool = False) -> Verdicts:
         """Simulate the flock and check every theorem that is about its law."""
         run = self.run(seed, progress=progress)
-        return verify_together(run, tolerances=tolerances, subject=self.name, progress=progress)
+        return RunEvidence(run).judge_all(ensure_tolerances(tolerances), self.name, progress=progress)
 
 
 def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = None, t_span: Any = None) -> Any:

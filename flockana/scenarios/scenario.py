@@ -14,6 +14,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws import DiscreteLaw, Law
+from flockana.laws.with_start import WithStart
 from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.start import LazyField
@@ -37,7 +38,7 @@ class Report:
 
 
 @dataclass(frozen=True)
-class Scenario:
+class Scenario(WithStart):
     """Published simulation, ready to run.
 
     Parameters
@@ -114,6 +115,9 @@ class Scenario:
         """Ids of the theorems that are checked on the scenario."""
         named = (key.split(":")[0] for key in {**self.expected, **self.shipped})
         return tuple(name for name in dict.fromkeys(named) if name != SOURCE)
+
+    def law_and_start(self, seed: int) -> tuple[Any, Any, Any, tuple[float, float]]:  # noqa: D102
+        return self.law, self.q0, self.p0, self.t_span
 
     def run(self, *, progress: bool = False) -> Trajectory:
         """Simulate the scenario.

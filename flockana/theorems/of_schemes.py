@@ -13,6 +13,7 @@ import numpy as np
 
 from flockana.recorded.steps import predicted
 from flockana.solvers.fixed_steps import FixedSteps
+from flockana.theorems.catalogue import theorem_modules
 from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, judged
 
@@ -22,8 +23,6 @@ _FINE = 8  # times finer than usual the flow is integrated
 @cache
 def claims_on_steps() -> Mapping[str, tuple[str, Callable[[Observed], int]]]:
     """Return, by theorem, what holds of a scheme's run and from which sample on, as its module's `STEPS` says."""
-    from flockana.theorems.catalogue import theorem_modules
-
     return {name: said for module in theorem_modules() for name, said in getattr(module, "STEPS", {}).items()}
 
 

@@ -20,12 +20,11 @@ from flockana.dynamics.simulate import simulate
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
-from flockana.theorems.catalogue import theorem
+from flockana.theorems.evidence import Evidence
 from flockana.theorems.observed import Observed, with_resolution
-from flockana.theorems.of_schemes import is_about_steps, on_steps
+from flockana.theorems.on_runs import examine_observed, theorems_about
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
-from flockana.theorems.theorem import HypothesisStatus, Known, Theorem, Verdict
-from flockana.theorems.together import Verdicts, theorems_about
+from flockana.theorems.theorem import HypothesisStatus, Known, Theorem
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Tolerances, Trajectory, lengths, vacuous
 
 DEFINITIONS = ("alpha-flocking", "alpha-flocking-strict", "os-5-terminal")  # which need no law
@@ -93,78 +92,70 @@ def _unit(x: FloatArray) -> FloatArray:
     return np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
 
 
-def verify_recording(
-    item: Theorem,
-    rec: Recording,
-    tolerances: Tolerances,
-    *,
-    law: Any = None,
-    d: float | None = None,
-    r: float | None = None,
-    subject: str = "",
-) -> Verdict:
-    """Return the verdict of a theorem on a recording, under a law or, of definitions about samples, without one."""
-    if item.kind != "trajectory":
-        raise ArgumentError(f"{item.id} is not about motion: expected a theorem that is checked on a run")
-    rec.ensure_complete("a verdict")
-    rec = rec.measured
-    if law is None:
-        return _of_samples(item, rec, tolerances, d, r, subject)
-    if d is not None or r is not None:
-        raise ArgumentError("law and d or r are given: expected one of them; a law has its own scale and range")
-    law = ensure_law(law)
-    law.check_dimension(rec.m)
-    law.check_agents(rec.n)
-    follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
-    first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail, None, "enclosed")
-    named = f"{_named(rec, subject)}: {rec.accuracy}"
-    if follow.status == "unmet":
-        claims = item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)
-        return item.verdict(((first,), claims), tolerances, named)
-    seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
-    examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    known = with_resolution(*examined(item, seen, tolerances), seen)
-    return item.verdict(_weighed(known, rec, first), tolerances, named)
+class RecordingEvidence(Evidence):
+    """A recording, with the law that is said to have made it, or without a law the scale and the range of nets."""
 
+    def __init__(self, rec: Recording, law: Any = None, d: float | None = None, r: float | None = None) -> None:
+        self.rec, self.law, self.d, self.r, self.until = rec, law, d, r, float(rec.t[-1])
 
-def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: Any = None, **case: Any) -> Verdicts:
-    """Return the verdicts of all theorems about a law on a recording; without a law, of definitions about samples."""
-    rec.ensure_complete("a verdict")
-    rec = rec.measured
-    if law is None:
-        return Verdicts(verify_recording(theorem(name), rec, tolerances, **case) for name in DEFINITIONS)
-    p = rec.p if rec.p is not None else rec.with_velocities().p
-    assert p is not None
-    names = theorems_about(ensure_law(law), rec.q[0], p[0], float(rec.t[0]))
-    return Verdicts(verify_recording(theorem(name), rec, tolerances, law=law, **case) for name in names).about_the_law()
-
-
-def _of_samples(
-    item: Theorem, rec: Recording, tolerances: Tolerances, d: float | None, r: float | None, subject: str
-) -> Verdict:
-    """Return the verdict of a definition about samples, with nothing assumed between them."""
-    if item.id not in DEFINITIONS:
-        raise ArgumentError(
-            f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
-            f"{', '.join(DEFINITIONS)} are judged with d= and r="
+    def describe(self, subject: str) -> str:  # noqa: D102
+        rec = self.rec.measured
+        source = f" ({rec.source})" if rec.source else ""
+        name = subject or f"a recording{source}"
+        return (
+            f"{name}: {rec.accuracy}" if self.law is not None else f"{name}, at its samples: {self._moving().accuracy}"
         )
-    if d is None and r is None:
-        raise ArgumentError("no law, no d and no r: expected law=..., or the scale d and the range r of nets")
-    if rec.p is None:
-        rec = rec.with_velocities()
-    run = rec.trajectory(d=d, r=r)
-    place, speed = _widths(rec)
-    errors = Errors(run.t, *_half_widths(place, speed))
-    doubt = "" if len(run.t) > 1 else "one sample shows no motion"
-    seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
-    status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
-    stated = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
-    known = _weighed(with_resolution(*item.examine(seen, tolerances), seen), rec, stated)
-    return item.verdict(known, tolerances, f"{_named(rec, subject)}, at its samples: {rec.accuracy}")
 
+    def theorem_ids(self) -> tuple[str, ...]:  # noqa: D102
+        self.rec.ensure_complete("a verdict")
+        if self.law is None:
+            return DEFINITIONS
+        rec = self._moving()
+        assert rec.p is not None
+        return theorems_about(ensure_law(self.law), rec.q[0], rec.p[0], float(rec.t[0]))
 
-def _named(rec: Recording, subject: str) -> str:
-    return subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
+    def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
+        if item.kind != "trajectory":
+            raise ArgumentError(f"{item.id} is not about motion: expected a theorem that is checked on a run")
+        self.rec.ensure_complete("a verdict")
+        rec = self.rec.measured
+        if self.law is None:
+            return self._examine_samples(item, tolerances)
+        if self.d is not None or self.r is not None:
+            raise ArgumentError("law and d or r are given: expected one of them; a law has its own scale and range")
+        law = ensure_law(self.law)
+        law.check_dimension(rec.m)
+        law.check_agents(rec.n)
+        follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
+        first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail, None, "enclosed")
+        if follow.status == "unmet":
+            return (first,), item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)
+        seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
+        return _weighed(examine_observed(item, seen, tolerances), rec, first)
+
+    def _moving(self) -> Recording:
+        """Return the recording with velocities."""
+        rec = self.rec.measured
+        return rec if rec.p is not None else rec.with_velocities()
+
+    def _examine_samples(self, item: Theorem, tolerances: Tolerances) -> Known:
+        """Return what a definition about samples says of them, with nothing assumed between them."""
+        if item.id not in DEFINITIONS:
+            raise ArgumentError(
+                f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
+                f"{', '.join(DEFINITIONS)} are judged with d= and r="
+            )
+        if self.d is None and self.r is None:
+            raise ArgumentError("no law, no d and no r: expected law=..., or the scale d and the range r of nets")
+        rec = self._moving()
+        run = rec.trajectory(d=self.d, r=self.r)
+        place, speed = _widths(rec)
+        errors = Errors(run.t, *_half_widths(place, speed))
+        doubt = "" if len(run.t) > 1 else "one sample shows no motion"
+        seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
+        status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
+        stated = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
+        return _weighed(with_resolution(*item.examine(seen, tolerances), seen), rec, stated)
 
 
 def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:

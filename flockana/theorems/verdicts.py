@@ -1,4 +1,4 @@
-"""All theorems about a law at once: which they are, and their verdicts on a run in one table."""
+"""Verdicts of several theorems on one case, as one table."""
 
 from __future__ import annotations
 
@@ -6,15 +6,10 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from flockana.base.files import atomic_write
-from flockana.base.progress import progress_bar
 from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
-from flockana.theorems.catalogue import catalogue, theorem, verify
-from flockana.theorems.of_schemes import claims_on_steps, is_about_steps
-from flockana.theorems.theorem import Theorem, Verdict
-from flockana.theorems.toolkit import Observed, Tolerances, Trajectory, unmet
+from flockana.theorems.catalogue import catalogue, theorem
+from flockana.theorems.theorem import Verdict, unmet
 
 if TYPE_CHECKING:
     import pandas
@@ -97,36 +92,6 @@ def _deciding(verdict: Verdict) -> str:
     return next((c.name for c in verdict.main_claims if c.status == verdict.status), "")
 
 
-def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
-    """Return the ids of theorems whose law hypothesis a law meets; errata are left out."""
-    still = np.zeros(np.shape(q0))
-    seen = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), still[None], law))
-    return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, seen))
-
-
-def _is_about(item: Theorem, seen: Observed) -> bool:
-    if item.kind != "trajectory":
-        return False
-    return (
-        item.law is None
-        or item.law(seen).status != "unmet"
-        or (item.id in claims_on_steps() and is_about_steps(item, seen))
-    )
-
-
 def _cut(text: str) -> str:
     """Return a text that fits a column: a hypothesis can be a sentence."""
     return text if len(text) <= _COLUMN else f"{text[: _COLUMN - 1]}…"
-
-
-def verify_together(
-    run: Trajectory, *, tolerances: Tolerances | None = None, subject: str = "", progress: bool = False
-) -> Verdicts:
-    """Check every theorem about the law of a run."""
-    names = theorems_about(run.law, run.q[0], run.p[0], float(run.t[0]))
-    made: list[Verdict] = []
-    with progress_bar(len(names), enabled=progress) as advance:
-        for name in names:
-            advance(len(made), name)
-            made.append(verify(theorem(name), run, tolerances=tolerances, subject=subject))
-    return Verdicts(made).about_the_law()

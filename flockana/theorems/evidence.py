@@ -1,0 +1,74 @@
+"""Evidence: what theorems are judged on, and the few things that each kind of it offers."""
+
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.progress import progress_bar
+from flockana.theorems.catalogue import theorem
+from flockana.theorems.theorem import Known, Theorem, Tolerances, Verdict
+from flockana.theorems.verdicts import Verdicts
+
+
+class Evidence(ABC):
+    """A run, a map's run, a recording, a tube, a state, or nothing at all, as theorems are judged on it.
+
+    Attributes
+    ----------
+    law : Law or None
+        The law that it is evidence about, None if no law is known.
+    until : float or None
+        Up to when it shows motion, None where it shows none.
+    """
+
+    law: Any = None
+    until: float | None = None
+
+    @abstractmethod
+    def examine(self, item: Theorem, tolerances: Tolerances) -> Known:
+        """Return hypotheses and claims of a theorem, from enclosures of observables; raise if it is no case of it."""
+
+    def describe(self, subject: str) -> str:
+        """Return what a verdict says it was checked on."""
+        return subject
+
+    def theorem_ids(self) -> tuple[str, ...]:
+        """Return the ids of theorems that are judged where none is named."""
+        return ()
+
+    def judge(self, item: Theorem, tolerances: Tolerances, subject: str = "") -> Verdict:
+        """Return the verdict of a theorem."""
+        return item.verdict(self.examine(item, tolerances), tolerances, self.describe(subject))
+
+    def judge_all(self, tolerances: Tolerances, subject: str = "", *, progress: bool = False) -> Verdicts:
+        """Return the verdicts of all theorems about the law; without a law, of definitions about samples."""
+        verdicts: list[Verdict] = []
+        with progress_bar(len(names := self.theorem_ids()), enabled=progress) as advance:
+            for name in names:
+                advance(len(verdicts), name)
+                verdicts.append(self.judge(theorem(name), tolerances, subject))
+        return Verdicts(verdicts) if self.law is None else Verdicts(verdicts).about_the_law()
+
+
+class NoCase(Evidence):
+    """The evidence of theorems that are decided by themselves."""
+
+    def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
+        return item.examine(tolerances)
+
+
+class State(Evidence):
+    """Positions, with the scale and the range of their net."""
+
+    def __init__(self, q: Any, d: Any, r: Any) -> None:
+        self.q: FloatArray = ensure_points("q", q)
+        self.d, self.r = ensure_positive("d", d), ensure_positive("r", r)
+
+    def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
+        return item.examine(self.q, self.d, self.r, tolerances)
+
+
+class NotEvidence:
+    """Base of what users take for evidence: `advice` is the message that `verify` refuses it with."""
+
+    advice: ClassVar[str]

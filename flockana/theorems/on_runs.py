@@ -1,0 +1,66 @@
+"""Verdicts on runs: the law is the theorem's, the run is as simulated, and a second run encloses its error."""
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.seals import ensure_sealed
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.wrapped import wrappers_of
+from flockana.theorems.catalogue import catalogue
+from flockana.theorems.evidence import Evidence
+from flockana.theorems.fits import ensure_fits
+from flockana.theorems.observed import Observed, with_resolution
+from flockana.theorems.of_schemes import claims_on_steps, is_about_steps, on_steps
+from flockana.theorems.theorem import Hypothesis, Known, Theorem, Tolerances
+
+_RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"
+_REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are judged as Recording(t, q, p, bound=...)"
+
+
+class RunEvidence(Evidence):
+    """A run of a law or of a map."""
+
+    def __init__(self, run: Trajectory) -> None:
+        self.run, self.law, self.until = run, run.law, float(run.t[-1])
+
+    def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
+        ensure_sealed("trajectory", self.run, _RUN, _REMEDY)
+        if wrappers_of(self.law) and not (item.wrapped and self.law is self.law.continuous):
+            return _of_another_law(item, self.law)
+        ensure_fits(self.run)
+        return examine_observed(item, Observed.of(self.run), tolerances)
+
+    def theorem_ids(self) -> tuple[str, ...]:  # noqa: D102
+        return theorems_about(self.law, self.run.q[0], self.run.p[0], float(self.run.t[0]))
+
+
+def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
+    """Return what a theorem says of an observed run, in steps of a scheme or along the flow."""
+    examine = on_steps if is_about_steps(item, seen) else Theorem.examine
+    return with_resolution(*examine(item, seen, tolerances), seen)
+
+
+def _of_another_law(item: Theorem, law: Any) -> Known:
+    """Return the vacuous claims on a run of a wrapped law, which a theorem about the bare law does not cover."""
+    around = ", ".join(type(one).__name__ for one in wrappers_of(law))
+    detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
+    missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
+    return (missed,), item.vacuous_claims(missed)
+
+
+def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
+    """Return the ids of theorems whose law hypothesis a law meets; errata are left out."""
+    still = np.zeros(np.shape(q0))
+    seen = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), still[None], law))
+    return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, seen))
+
+
+def _is_about(item: Theorem, seen: Observed) -> bool:
+    if item.kind != "trajectory":
+        return False
+    return (
+        item.law is None
+        or item.law(seen).status != "unmet"
+        or (item.id in claims_on_steps() and is_about_steps(item, seen))
+    )
