@@ -7,16 +7,21 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from flockana.base.errors import ArgumentError
+from flockana.base.kept import kept_data
 from flockana.report.tables import column, headed_table
-from flockana.report.text import source_name
-from flockana.scenarios import scenario, scenarios
-from flockana.theorems import theorem, theorems
 
 _KINDS = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
 
 
 def scenario_entries() -> list[dict[str, Any]]:
     """Return the catalogue of scenarios as plain data."""
+    entries: list[dict[str, Any]] = kept_data("scenarios", _scenario_entries)
+    return entries
+
+
+def _scenario_entries() -> list[dict[str, Any]]:
+    from flockana.scenarios import scenario, scenarios
+
     items = map(scenario, scenarios())
     return [
         {
@@ -37,6 +42,14 @@ def scenario_entries() -> list[dict[str, Any]]:
 
 def theorem_entries() -> list[dict[str, Any]]:
     """Return the catalogue of theorems as plain data; statuses are those expected of it itself or on scenarios."""
+    entries: list[dict[str, Any]] = kept_data("theorems", _theorem_entries)
+    return entries
+
+
+def _theorem_entries() -> list[dict[str, Any]]:
+    from flockana.scenarios import scenario, scenarios
+    from flockana.theorems import theorem, theorems
+
     expected: dict[str, set[str]] = {name: set() for name in theorems()}
     for item in map(scenario, scenarios()):
         for key, status in item.expected.items():
@@ -52,6 +65,8 @@ def theorem_entries() -> list[dict[str, Any]]:
 
 def _first(references: Sequence[str]) -> str:
     """Return the first source that is not flockana itself."""
+    from flockana.report.text import source_name
+
     return next((source_name(key) for key in references if key != "flockana"), "flockana")
 
 
@@ -83,6 +98,8 @@ def short_list(entries: Sequence[dict[str, Any]]) -> str:
 
 def scenario_table(names: Iterable[str]) -> Table:
     """Return scenarios with size, law and time span, title, source, theorems."""
+    from flockana.scenarios import scenario
+
     table = headed_table(column("scenario"), Column("what", ratio=1, overflow="fold"), show_lines=True)
     for name in names:
         item = scenario(name)
@@ -96,6 +113,8 @@ def scenario_table(names: Iterable[str]) -> Table:
 
 def theorem_table(names: Iterable[str]) -> Table:
     """Return theorems with title, what each is checked on, source."""
+    from flockana.theorems import theorem
+
     what = Column("what, and where it is printed", ratio=1, overflow="fold")
     table = headed_table(Column("theorem", no_wrap=True, style="bold"), what, column("checked on"))
     for name in names:

@@ -1,0 +1,42 @@
+"""Plain data that are computed once for an installation and kept in the user's cache folder."""
+
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from flockana.base.errors import FileError
+from flockana.base.files import write_atomic
+
+ROOT = Path(__file__).parents[1]  # of the package
+
+
+def kept_data(name: str, compute: Callable[[], Any]) -> Any:
+    """Return what a function computes, from the cache folder as long as no file of the package is another."""
+    path = None
+    with suppress(OSError, ValueError, RuntimeError):  # RuntimeError: there is no home folder
+        path = _folder() / f"{name}-{_installation()}.json"
+        return json.loads(path.read_text("utf-8"))
+    data = compute()
+    if path is not None:
+        with suppress(OSError, FileError):
+            path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            for other in path.parent.glob(f"{name}-*.json"):
+                other.unlink(missing_ok=True)
+            write_atomic(path, json.dumps(data))
+    return data
+
+
+def _folder() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "lists"
+
+
+def _installation() -> str:
+    """Return a digest of the names, sizes and times of the package's files."""
+    files = ((path, path.stat()) for path in sorted(ROOT.rglob("*.*")) if path.suffix != ".pyc")
+    known = [sys.version, *((str(path), stat.st_size, stat.st_mtime_ns) for path, stat in files)]
+    return hashlib.sha256(repr(known).encode()).hexdigest()[:16]
