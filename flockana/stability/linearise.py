@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, get_args, overload
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from flockana.base.checks import (
     FloatArray,
     ensure_finite_scalar,
     ensure_flag,
+    ensure_known,
     ensure_links,
     ensure_points,
     ensure_positive,
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
 RESIDUAL = 1e-9  # of the force scale: what counts as an equilibrium, as in `flockana.equilibria`
 _LATER = 0.7310585786  # of the flock's own time: after it a steady motion must still have the same Jacobian
 _STEADY = 1e-9  # relative
+Side = Literal["inner", "outer"]
+SIDES = get_args(Side)
+_CORNER, _BESIDE = 1e-10, 2e-10  # relative: how near to a kink a pair is at it, and where the law is taken beside it
+_FEIGNED = 1e-6  # residual that a step aside may leave
 
 
 class _Options(TypedDict, total=False):
@@ -41,6 +46,7 @@ class _Options(TypedDict, total=False):
     force_tolerance: float
     allow_residual: bool
     zero: float | None
+    side: Side | None
 
 
 @overload
@@ -57,6 +63,7 @@ def linearise(
     force_tolerance: float = RESIDUAL,
     allow_residual: bool = False,
     zero: float | None = None,
+    side: Side | None = None,
 ) -> Linearisation | MapLinearisation:
     """Linearise a law or a map about an equilibrium, after checking that it is one.
 
@@ -89,6 +96,9 @@ def linearise(
     zero : float, optional
         See `Linearisation`; by default what rounding and the force left here may feign, at most 1e-8, or what takes in
         the soft modes that an `Equilibrium` tells of (a link that lets go at r is as stiff as the solver left it).
+    side : {"inner", "outer"}, optional
+        Where pairs stand at a kink or a jump of the law, of which there is no linearisation: take the force as it is
+        just inside that distance, or just outside. By default that is refused.
 
     Returns
     -------
@@ -97,7 +107,8 @@ def linearise(
     Raises
     ------
     ArgumentError
-        If the state is no equilibrium, the law has no Jacobian there, or an argument is bad.
+        If the state is no equilibrium, the law has no Jacobian there or not one (a pair at a kink or a jump), or an
+        argument is bad.
 
     Examples
     --------
@@ -109,7 +120,7 @@ def linearise(
     True
     """
     if isinstance(ensure_law(law), DiscreteLaw):
-        how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero}
+        how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero, "side": side}
         return _linearised_map(law, equilibrium, p, how)
     if isinstance(equilibrium, Equilibrium):
         ensure_unedited_equilibrium("equilibrium", equilibrium)
@@ -117,18 +128,19 @@ def linearise(
     if p is None:
         p = np.zeros_like(q) if law.target is None else np.tile(law.target.rate(t), (len(q), 1))
     q, p = ensure_state(q, p)
+    at, slack = _on_side(law, q, side)
     ensure_flag("allow_residual", allow_residual)
     tolerance = ensure_positive("force_tolerance", force_tolerance)
-    matrix = _finite_jacobian(law, t, q, p)
-    zero = _zero_threshold(law, equilibrium, t, q, p, matrix) if zero is None else ensure_positive("zero", zero)
-    residual = _residual(law, t, q, p, matrix)
-    if not residual <= tolerance and not allow_residual:
+    matrix = _finite_jacobian(law, t, at, p)
+    zero = _zero_threshold(law, equilibrium, t, at, p, matrix) if zero is None else ensure_positive("zero", zero)
+    residual = _residual(law, t, at, p, matrix)
+    if not residual <= max(tolerance, slack) and not allow_residual:
         raise ArgumentError(
             f"the state is no equilibrium of {law.title}: its residual is {residual:.3g}, expected at most "
             f"{tolerance:g}; start from find_equilibrium(...), or ask for allow_residual=True"
         )
     if not allow_residual:
-        _ensure_steady(law, t, q, p, matrix)
+        _ensure_steady(law, t, at, p, matrix)
     if links is None:  # pairs within the law's interaction range, if it has one
         links = links_within(q, law.pair.range) if law.pair else ()
         links = getattr(equilibrium, "links", links)
@@ -168,6 +180,25 @@ def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: Floa
     if soft == 0 or row == 0.0 or (soft < sizes.size and 2.0 * sizes[soft - 1] >= sizes[soft]):
         return zero
     return max(zero, 2.0 * float(sizes[soft - 1]) / row)
+
+
+def _on_side(law: Law, q: FloatArray, side: Side | None) -> tuple[FloatArray, float]:
+    """Return positions at which the law is smooth, and the residual that this may feign; refused without a side."""
+    # velocities are equal: a kink of the adjacency, whose value alone counts, is none of the linear flock
+    corners = [one for one in law.corners_at(q, _CORNER) if (one.corner.part, one.corner.kind) != ("adjacency", "kink")]
+    if side is not None:
+        ensure_known("side", side, SIDES)
+    if not corners:
+        return q, 0.0
+    if side is None:
+        first, more = corners[0], f", and {len(corners) - 1} more" if len(corners) > 1 else ""
+        raise ArgumentError(
+            f"agents {first.i} and {first.j} are {first.distance:.9g} apart, where {first.name} has no slope "
+            f"({first.corner}){more}: expected pairs within the pieces of the law; "
+            'side="inner" or side="outer" takes the law as it is just inside or outside'
+        )
+    centre = q.mean(axis=0)
+    return centre + (1.0 + (_BESIDE if side == "outer" else -_BESIDE)) * (q - centre), _FEIGNED
 
 
 def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_array:

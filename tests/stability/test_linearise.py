@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from flockana import Algorithm3, Law, Sphere, Wall, find_equilibrium, linearise, rescale, simulate
+from flockana import (
+    Algorithm3,
+    DeadZoneFlocking,
+    DeadZoneInteraction,
+    Law,
+    Sphere,
+    Wall,
+    find_equilibrium,
+    linearise,
+    pair_law,
+    rescale,
+    simulate,
+)
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
 from flockana.equilibria.potential import Potential
@@ -313,3 +325,40 @@ def test_a_link_that_lets_go_at_r_is_a_soft_mode_as_the_equilibrium_says(gap):
     assert (found.index, found.zero_modes) == (4, 1)
     assert sum(mode.name.startswith("soft") for mode in flock.zero_modes) == 1
     assert sum(mode.decay_rate < 0.0 for mode in flock.modes) == 4
+
+
+KINKED = Algorithm1(
+    pair_law(
+        "(1+k)*(s-d)**2/2 + k*Abs(s-d)*(s-d)", range=6.0, length=2.0, parameters={"k": 0.2}, adjacency="(1-s/r)**2"
+    )
+)
+
+
+def test_a_kink_is_refused_and_each_side_has_its_own_stiffness():
+    """S6: V'' = 1 + k ∓ 2k on the sides of d, times the gain; the pair swings by k₁ + k₁ = 2 k₁ along it."""
+    with pytest.raises(ArgumentError, match="agents 0 and 1 are 2 apart, where the pair law has no slope"):
+        linearise(KINKED, [[0.0, 0.0], [2.0, 0.0]])
+    for side, stiffness in (("inner", 0.8), ("outer", 1.6)):
+        found = linearise(KINKED, [[0.0, 0.0], [2.0, 0.0]], side=side)
+        assert found.stiffness[0, 0] == pytest.approx(KINKED.gains.c1_alpha * stiffness, rel=1e-9)
+        assert [mode.name for mode in found.zero_modes] == ["translation x", "translation y", "rotation"]
+        assert found.q.tolist() == [[0.0, 0.0], [2.0, 0.0]]
+    with pytest.raises(ArgumentError, match=r"side.*'left'"):
+        linearise(KINKED, [[0.0, 0.0], [2.0, 0.0]], side="left")
+
+
+def test_a_kink_elsewhere_or_a_pair_beside_it_is_smooth():
+    far = linearise(KINKED, [[0.0, 0.0], [2.0 * (1.0 + 1e-8), 0.0]], allow_residual=True)
+    assert far.stiffness[0, 0] == pytest.approx(KINKED.gains.c1_alpha * 1.6, rel=1e-6)
+    assert linearise(Algorithm1(), [[0.0], [7.0]], side="inner").decay_rate > 0.0  # no kink: the side does not matter
+
+
+def test_a_jump_of_the_force_has_a_side_at_rest_alone():
+    """The dead zone with its printed jumps: at its edge the force is 0 inside, and pushes at once outside."""
+    law = DeadZoneFlocking(interaction=DeadZoneInteraction(ramp=0.0, k1=0.0))
+    q = [[0.0, 0.0], [law.interaction.d1, 0.0]]
+    with pytest.raises(ArgumentError, match=r"apart, where .* jumps at s = 3.5"):
+        linearise(law, q)
+    assert abs(linearise(law, q, side="outer").stiffness).max() == 0.0
+    with pytest.raises(ArgumentError, match="no equilibrium"):
+        linearise(law, q, side="inner")
