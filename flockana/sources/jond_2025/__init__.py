@@ -1,4 +1,4 @@
-"""Bearing-distance flocking (Jond 2025): zone-based flocking, the minimal model, errata J1 to J18."""
+"""Bearing-distance flocking (Jond 2025): zone-based flocking, the minimal model, errata J1 to J19."""
 
 from flockana.base.lazy import attach_stub
 

@@ -1,0 +1,59 @@
+"""Erratum J19: as "globally reachable" is defined, a tree's root is reached from nowhere and a star not connected."""
+
+from itertools import product
+from typing import Any
+
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
+
+_NODES = 5
+
+
+def out_trees(n: int, root: int = 0) -> list[Any]:
+    """Return all directed trees on n labelled nodes whose edges (j, i), from j to i, lead away from a root."""
+    import networkx
+
+    trees = map(networkx.from_prufer_sequence, product(range(n), repeat=n - 2))
+    return [networkx.bfs_tree(tree, root) for tree in trees]
+
+
+def globally_reachable(graph: Any) -> set[int]:
+    """Return the nodes to which a sequence of edges leads from every other node: the printed definition."""
+    import networkx
+
+    return {i for i in graph if len(networkx.ancestors(graph, i)) == len(graph) - 1}
+
+
+@erratum(
+    "J19",
+    source="Jond, bearing-distance flocking, section 4, definitions on graphs",
+    expected={"refuted": "root star", "verified": "corrected"},
+    corrected=("corrected",),
+)
+def theorem(tolerances: Tolerances) -> list[Claim]:
+    """An edge (j, i) leads from j to i, and node i is called globally reachable if edges lead to it from all others,
+    which is to be the root of a spanning tree; a graph is connected if it has such a node. In a tree that leads away
+    from its root the root is reached from nowhere. Right is that edges lead from the root to all others.
+    """
+    trees = out_trees(_NODES)
+    reached = [globally_reachable(tree) for tree in trees]
+    roots, connected = sum(0 in nodes for nodes in reached), sum(map(bool, reached))
+    star = next(tree for tree in trees if tree.out_degree(0) == _NODES - 1)
+    from_root = sum(globally_reachable(tree.reverse()) == {0} for tree in trees)
+    return [
+        exact("root", roots == len(trees)).described(
+            computed=roots,
+            stated=f"the root of each of the {len(trees)} trees on {_NODES} nodes is globally reachable",
+            detail=f"the root is globally reachable in {roots} of {len(trees)}",
+        ),
+        exact("star", connected == len(trees)).described(
+            computed=connected,
+            stated="a graph with a spanning tree is connected as defined",
+            witness=sorted(star.edges),
+            detail=f"{connected} of {len(trees)} have a globally reachable node: the paths; a star has none",
+        ),
+        exact("corrected", from_root == len(trees)).described(
+            computed=from_root,
+            stated="from the root edges lead to every other node",
+            detail=f"so it is in all {len(trees)}, and from no other node",
+        ),
+    ]
