@@ -9,7 +9,6 @@ from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems import Verdict
 
 THOUSANDTH = 1e-3  # of a run's tolerances
@@ -20,7 +19,7 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
     """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too."""
     # The case, a scenario or a counterexample, has a law, a start and options of `simulate`.
     # A map has no tolerance: its verdict stays as it is.
-    if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
+    if case.law.is_map or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
     options = tightened_options(case.options)
     run = ensure_uninterrupted(simulate(case.law, case.q0, case.p0, case.t_span, **options))

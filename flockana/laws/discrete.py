@@ -42,6 +42,7 @@ class DiscreteLaw(LawOfMotion):
     in_place: bool = False
 
     dt: float
+    is_map = True
     approximates: ClassVar[bool] = False  # whether it integrates `law`, and is no law of its own
     steps_at_once: ClassVar[int] = 1  # at most, however quick they are
     private: ClassVar[tuple[str, ...]] = ()  # names in the memory that a run does not record

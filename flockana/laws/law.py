@@ -85,6 +85,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     """
 
     references: ClassVar[tuple[str, ...]] = ()
+    is_map: ClassVar[bool] = False  # whether it leads from step to step, and has no state in between
     derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
 
     if TYPE_CHECKING:

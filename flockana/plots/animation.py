@@ -19,7 +19,6 @@ from flockana.base.files import atomic_write, ensure_folder_of, ensure_path, ens
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import DiscreteLaw
 from flockana.plots.gif import GifWriter
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import limit, style
@@ -43,7 +42,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     """
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
-    if isinstance(trajectory.law, DiscreteLaw) or len(t) == 1:
+    if trajectory.law.is_map or len(t) == 1:
         k = np.unique(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
         extra = {name: series[k] for name, series in trajectory.extra.items()}
         return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra)

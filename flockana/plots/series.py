@@ -10,7 +10,6 @@ from flockana.base.errors import UnknownNameError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
@@ -116,7 +115,7 @@ def distances(trajectory: Trajectory, ax: Any) -> str | None:
         return "one agent has no distances"
     t, least = trajectory.t, trajectory.metric("min_distance")
     ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
-    if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
+    if len(t) > 1 and not trajectory.law.is_map:
         bound = trajectory.closest_approach().lower_by_interval
         ax.stairs(
             bound,

@@ -8,7 +8,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
-from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.discrete import ensure_law
 from flockana.recorded.accelerations import accelerations
 from flockana.recorded.findings import Share, explained
 from flockana.recorded.recording import Recording, ensure_recording
@@ -145,7 +145,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
     """
     ensure_recording(rec)
     given = ensure_law(law)
-    continuous = given.continuous if isinstance(given, DiscreteLaw) else given
+    continuous = given.continuous
     if continuous is None:
         raise ArgumentError(f"{law.title} steps no continuous law: expected a law, or a scheme such as TaylorStep")
     continuous.check_dimension(rec.m)

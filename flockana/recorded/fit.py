@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.discrete import ensure_law
 from flockana.recorded.clustered import covariance_over_agents
 from flockana.recorded.parameters import FreeParameters
 from flockana.recorded.recording import Recording, ensure_recording
@@ -109,7 +109,7 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     """
     ensure_recording(rec)
     own = ensure_law(law)
-    if isinstance(own, DiscreteLaw):
+    if own.is_map:
         raise ArgumentError(f"{law.title} is a map: expected a continuous law, such as the one that it steps")
     own.check_dimension(rec.m)
     own.check_agents(rec.n)

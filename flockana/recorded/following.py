@@ -9,7 +9,6 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.vectors import lengths
 from flockana.dynamics.tolerance import rounding_floors
-from flockana.laws.discrete import DiscreteLaw
 from flockana.recorded.accuracy import CONFIDENCE
 from flockana.recorded.recording import Recording
 from flockana.recorded.shooting import matched, usual_window, windows
@@ -116,7 +115,7 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     """Compare the residuals of solutions, matched to windows of noisy positions, with the stated noise."""
     from scipy.stats import chi2, norm
 
-    if isinstance(law, DiscreteLaw):
+    if law.is_map:
         raise ArgumentError(
             f"noisy positions under the map {law.title}: expected its continuous law, or velocities and bound="
         )

@@ -16,7 +16,7 @@ from flockana.base.memory import ResultCache
 from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
-from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.discrete import ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
 from flockana.recorded.parts import largest_complete_part
 from flockana.recorded.unknown import UnknownLaw
@@ -360,7 +360,7 @@ def ensure_recording(rec: Any) -> Recording:
 
 def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
     """Return the samples of a run as a recording."""
-    u = None if isinstance(run.law, DiscreteLaw) else run.u
+    u = None if run.law.is_map else run.u
     return Recording(run.t, run.q, run.p, u, source=f"a run of {run.law.title}", **accuracy)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.laws.discrete import DiscreteLaw
 from flockana.recorded.recording import Recording
 
 SHARE = 0.05  # of the law's time, which a step of the integration is at most
@@ -32,7 +31,7 @@ def led(
     law: Any, t: float, h: float, q: FloatArray, p: FloatArray, *, refine: int = 1, share: float = SHARE
 ) -> tuple[FloatArray, FloatArray]:
     """Return the state to which a law leads from another within a time h."""
-    if isinstance(law, DiscreteLaw):
+    if law.is_map:
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
             raise ArgumentError(
@@ -87,7 +86,7 @@ def kinematic_scheme(rec: Recording) -> str | None:
 
 def scheme_by_law(rec: Recording, law: Any) -> str | None:
     """Return the name of the scheme whose steps lead far closer to the next sample than the law's flow does."""
-    if rec.p is None or rec.gaps or isinstance(law, DiscreteLaw) or not _even(rec):
+    if rec.p is None or rec.gaps or law.is_map or not _even(rec):
         return None
     some = slice(0, 40)
     t, q, p, h = rec.t[some], rec.q[some], rec.p[some], rec.interval

@@ -6,7 +6,6 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
@@ -127,7 +126,7 @@ def scenario_page(
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """Return the player's data of a run, with instants of the source and of the claims marked."""
     marks, title, played = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
-    if 1 < len(run.t) < _FEW_SAMPLES and not isinstance(run.law, DiscreteLaw):
+    if 1 < len(run.t) < _FEW_SAMPLES and not run.law.is_map:
         from flockana.plots.animation import equal_times
 
         played = equal_times(run, _ENOUGH)  # cubics that match places and velocities

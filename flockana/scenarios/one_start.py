@@ -123,5 +123,5 @@ def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outco
 def _outcome(entry: LawEntry, q: FloatArray, p: FloatArray) -> Outcome:
     law = entry.law(q, p)
     how: dict[str, Any] = {"t_eval": np.linspace(0.0, UNTIL, _INSTANTS), "rtol": _RTOL}
-    run = simulate(law, q, p, (0.0, UNTIL), **({} if isinstance(law, DiscreteLaw) else how))
+    run = simulate(law, q, p, (0.0, UNTIL), **({} if law.is_map else how))
     return Outcome(entry, run, verify(entry.theorem, run, subject=f"{entry.name}, one start"))

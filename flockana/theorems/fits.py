@@ -7,7 +7,6 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
 from flockana.theorems.map_steps import ensure_steps_of_map
 
@@ -20,7 +19,7 @@ def ensure_fits(run: Trajectory) -> None:
 
 
 def _ensure_fits(run: Trajectory) -> bool:
-    if isinstance(run.law, DiscreteLaw):
+    if run.law.is_map:
         ensure_steps_of_map(run)
         return True
     difference = np.abs(run.u - run._flows[0]).max(axis=(1, 2))

@@ -23,7 +23,6 @@ from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import ErrorFloors
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.claims import with_needs
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding, frame_error
@@ -96,7 +95,7 @@ class Observed(ResultCache):
     @property
     def is_map(self) -> bool:
         """Whether the law is a map, which has no state between its steps."""
-        return isinstance(self.law, DiscreteLaw)
+        return self.law.is_map
 
     @property
     def floors(self) -> ErrorFloors:

@@ -17,7 +17,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.vectors import centres
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
-from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.discrete import ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
 from flockana.theorems.evidence import Evidence
@@ -188,7 +188,7 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     differ = *map(lengths, map(centred, (apart, slip))), *(lengths(centres(x)[:, None])[:, 0] for x in (apart, slip))
     off = [a + b for a, b in zip(differ, _half_widths(place, speed), strict=True)]
     times, end = seen.errors.t, float(place[-1].max())
-    if isinstance(law, DiscreteLaw):
+    if law.is_map:
         return ObservedRecording(given, run, seen.other, Errors(rec.t, *off), place=end)
     after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
     before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)

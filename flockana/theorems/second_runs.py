@@ -20,7 +20,6 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.beta import InsideObstacleError
-from flockana.laws.discrete import DiscreteLaw
 from flockana.solvers.named import solvers
 from flockana.theorems.step_resolution import demand_of, steps_of, unresolved
 
@@ -59,7 +58,7 @@ class Pair(NamedTuple):
 def paired(run: Trajectory) -> Pair:
     """Return a run with its second one; a map, and a run of which nothing is known, are paired with themselves."""
     doubt = doubt_about(run)
-    if doubt or isinstance(run.law, DiscreteLaw):
+    if doubt or run.law.is_map:
         return Pair(run, run, _unbounded_errors(run), doubt)
     steps, states = _common_steps(run)
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
@@ -117,7 +116,7 @@ def failure(run: Trajectory) -> str:
     """Return why a run is not one of its law (it failed, or left the law's domain); empty if it is."""
     if run.status == "failed":
         return f"the run failed: {run.message}"
-    if isinstance(run.law, DiscreteLaw):  # a step may lead anywhere
+    if run.law.is_map:  # a step may lead anywhere
         return ""
     for k in np.unique(np.linspace(0, len(run.t) - 1, _LOOKED_AT).astype(int)):
         try:

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_positive
-from flockana.laws import DiscreteLaw
 from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
 from flockana.scenarios.one_start import LawEntry
@@ -73,7 +72,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that distances stay above half of the distance below which agents repel."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
-    ever = at if isinstance(run.law, DiscreteLaw) else run.closest_approach().lower
+    ever = at if run.law.is_map else run.closest_approach().lower
     seen = ever > 0.5 * d1 and not thinned(run)
     margin = ever / d1 - 0.5 if seen else at / d1 - 0.5 if at < 0.5 * d1 else float("nan")
     detail = f"agents come as near as {ever:.3g}, where repulsion begins at d1 = {d1:g}"

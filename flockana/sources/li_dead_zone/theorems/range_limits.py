@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from flockana.kernels.ranges import follow_pairs, follow_steps
-from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.toolkit import EPS, Observed, Trajectory
 
 _NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept
@@ -22,7 +21,7 @@ class RangeEntry:
 
 def thinned(run: Trajectory) -> bool:
     """Return whether a map took steps between the stored samples."""
-    return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
+    return run.law.is_map and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 
 def first_entry(seen: Observed, r: float) -> RangeEntry:
@@ -33,7 +32,7 @@ def first_entry(seen: Observed, r: float) -> RangeEntry:
     pairs = run.n * (run.n - 1) // 2
     was_out, unsure = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
     noise = 16.0 * EPS * (float(np.abs(run.q).max()) + r)
-    if isinstance(run.law, DiscreteLaw):
+    if run.law.is_map:
         for k, q in enumerate(run.q):
             pair = follow_steps(q, r, noise, was_out, unsure)
             if pair[0] >= 0:
