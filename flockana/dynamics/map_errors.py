@@ -60,9 +60,8 @@ def nudged_errors(run: Trajectory) -> MapErrors:
     steps = round(float(run.t[-1] - run.t[0]) / run.law.dt)
     size = (_ROUNDINGS + steps) * EPS
     signs = np.random.default_rng(0).choice((-1.0, 1.0), (2, *run.q[0].shape))
-    length, speed = (
-        size * max(float(np.abs(x[0]).max()), least) for x, least in zip((run.q, run.p), _units(run), strict=True)
-    )
+    sizes = zip((run.q[0], run.p[0]), _units(run), strict=True)
+    length, speed = (size * max(float(np.abs(x).max()), least) for x, least in sizes)
     q, p = np.full((2, len(run.t), run.n), np.inf)
     orbits = [(run.q[0], run.p[0]), (run.q[0] + length * signs[0], run.p[0] + speed * signs[1])]
     apart = []

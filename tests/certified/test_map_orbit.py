@@ -71,8 +71,10 @@ def test_a_run_that_is_not_its_maps_is_known_at_its_start_alone():
 
 
 def test_where_there_are_no_balls_a_nudge_tells():
-    for law in (fl.TaylorStep(fl.CuckerSmale(), 0.1), fl.HeadingAveraging(range=9.0)):
-        run = fl.simulate(law, WILD, np.tile([[1.0, 0.2]], (7, 1)), (0.0, 2.0))
+    headings = fl.HeadingAveraging(range=9.0)
+    speeds = np.tile([[1.0, 0.2]], (7, 1)), headings.velocities(np.linspace(0.0, 1.0, 7))
+    for law, p in zip((fl.TaylorStep(fl.CuckerSmale(), 0.1), headings), speeds, strict=True):
+        run = fl.simulate(law, WILD, p, (0.0, 2.0))
         errors = map_errors(run)
         assert (errors.enclosed, errors.known_until) == (False, run.t[-1])
         assert errors.q.max() < 1e-10
