@@ -1,7 +1,8 @@
 """`python -m tools.mutation`: change the code in small ways with cosmic-ray, and see which changes no test notices.
 
-A sample of the mutants of each package (drawn by a hash: the same on every machine, a larger one holds the smaller) is
-tried in copies of the project, with the nearest tests first, until one fails. Results are kept in the output folder.
+A sample of the mutants of each package (drawn by a hash of the changed lines: the same on every machine and wherever
+a file stands, a larger one holds the smaller) is tried in copies of the project, with the nearest tests first, until
+one fails. Results are kept in the output folder.
 Run the tests first: a test that fails without a change kills every mutant.
 Exit status: 0 every mutant was killed or is in equivalent_mutants.toml with its reason, 2 bad input, 3 one survived,
 130 interrupted; the next call goes on.
@@ -66,11 +67,11 @@ def draw(paths: Sequence[str], size: int | None, salt: str) -> tuple[int, list[d
 
     names = [name for name in plugins.operator_names() if _OPERATORS.fullmatch(name)]
     operators = {name: plugins.get_operator(name)() for name in names}
-    found, texts = [], {path: (PROJECT / path).read_text("utf-8") for path in paths}
+    found, same, texts = [], Counter[tuple[str, str]](), {path: (PROJECT / path).read_text("utf-8") for path in paths}
     for path, text in texts.items():
         lines = text.splitlines()
         spans = [(n.lineno, n.col_offset - 1, n.end_lineno, n.end_col_offset) for n in meaningless(ast.parse(text))]  # type: ignore[attr-defined]
-        counts, same = Counter[str](), Counter[tuple[str, str]]()
+        counts = Counter[str]()
         for node in ast_nodes(get_ast(text)):
             for name, operator in operators.items():
                 for start, end in operator.mutation_positions(node):
@@ -80,9 +81,9 @@ def draw(paths: Sequence[str], size: int | None, salt: str) -> tuple[int, list[d
                     star = line[start[1] :].startswith("*,")  # before parameters that go by name
                     if star or any(span[:2] <= start < span[2:] for span in spans):
                         continue
-                    line = line.strip()
-                    said = "\n".join((salt, path, name, line, str(same[name, line])))
-                    same[name, line] += 1
+                    around = "\n".join(each.strip() for each in lines[max(0, start[0] - 2) : start[0] + 1])
+                    said = "\n".join((salt, name, around, str(same[name, around])))
+                    same[name, around] += 1
                     found.append((hashlib.sha256(said.encode()).hexdigest()[:16], place))
     drawn = list[dict[str, Any]]()
     for key, place in sorted(found, key=lambda one: one[0]):
@@ -98,6 +99,12 @@ def draw(paths: Sequence[str], size: int | None, salt: str) -> tuple[int, list[d
         if changed != text:
             drawn.append(place | {"key": key, "before": before, "after": after})
     return len(found), drawn
+
+
+def package_of(path: str) -> str:
+    """Return the package of a file: its room, or in a source its kind."""
+    parts = Path(path).with_suffix("").parts
+    return parts[3] if parts[1] == "sources" and len(parts) > 3 else parts[1]
 
 
 def nearest(path: str) -> list[str]:
@@ -122,7 +129,9 @@ def nearest(path: str) -> list[str]:
     ]
     users = naming(path)
     farther = [one for user in users if user.startswith("flockana/") and "__init__" not in user for one in naming(user)]
-    beside = [one for one in texts if one.startswith(f"tests/{room.parts[0]}/")]
+    beside = [
+        one for one in texts if one.startswith(f"tests/{'/'.join(room.parts[: 1 + (room.parts[0] == 'sources')])}/")
+    ]
     tests = [one for one in (*users, *beside, *farther) if Path(one).name.startswith("test_")]
     tests.sort(key=lambda one: (one not in users, Path(one).parts[1] not in PACKAGES))
     return list(dict.fromkeys([*own, path, *tests, *(one for one in LAST if (PROJECT / one).exists())]))
@@ -134,7 +143,7 @@ def ask(clean: Path, budget: float) -> int:
     changed = next(str(path) for path in files if not filecmp.cmp(PROJECT / path, clean / path, shallow=False))
     fresh = tempfile.TemporaryDirectory(prefix="numba-", ignore_cleanup_errors=True)
     environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
-    if Path(changed).parts[1] in COMPILED:
+    if package_of(changed) in COMPILED:
         environment["NUMBA_CACHE_DIR"] = fresh.name
     before = _used()
     with fresh:
@@ -199,7 +208,7 @@ def report(counts: dict[str, int], drawn: Sequence[dict[str, Any]], outcomes: di
         "| package | mutants | tried | killed | equivalent | survived | killed, 95 % interval |\n" + "|---" * 7 + "|\n"
     )
     for package, mutants in [*counts.items(), ("all", sum(counts.values()))]:
-        kinds = Counter(outcomes.get(one["key"]) for one in drawn if package in ("all", Path(one["path"]).parts[1]))
+        kinds = Counter(outcomes.get(one["key"]) for one in drawn if package in ("all", package_of(one["path"])))
         killed, survived = kinds["killed"] + kinds["incompetent"], kinds["survived"]
         low, high = clopper_pearson(killed, killed + survived)
         cells = package, mutants, killed + survived + kinds["equivalent"], killed, kinds["equivalent"], survived
@@ -217,7 +226,7 @@ def arguments() -> argparse.ArgumentParser:
     size = parser.add_mutually_exclusive_group()
     size.add_argument("--sample", type=int, default=60, metavar="N", help="mutants of each package (default 60)")
     size.add_argument("--all", action="store_const", const=None, dest="sample", help="every mutant: weeks")
-    size.add_argument("--quick", action="store_const", const=3, dest="sample", help="3 of each package: what CI tries")
+    size.add_argument("--quick", action="store_const", const=3, dest="sample", help="3 of each package")
     parser.add_argument("--salt", default="", metavar="TEXT", help="draw another sample")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)")
     parser.add_argument("--budget", type=float, default=120.0, metavar="S", help="processor seconds each (default 120)")
@@ -239,15 +248,16 @@ def main(given: Sequence[str] | None = None) -> int:
         return 2
     counts, drawn = dict[str, int](), list[dict[str, Any]]()
     for package in options.packages or PACKAGES:
-        files = sorted(str(path.relative_to(PROJECT)) for path in (PROJECT / "flockana" / package).rglob("*.py"))
+        every = (str(path.relative_to(PROJECT)) for path in (PROJECT / "flockana").rglob("*.py"))
+        files = sorted(path for path in every if package_of(path) == package)
         counts[package], some = draw([path for path in files if options.file in path], options.sample, options.salt)
         drawn += some
     known = tomllib.loads(REVIEWED.read_text())["mutant"]
-    reviewed = {(one["path"], *(" ".join(one[key].split()) for key in ("before", "after"))) for one in known}
+    reviewed = {tuple(" ".join(one[key].split()) for key in ("before", "after")) for one in known}
     kept = options.out / "results.json"
     options.out.mkdir(parents=True, exist_ok=True)
     outcomes = json.loads(kept.read_text()) if kept.exists() else {}
-    same = [one["key"] for one in drawn if (one["path"], one["before"], one["after"]) in reviewed]
+    same = [one["key"] for one in drawn if (one["before"], one["after"]) in reviewed]
     outcomes |= dict.fromkeys(same, "equivalent")
     done = ("killed", "incompetent", "equivalent", *(() if options.again else ("survived",)))
     left = [one for one in drawn if outcomes.get(one["key"]) not in done]

@@ -69,6 +69,16 @@ def test_a_larger_sample_holds_the_smaller_and_lines_above_change_nothing(projec
     assert few == {one["key"] for one in drawn(4)[1]}
 
 
+def test_a_file_that_moves_keeps_its_mutants(project):
+    before = {one["key"] for one in mutation.draw(["flockana/laws/area.py"], 4, "")[1]}
+    moved = project / "flockana/sources/key/laws.py"
+    moved.parent.mkdir(parents=True)
+    (project / "flockana/laws/area.py").rename(moved)
+    assert before == {one["key"] for one in mutation.draw(["flockana/sources/key/laws.py"], 4, "")[1]}
+    assert mutation.package_of("flockana/sources/key/laws.py") == "laws"
+    assert mutation.package_of("flockana/sources/key/theorems/printed.py") == "theorems"
+
+
 def test_the_nearest_tests_come_first(project):
     twice = ["flockana/laws/twice.py", "tests/laws/test_other.py"]
     assert mutation.nearest("flockana/laws/twice.py") == ["tests/laws/test_twice.py", *twice]
