@@ -1,6 +1,6 @@
 """Write docs/coverage.md: what in flockana holds each item of each source (`python -m tools.coverage_page`).
 
-It is made of the tables in flockana/sources/SOURCE/coverage, and every reference is looked up for the file that it leads to:
+It is made of the tables in flockana/sources/*/coverage, and every reference is looked up for the file that it leads to:
 names that are none end it with status 2. `--check` writes nothing, and ends with 3 if the page is not what the tables
 say.
 """
@@ -20,7 +20,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs" / "coverage.md"
 _OPENING = """\
 # Coverage
 
-Written by `make coverage` from the tables in `flockana/sources/SOURCE/coverage`; edit those. A row is an item of a source:
+Written by `make coverage` from the tables in `flockana/sources/*/coverage`; edit those. A row is an item of a source:
 where it stands there, what it is in our words, and what holds it: a *function* (or class) of the library, a *plot*, a
 *scenario* of the catalogue, a *report* (something that a source says of a run, judged on that scenario), a *theorem*,
 a *claim* of one, an *erratum*, an executable *proof*, a *notebook*. That a theorem holds an item means that it is

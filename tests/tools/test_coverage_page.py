@@ -18,11 +18,12 @@ def test_a_table_of_rows_of_each_standing():
         Row("Fig. 2", "a run", "weaker", (Reference("scenario", "collapse"),), "R is not judged"),
     )
     text = coverage_page.page((Source("jond-2025", "A paper", rows),))
-    room = "../flockana/theorems/olfati_saber"
+    room = "../flockana/sources/olfati_saber_2006/theorems"
     assert "| A paper | 4 | 1 | 1 | 1 | 1 |" in text
     assert "| A paper | Fig. 2 | a run | *in part* | R is not judged |" in text
     assert (
-        f"| Theorem 1 | C\\* of q\\_i | theorem [`os-1`]({room}/os_1.py), [`os-3`]({room}/os_3.py); "
+        f"| Theorem 1 | C\\* of q\\_i | theorem [`os-1`]({room}/theorem_1_free_flock.py), "
+        f"[`os-3`]({room}/theorem_3_led_flock.py); "
         "notebook [`07`](../notebooks/07_what_the_theorems_say.py) |  |"
     ) in text
     assert "| end | thanks | *prose* | no claim |" in text
