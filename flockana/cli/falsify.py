@@ -113,6 +113,7 @@ def search_facts(search: Falsification) -> dict[str, Any]:
     facts |= {name: facts[name] if isfinite(facts[name]) else None for name in ("margin", "error")}
     facts["known to be false"] = search.found and known_false(search.theorem, search.claim)
     facts |= {name: getattr(search, name) for name in ("evaluations", "failures", "ended")}
+    facts["unmet"] = list(search.unmet)
     return facts | {"broken": list(search.broken), "parameters": dict(search.parameters)}
 
 
@@ -159,6 +160,8 @@ def _show(search: Falsification) -> None:
     if search.found:
         known = "known to be false" if known_false(search.theorem, search.claim) else "NOT known to be false"
         text = f"found: {search.claim} is broken, and it is {known}; {runs}"
+    elif search.unmet:
+        text = f"nothing to refute: no run meets {', '.join(search.unmet)}; vary what they depend on; {runs}"
     else:
         text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"
     console.print(text + ("; interrupted" if search.ended == "interrupted" else ""), markup=False)

@@ -1,5 +1,6 @@
 """Search for a run that refutes a theorem's claim, in the neighbourhood of a scenario."""
 
+import logging
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -22,6 +23,8 @@ from flockana.scenarios.flock import as_scenario, chosen
 from flockana.theorems import Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
 from flockana.theorems.theorem import Lead
+
+_LOG = logging.getLogger("flockana")
 
 
 def falsify(
@@ -116,6 +119,7 @@ def falsify(
         problem = replace(problem, scales=units(verdict))
     record = _Record()
     record.add(None, problem.graded(run, verdict))
+    _warn_of_unmet(f"{item.id} on {begin.name}", record.unmet or {})
     search = Search(space.start, seed)
     ended: Ending = "budget"
     with progress_bar(budget, enabled=progress, steady=True) as advance:
@@ -153,8 +157,16 @@ def falsify(
         restarts=search.restarts,
         ended=ended,
         message=record.message,
+        unmet=tuple(record.unmet or {}),
     )
     return sealed(found)
+
+
+def _warn_of_unmet(what: str, unmet: Mapping[str, str]) -> None:
+    """Log which hypotheses the scenario's own start does not meet, before the budget is spent."""
+    if unmet:
+        texts = "; ".join(unmet.values())
+        _LOG.warning("%s: no claim at its own start, which does not meet: %s", what, texts)
 
 
 def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
@@ -173,12 +185,18 @@ class _Record:
         self.rows: list[dict[str, tuple[str, float]]] = []
         self.best, self.message = Evaluation(np.inf), ""
         self.point: FloatArray | None = None  # the scenario's own start
+        self.unmet: dict[str, str] | None = None  # hypotheses that are unmet in all verdicts, and unmet in words
 
     def add(self, point: FloatArray | None, evaluation: Evaluation) -> None:
         claims = () if evaluation.verdict is None else evaluation.verdict.claims
         judged = {c.name: np.nan if c.status == "vacuous" or c.margin is None else float(c.margin) for c in claims}
         self.rows.append({c.name: (c.status, judged[c.name]) for c in claims})
         self.message = evaluation.message or self.message
+        if evaluation.verdict is not None:
+            unmet = {h.name: h for h in evaluation.verdict.hypotheses if h.status == "unmet"}
+            if self.unmet is None:
+                self.unmet = {name: f"{name} ({h.detail})" if h.detail else name for name, h in unmet.items()}
+            self.unmet = {name: text for name, text in self.unmet.items() if name in unmet}
         if evaluation.grade < self.best.grade:
             self.best, self.point = evaluation, point
 

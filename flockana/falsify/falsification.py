@@ -45,6 +45,8 @@ class Falsification:
         Why it ended.
     message : str
         Why runs failed, of the last that did.
+    unmet : tuple of str
+        Hypotheses that no run met: while there are any, nothing that was tried can refute the theorem.
     """
 
     theorem: str
@@ -59,6 +61,7 @@ class Falsification:
     restarts: int
     ended: Ending
     message: str = ""
+    unmet: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Return a summary in one line."""

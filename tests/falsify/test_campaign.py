@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, StaticTarget, scenario, simulate
+from flockana import Algorithm2, Gains, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
 from flockana.falsify import falsify, replay
 from flockana.falsify.evaluate import Problem
@@ -174,6 +174,20 @@ class TestTheOutcome:
         assert np.isnan(found.history[0])
         assert found.found
         assert found.q0[0, 0] < 1.0
+
+    def test_hypotheses_that_no_run_meets_are_named_first_and_last(self, caplog):
+        """A law without friction where the theorem asks for it: no start mends that, and other gains do."""
+        gains = Gains(c1_alpha=30.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0)
+        idle = replace(HEAD_ON, law=Algorithm2(gains=gains, target=StaticTarget((0.0,))), t_span=(0.0, 0.1))
+        found = falsify("os-3", idle, budget=3)
+        assert found.unmet
+        assert all(verdict in ("vacuous",) for verdict in found.statuses["iii"])
+        (told,) = [record.getMessage() for record in caplog.records if "own start" in record.getMessage()]
+        assert told.startswith(f"os-3 on {idle.name}: no claim at its own start, which does not meet: ")
+        assert all(name in told for name in found.unmet)
+        caplog.clear()
+        assert falsify("collision-energy", HEAD_ON, claim="below", budget=2).unmet == ()
+        assert not caplog.records
 
     def test_runs_that_fail_are_counted_and_end_nothing(self):
         starts = Starts()
