@@ -5,13 +5,13 @@ number holds for a ball (`arb`: an enclosure over all states in a box, also acro
 only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from math import sqrt
 from typing import Any
 
-from flint import arb, arb_mat, arb_series
+from flint import arb, arb_mat, arb_series, fmpq
 
 from flockana.base.errors import ArgumentError
 from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
@@ -187,28 +187,28 @@ def ensure_enclosable(law: Any) -> None:
                 raise ArgumentError(f"obstacles[{k}] = {obstacle!r}: expected a Sphere, the one kind known in balls")
 
 
-def flow_of(law: Any, n: int, m: int) -> Flow:
-    """Return a law for n agents in m dimensions in balls, each number as its exact decimal."""
+def flow_of(law: Any, n: int, m: int, *, number: Callable[[Any], fmpq] = exact) -> Flow:
+    """Return a law for n agents in m dimensions in balls, each number by default as its exact decimal."""
     gains, alpha, target = law.gains, law.alpha, law.target
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
     if isinstance(law, _LED):
         path = target.harmonic.terms
-        unit = arb(exact(alpha.unit)) if isinstance(law, Algorithm3) else None
-        start, velocity, offset = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
+        unit = arb(number(alpha.unit)) if isinstance(law, Algorithm3) else None
+        start, velocity, offset = (tuple(arb(number(x)) for x in path[k].tolist()) for k in (0, 1, 4))
         declared = tuple(a + b for a, b in zip(velocity, offset, strict=True))  # p_r = dq_r/dt + offset
-        terms = (Pull(start, velocity, declared, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
+        terms = (Pull(start, velocity, declared, arb(number(gains.c1_gamma)), arb(number(gains.c2_gamma)), unit),)
         rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
     if isinstance(law, Algorithm3) and law.obstacles:
-        terms = (*terms, *sphere_terms(law))
+        terms = (*terms, *sphere_terms(law, number))
         rates += [gains.c2_beta, sqrt(gains.c1_beta)]
-    stiffness, damping = arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha))
-    return Flow(n, m, PairNumbers.of_alpha(law.alpha), stiffness, damping, max(rates) or 1.0, terms)
+    stiffness, damping = arb(number(gains.c1_alpha)), arb(number(gains.c2_alpha))
+    return Flow(n, m, PairNumbers.of_alpha(law.alpha, number), stiffness, damping, max(rates) or 1.0, terms)
 
 
-def sphere_terms(law: Any) -> tuple[SphereTerm, ...]:
+def sphere_terms(law: Any, number: Callable[[Any], fmpq] = exact) -> tuple[SphereTerm, ...]:
     """Return the terms of a law's obstacles at the present precision."""
     gains: Any = law.gains
-    beta, pull, drag = PairNumbers.of_beta(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
-    places = [(tuple(arb(exact(y)) for y in one.centre), arb(exact(one.radius))) for one in law.obstacles]
+    beta, pull, drag = PairNumbers.of_beta(law.beta, number), arb(number(gains.c1_beta)), arb(number(gains.c2_beta))
+    places = [(tuple(arb(number(y)) for y in one.centre), arb(number(one.radius))) for one in law.obstacles]
     return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)

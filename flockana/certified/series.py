@@ -7,12 +7,13 @@ The formulas are generated (`flockana.certified.formulas`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
 from typing import Any
 
-from flint import acb, arb
+from flint import acb, arb, fmpq
 
 from flockana.certified import formulas
 from flockana.certified.balls import Piece as Piece
@@ -36,16 +37,18 @@ class PairNumbers:
     area: arb  # ℓ²
 
     @classmethod
-    def of_alpha(cls, alpha: Any) -> PairNumbers:
-        """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, as exact decimals."""
-        eps, h, a, b, d, r = (arb(exact(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
+    def of_alpha(cls, alpha: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
+        """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, by default as decimals."""
+        eps, h, a, b, d, r = (arb(number(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
         zero, cutoff = (formulas.sigma_norm(x * x, eps) for x in (d, r))
-        return cls(eps, h, a, b, (b - a) / (4 * a * b).sqrt(), zero, cutoff, arb(exact(getattr(alpha, "unit", 1))) ** 2)
+        return cls(
+            eps, h, a, b, (b - a) / (4 * a * b).sqrt(), zero, cutoff, arb(number(getattr(alpha, "unit", 1))) ** 2
+        )
 
     @classmethod
-    def of_beta(cls, beta: Any) -> PairNumbers:
-        """Return the numbers of a `BetaInteraction` as exact decimals."""
-        eps, h, d, unit = (arb(exact(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
+    def of_beta(cls, beta: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
+        """Return the numbers of a `BetaInteraction`, by default as decimals."""
+        eps, h, d, unit = (arb(number(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
         cutoff = formulas.sigma_norm(d * d, eps)
         return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
 

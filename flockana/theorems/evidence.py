@@ -1,6 +1,7 @@
 """Evidence: what theorems are judged on, and the few things that each kind of it offers."""
 
 from abc import ABC, abstractmethod
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
@@ -36,9 +37,14 @@ class Evidence(ABC):
         """Return the ids of theorems that are judged where none is named."""
         return ()
 
+    def known_until(self) -> int | None:
+        """Return the last step at which the orbit of a map is known; None of other evidence."""
+        return None
+
     def judge(self, item: Theorem, tolerances: Tolerances, subject: str = "") -> Verdict:
         """Return the verdict of a theorem."""
-        return item.verdict(self.examine(item, tolerances), tolerances, self.describe(subject))
+        verdict = item.verdict(self.examine(item, tolerances), tolerances, self.describe(subject))
+        return replace(verdict, known_until=self.known_until())
 
     def judge_all(self, tolerances: Tolerances, subject: str = "", *, progress: bool = False) -> Verdicts:
         """Return the verdicts of all theorems about the law; without a law, of definitions about samples."""

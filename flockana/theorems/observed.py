@@ -2,8 +2,9 @@
 
 The second run starts alike and is a hundred times tighter, or looser where that cannot be. By how much the two differ,
 doubled, encloses the state: each agent seen from the centre of mass, and the centre apart, at worst within one time
-unit of the law before and after. No half width is below the solver's own floors. The start is exact, and so is the
-orbit of a map, but for rounding. A run that failed, and one whose second run ends early, encloses nothing.
+unit of the law before and after. No half width is below the solver's own floors. The start is exact. Of
+a map the orbit is known as far as `flockana.theorems.map_steps` says. A run that failed, and one whose second run ends
+early, encloses nothing.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from flockana.dynamics.tolerance import ErrorFloors
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.claims import with_needs
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.map_steps import paired_orbit
 from flockana.theorems.rounding import EPS, energy_rounding, frame_error
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, failure, largest_over, paired
 from flockana.theorems.step_resolution import NAME
@@ -55,11 +57,13 @@ class Observed(ResultCache):
     errors: Errors  # Half widths at the steps that both have in common
     doubt: str = ""  # Why nothing is known, or an empty text
     unresolved: str = ""  # Where both runs may leap over a feature of a formula, or an empty text
+    enclosed: bool = False  # Whether the orbit of a map is known in balls, to its end
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
         """Return a run as observed, with its second run; kept with the run."""
-        return run.cached("observed", lambda: cls(run, *paired(run)))
+        of_kind = paired_orbit if isinstance(run.law, DiscreteLaw) else paired
+        return run.cached("observed", lambda: cls(run, *of_kind(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
@@ -133,12 +137,23 @@ class Observed(ResultCache):
         return replace(self, given=given, run=run, other=other)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return the largest half width from one law time before each interval to one after."""
-        if self.is_map:
-            return np.zeros((len(start), *errors.shape[1:]))
-        unit, times = self.run.scales.time, self.errors.t
+        """Return the largest half width from one law time before each interval to one after; of a map, within it."""
+        unit, times = 0.0 if self.is_map else self.run.scales.time, self.errors.t
         first = np.searchsorted(times, start - unit)
         return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
+
+    @cached_property
+    def known(self) -> int:
+        """Number of samples before the first one at which nothing is known of the orbit of a map."""
+        parted = ~np.isfinite(self.shape_error).all(axis=1)
+        return int(np.argmax(parted)) if self.is_map and parted.any() else len(self.t)
+
+    @property
+    def known_until(self) -> int | None:
+        """Last step of a map that is known, counted from the first sample; None of a flow."""
+        if not self.is_map or self.doubt:
+            return None
+        return round((float(self.t[self.known - 1]) - float(self.t[0])) / float(self.law.dt)) if self.known else 0
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
         """Return both runs in another frame that keeps all distances between agents."""
@@ -154,7 +169,9 @@ class Observed(ResultCache):
             return Enclosure.around(best, np.inf)
         with np.errstate(invalid="ignore"):
             apart = DOUBT * np.abs(best - loose)
-        if not self.is_map:
+        if self.is_map:
+            apart[self.known :] = np.inf
+        else:
             unit = self.run.scales.time
             first = np.searchsorted(self.t, self.t - unit)
             apart = largest_over(apart, first, np.searchsorted(self.t, self.t + unit, side="right"))
@@ -252,6 +269,8 @@ def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options:
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
     """Return claims with a doubt about the run in their details; of a failed run no claim is decided."""
+    if seen.is_map and (seen.doubt or seen.known < len(seen.t)):
+        claims = (_within_known_orbit(claim, seen) for claim in claims)
     if not seen.doubt:
         return tuple(claims)
     failed = bool(failure(seen.given))
@@ -262,6 +281,22 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
         detail = f"{claim.detail}; {seen.doubt}" if status == "inconclusive" else claim.detail
         judged.append(replace(claim, status=status, detail=detail.lstrip("; ")))
     return tuple(judged)
+
+
+def _within_known_orbit(claim: Claim, seen: Observed) -> Claim:
+    """Return a claim about a map, not decided by numbers unless refuted at a time at which its orbit is known."""
+    if claim.status not in ("verified", "refuted") or claim.rigour not in ("numeric", "statistical"):
+        return claim
+    time = claim.witness.get("time", np.inf) if isinstance(claim.witness, dict) else np.inf
+    if claim.status == "refuted" and not seen.doubt and seen.known and time <= seen.t[seen.known - 1]:
+        return claim
+    text = f"{claim.detail}; the orbit of the map is known to step {seen.known_until or 0} only".lstrip("; ")
+    return replace(claim, status="inconclusive", detail=text)
+
+
+def in_balls(claim: Claim) -> Claim:
+    """Return a claim about the run of a map that was judged on its orbit in balls, with that rigour."""
+    return replace(claim, rigour="interval") if claim.rigour == "numeric" and claim.about == "run" else claim
 
 
 def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) -> Known:

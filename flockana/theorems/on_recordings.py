@@ -23,7 +23,7 @@ from flockana.recorded.recording import Recording
 from flockana.theorems.evidence import Evidence
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.on_runs import examine_observed, theorems_about
-from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
+from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about
 from flockana.theorems.theorem import HypothesisStatus, Known, Theorem
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Tolerances, Trajectory, lengths, vacuous
 
@@ -42,13 +42,6 @@ class ObservedRecording(Observed):
     def accuracy_of_end(self) -> float:
         """How far the last recorded positions may be off."""
         return self.place
-
-    def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Largest half width from one law time before each start to one after each end, of a map too."""
-        unit, times = 0.0 if self.is_map else self.run.scales.time, self.errors.t
-        first = np.searchsorted(times, start - unit)
-        stop = np.searchsorted(times, end + unit, side="right")
-        return largest_over(errors, first, np.maximum(stop, first + 1))
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> FloatArray:
         """Return by how much an observable differs between the solution and states that the recording allows."""
@@ -189,7 +182,8 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     off = [a + b for a, b in zip(differ, _half_widths(place, speed), strict=True)]
     times, end = seen.errors.t, float(place[-1].max())
     if law.is_map:
-        return ObservedRecording(given, run, seen.other, Errors(rec.t, *off), place=end)
+        of_orbit = [x + y for x, y in zip(seen.errors[1:], off, strict=True)]
+        return ObservedRecording(given, run, seen.other, Errors(rec.t, *of_orbit), place=end)
     after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
     before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)
     widened = [x + np.maximum(y[before], y[after]) for x, y in zip(seen.errors[1:], off, strict=True)]

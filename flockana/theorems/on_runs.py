@@ -6,11 +6,12 @@ import numpy as np
 
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.evidence import Evidence
 from flockana.theorems.fits import ensure_fits
-from flockana.theorems.observed import Observed, with_resolution
+from flockana.theorems.observed import Observed, in_balls, with_resolution
 from flockana.theorems.of_schemes import claims_on_steps, is_about_steps, on_steps
 from flockana.theorems.theorem import Hypothesis, Known, Theorem, Tolerances
 
@@ -31,14 +32,19 @@ class RunEvidence(Evidence):
         ensure_fits(self.run)
         return examine_observed(item, Observed.of(self.run), tolerances)
 
+    def known_until(self) -> int | None:  # noqa: D102
+        return Observed.of(self.run).known_until if isinstance(self.law, DiscreteLaw) else None
+
     def theorem_ids(self) -> tuple[str, ...]:  # noqa: D102
         return theorems_about(self.law, self.run.q[0], self.run.p[0], float(self.run.t[0]))
 
 
 def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     """Return what a theorem says of an observed run, in steps of a scheme or along the flow."""
-    examine = on_steps if is_about_steps(item, seen) else Theorem.examine
-    return with_resolution(*examine(item, seen, tolerances), seen)
+    if is_about_steps(item, seen):
+        return with_resolution(*on_steps(item, seen, tolerances), seen)
+    hypotheses, claims = with_resolution(*item.examine(seen, tolerances), seen)
+    return hypotheses, tuple(in_balls(claim) for claim in claims) if seen.enclosed else claims
 
 
 def _of_another_law(item: Theorem, law: Any) -> Known:

@@ -53,20 +53,21 @@ class Pair(NamedTuple):
     errors: Errors
     doubt: str = ""
     unresolved: str = ""
+    enclosed: bool = False  # whether the orbit of a map is known in balls
 
 
 def paired(run: Trajectory) -> Pair:
-    """Return a run with its second one; a map, and a run of which nothing is known, are paired with themselves."""
+    """Return a flow's run with its second one; a run of which nothing is known is paired with itself."""
     doubt = doubt_about(run)
-    if doubt or run.law.is_map:
-        return Pair(run, run, _unbounded_errors(run), doubt)
+    if doubt:
+        return Pair(run, run, unbounded_errors(run), doubt)
     steps, states = _common_steps(run)
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
     again = second_run(run, steps, TIGHTER if tight else 1.0 / TIGHTER, _longest_step(run))
     if again.status != "complete" or len(again.t) != len(steps):
         kind = "tighter" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
-        return Pair(run, run, _unbounded_errors(run), doubt)
+        return Pair(run, run, unbounded_errors(run), doubt)
     thinned = _at_samples_of(again, run.t)
     first, second = (thinned, run) if tight else (run, thinned)
     place, speed, _ = second.floors
@@ -128,7 +129,8 @@ def failure(run: Trajectory) -> str:
     return ""
 
 
-def _unbounded_errors(run: Trajectory) -> Errors:
+def unbounded_errors(run: Trajectory) -> Errors:
+    """Return infinite half widths, of a run of which nothing is known."""
     unknown = np.full((1, run.n), np.inf)
     return Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
 

@@ -25,6 +25,8 @@ class Verdict:
         What it was checked on.
     author : {"source", "corrected", "flockana"}
         Whose theorem it is: its claims alone decide the status.
+    known_until : int, optional
+        Of the run of a map, the last step at which its orbit is known, counted from the run's first sample.
     """
 
     theorem: str
@@ -33,6 +35,7 @@ class Verdict:
     tolerances: Tolerances = field(default_factory=Tolerances)
     subject: str = ""
     author: By = "source"
+    known_until: int | None = None
 
     @property
     def main_claims(self) -> tuple[Claim, ...]:

@@ -1,0 +1,163 @@
+"""Orbits of maps in ball arithmetic (Arb): where the exact steps of a scheme lead from an exact start.
+
+A map of a flock may be chaotic, so that the order of a sum decides where its floating-point orbit is after some hundred
+steps. Here each step is made with balls, of the numbers that the law and the start hold in binary, at a precision that
+is doubled until every ball is thin at the last step, or until the budget is spent. Where a ball lies across the end of
+a piece of the pair law, it is evaluated on both pieces, as the law is continuous there.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.certified.balls import minus, norm2
+from flockana.certified.flow import Flow, Pieces, ensure_enclosable, flow_of
+from flockana.certified.series import Piece
+from flockana.solvers.fixed_steps import FixedSteps
+
+BUDGET = 200_000  # pairs evaluated at 128 bits, in all: some ten seconds
+_FIRST_BITS = 128
+_THIN = 1e-10  # of the law's length and speed: a ball that is wider is no knowledge
+_ROUND = 2.0**-52
+
+
+@dataclass(frozen=True)
+class BallOrbit:
+    """Enclosed states at some steps: midpoints and half widths of q and p, shape (S, n, m)."""
+
+    q: FloatArray
+    p: FloatArray
+    q_off: FloatArray
+    p_off: FloatArray
+    known: int  # rows, from the first on; the others are NaN
+    spent: float  # share of the budget
+    bits: int
+
+
+def has_ball_orbit(law: Any) -> bool:
+    """Return whether a map is an explicit one-step method of a law that is known in balls.
+
+    Parameters
+    ----------
+    law : DiscreteLaw
+        The map.
+    """
+    if type(law) is not FixedSteps:
+        return False
+    try:
+        ensure_enclosable(law.law)
+    except ArgumentError:
+        return False
+    return True
+
+
+def enclose_orbit(
+    law: Any, t0: float, q0: FloatArray, p0: FloatArray, wanted: Sequence[int], *, budget: float = BUDGET
+) -> BallOrbit:
+    """Enclose the exact orbit of a scheme at some of its steps; at least the rows before `known` are thin.
+
+    Parameters
+    ----------
+    law : FixedSteps
+        Of a law that `enclose` supports, such as ``RK4(Algorithm1(), 0.01)``. Its parameters, unlike those of a tube, are their binary values.
+    t0, q0, p0 : float, ndarray of shape (n, m)
+        The start, exact.
+    wanted : sequence of int
+        Rising numbers of steps; 0 is the start.
+    budget : float
+        Pairs that may be evaluated, counted at 128 bits.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.solvers.explicit_euler import ExplicitEuler
+    >>> orbit = enclose_orbit(ExplicitEuler(Algorithm1(), 0.5), 0.0, np.zeros((1, 1)), np.ones((1, 1)), [0, 3])
+    >>> orbit.q.ravel().tolist(), orbit.known
+    ([0.0, 1.5], 2)
+    """
+    bits, left = _FIRST_BITS, float(budget)
+    best: BallOrbit | None = None
+    while best is None or (best.known < len(wanted) and left > 0.0):
+        with ctx.workprec(bits):
+            best, left = _pass(law, t0, (q0, p0), wanted, left)
+        bits *= 2
+    return best
+
+
+def _pass(
+    law: Any, t0: float, start: tuple[FloatArray, FloatArray], wanted: Sequence[int], left: float
+) -> tuple[BallOrbit, float]:
+    """Return the orbit at the present precision, to its first wide ball or the end of the budget, and what is left."""
+    n, m = start[0].shape
+    flow, begin = flow_of(law.law, n, m, number=_binary), left + 0.0
+    h, half, t, evaluations = arb(law.dt), n * m, arb(t0), len(law.solver.b)
+    widest = np.repeat([law.scales.length, law.scales.speed], half) * _THIN
+    state = [arb(float(x)) for x in np.concatenate([each.ravel() for each in start])]
+    rows = np.full((len(wanted), 2, 2, n, m), np.nan)
+    done, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
+    while True:
+        mid, off = (np.array([float(part(x)) for x in state]) for part in (arb.mid, arb.rad))
+        if not (off <= widest).all():
+            break
+        if k == wanted[done]:
+            rows[done] = np.stack([mid, off + _ROUND * np.abs(mid)]).reshape(2, 2, n, m)
+            done += 1
+            if done == len(wanted):
+                break
+        state, near = _step(flow, law, t + k * h, h, state)
+        left -= cost * (near + evaluations)
+        if left <= 0.0:
+            break
+        k += 1
+    parts = (rows[:, 0, 0], rows[:, 0, 1], rows[:, 1, 0], rows[:, 1, 1])
+    return BallOrbit(*parts, done, 1.0 - max(left, 0.0) / begin, ctx.prec), left
+
+
+def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
+    """Return the state after a step of the method, and how many pairs were evaluated."""
+    half, slopes, count, solver = flow.n * flow.m, list[list[arb]](), 0, law.solver
+    for row, s in zip(solver.a, (sum(row) for row in solver.a), strict=True):
+        there = _moved(state, h, row, slopes)
+        pieces, near = _pieces(flow, there, law.law.alpha.r)
+        slopes.append([*there[half:], *flow.input(t + h * arb(s), there, pieces)])
+        count += near
+    after = _moved(state, h, solver.b, slopes)
+    if solver.position_factor:
+        bend = arb(solver.position_factor) * h * h
+        after[:half] = [x + bend * a for x, a in zip(after[:half], slopes[0][half:], strict=True)]
+    return after, count
+
+
+def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[list[arb]]) -> list[arb]:
+    """Return y + h Σ_j w_j K_j."""
+    used = [(h * arb(w), slope) for w, slope in zip(weights, slopes, strict=False) if w]
+    return [sum((w * slope[k] for w, slope in used), x) for k, x in enumerate(state)]
+
+
+def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
+    """Return the piece of each pair and agent, and how many pairs may be in range; far pairs by floating point."""
+    places = state[: flow.n * flow.m]
+    x = np.array([float(y.mid()) for y in places]).reshape(flow.n, flow.m)
+    off = max(float(y.rad()) for y in places)
+    reach = r * (1.0 + 1e-9) + 2.0 * sqrt(flow.m) * (off + 4.0 * _ROUND * float(np.abs(x).max()))
+    apart = np.linalg.norm(x[:, None] - x, axis=2)
+    q, near, pieces = flow.split(state)[0], 0, []
+    for i, j in combinations(range(flow.n), 2):
+        far = apart[i, j] > reach
+        near += not far
+        pieces.append(Piece.OUT if far else flow.pair.piece(norm2(minus(q[i], q[j]))))
+    return (*pieces, *(term.piece(y) for term in flow.terms for y in q)), near
+
+
+def _binary(x: Any) -> fmpq:
+    """Return a number as the rational that it is in binary."""
+    fraction = Fraction(float(x))
+    return fmpq(fraction.numerator, fraction.denominator)
