@@ -1,6 +1,6 @@
 """What is known of a run: enclosures hold the exact motion where that is known, however the run was integrated."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -83,10 +83,51 @@ def test_what_decays_is_known_until_it_is_noise_and_to_no_time_if_that_is_too_so
     assert seen.until(0) == "at no time"
 
 
-def test_a_map_has_no_second_run_and_rounding_alone():
+def test_orbits_from_nudged_starts_estimate_the_error_of_a_map_that_has_no_ball_form():
+    """Two agents at rest but for 0.1 in k2 = 1: a nudge of 1e-13 of the largest number moves q by some of them."""
     seen = observed(SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02), [[0.0], [8.0]], [[0.1], [0.0]], (0.0, 1.0))
-    assert seen.run is seen.given is seen.other
-    assert 0.0 < seen.radius.half_width.max() < 1e-13
+    assert seen.run is seen.given
+    assert seen.other is not seen.given
+    assert seen.shape_error[0].max() < 2e-14  # the start is exact, its centre rounded
+    assert 1e-13 < seen.shape_error[-1].max() < 1e-10
+    assert (seen.known, seen.known_until, seen.enclosed) == (51, 50, False)
+
+
+@dataclass(frozen=True)
+class Doubling(fl.DiscreteLaw):
+    """q' = 2 q mod 1, exact in binary: two orbits part by a factor of 2 in each step."""
+
+    dt: float = 1.0
+
+    def step(self, t, q, p, memory):
+        return np.mod(2.0 * q, 1.0), p, 0.0 * q, memory
+
+
+def test_nothing_is_known_of_a_map_after_two_orbits_part():
+    """From 1e-13 to 1e-6 of its extent it takes log2(1e7) = 23 steps, one less for the doubling of the difference."""
+    start = np.array([[0.1], [0.7]])
+    seen = observed(Doubling(), start, 0.0 * start, (0.0, 40.0))
+    assert 18 <= seen.known_until <= 24
+    assert np.isinf(seen.shape_error[seen.known :]).all()
+    assert np.isfinite(seen.shape_error[: seen.known]).all()
+    assert np.isinf(seen.series(lambda run: run.q[:, 0, 0]).half_width[seen.known :]).all()
+
+
+@pytest.mark.parametrize(
+    ("claim", "status"),
+    [
+        (Claim("late", "verified"), "inconclusive"),
+        (Claim("late", "refuted", witness={"time": 39.0}), "inconclusive"),
+        (Claim("early", "refuted", witness={"time": 3.0}), "refuted"),
+        (Claim("proved", "verified", "smt", proof="headings"), "verified"),
+    ],
+)
+def test_claims_after_two_orbits_part_are_not_decided_by_numbers(claim, status):
+    start = np.array([[0.1], [0.7]])
+    seen = observed(Doubling(), start, 0.0 * start, (0.0, 40.0))
+    (judged,) = with_doubt([claim], seen)
+    assert judged.status == status
+    assert (f"known to step {seen.known_until} only" in judged.detail) == (status == "inconclusive")
 
 
 @pytest.mark.parametrize(
