@@ -67,7 +67,8 @@ def enclose_orbit(
     Parameters
     ----------
     law : FixedSteps
-        Of a law that `enclose` supports, such as ``RK4(Algorithm1(), 0.01)``. Its parameters, unlike those of a tube, are their binary values.
+        Of a law that `enclose` supports, such as ``RK4(Algorithm1(), 0.01)``. Its parameters, unlike those of a tube,
+        are their binary values.
     t0, q0, p0 : float, ndarray of shape (n, m)
         The start, exact.
     wanted : sequence of int

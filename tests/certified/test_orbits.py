@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from flockana import (
+    RK4,
     Algorithm1,
     Algorithm2,
     Algorithm3,
@@ -95,4 +96,13 @@ def test_a_sphere_and_a_leader_in_balls():
 )
 def test_other_maps_have_no_ball_form(law):
     assert not has_ball_orbit(law)
-    assert has_ball_orbit(TaylorStep(Algorithm1()))
+    assert has_ball_orbit(TaylorStep(Algorithm1(), 0.01))
+    assert has_ball_orbit(RK4(Algorithm1(), 0.01))
+
+
+def test_a_runge_kutta_step_by_hand():
+    """x'' = −x of a lone agent: RK4 multiplies (x, v) by the Taylor polynomial of degree four of the rotation."""
+    law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+    found, h = enclose_orbit(RK4(law, 0.5), 0.0, np.ones((1, 1)), np.zeros((1, 1)), [1]), 0.5
+    assert found.q[0, 0, 0] == pytest.approx(1.0 - h**2 / 2.0 + h**4 / 24.0, rel=1e-15)
+    assert found.p[0, 0, 0] == pytest.approx(-h + h**3 / 6.0, rel=1e-15)
