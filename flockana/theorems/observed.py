@@ -62,7 +62,7 @@ class Observed(ResultCache):
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
         """Return a run as observed, with its second run; kept with the run."""
-        of_kind = paired_orbit if isinstance(run.law, DiscreteLaw) else paired
+        of_kind = paired_orbit if run.law.is_map else paired
         return run.cached("observed", lambda: cls(run, *of_kind(run)))
 
     @classmethod

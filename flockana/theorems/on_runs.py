@@ -6,7 +6,6 @@ import numpy as np
 
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.evidence import Evidence
@@ -33,7 +32,7 @@ class RunEvidence(Evidence):
         return examine_observed(item, Observed.of(self.run), tolerances)
 
     def known_until(self) -> int | None:  # noqa: D102
-        return Observed.of(self.run).known_until if isinstance(self.law, DiscreteLaw) else None
+        return Observed.of(self.run).known_until if self.law.is_map else None
 
     def theorem_ids(self) -> tuple[str, ...]:  # noqa: D102
         return theorems_about(self.law, self.run.q[0], self.run.p[0], float(self.run.t[0]))
