@@ -27,9 +27,13 @@ SLOW = (
     *("explore/test_server.py", "explore/test_worker.py", "test_jit.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
-    *("kernels/test_poles.py", "theorems/olfati_saber/test_attraction.py"),
-    *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),
-    "theorems/bearing_distance/test_tree_limits.py",
+    *("kernels/test_poles.py", "theorems/test_attraction.py"),
+    *(
+        "sources/li_dead_zone/theorems/test_range_limits.py",
+        "sources/li_dead_zone/theorems/test_l09_leaders.py",
+        "reference/test_energy_balance.py",
+    ),
+    "sources/jond_2025/theorems/test_tree_limits.py",
 )
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 

@@ -15,7 +15,9 @@ def test_collapse_by_equilibria():
     assert diagram.closest[1, 1] == 0.0
     assert (diagram.coincident[:, 0] == 0).all()
     low, high = collapse_threshold(AlphaInteraction(), 7, halvings=2)
-    assert 3.0 < low < high < 5.0  # as the gradient flow has it: tests/theorems/slides/test_e11.py
+    assert (
+        3.0 < low < high < 5.0
+    )  # as the gradient flow has it: tests/sources/geschwender_2016/theorems/test_e11_lattice_under_target.py
     with pytest.raises(ArgumentError, match="expected rising"):
         collapse_diagram(AlphaInteraction(), [7], [1.0, 0.5])
     with pytest.raises(SolverError, match="no collapse"):

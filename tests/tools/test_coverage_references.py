@@ -13,12 +13,16 @@ from tools.coverage_references import faults, locate
         ("function", "flockana.Algorithm1.surfaces", "flockana/laws/law.py"),  # an inherited property
         ("function", "flockana.measures.reynolds.Reynolds.stress", "flockana/measures/reynolds.py"),  # a field
         ("function", "flockana.falsify", "flockana/falsify/campaign.py"),  # a function and a folder
-        ("function", "flockana.sources.notebook_r2.laws.MIN_DISTANCE", "flockana/laws/notebook.py"),  # a number
+        (
+            "function",
+            "flockana.sources.notebook_r2.laws.MIN_DISTANCE",
+            "flockana/sources/notebook_r2/laws.py",
+        ),  # a number
         ("plot", "flockana.plots.action", "flockana/plots/pair.py"),
-        ("scenario", "msn-case1-printed", "flockana/scenarios/msn.py"),
-        ("theorem", "os-5-terminal", "flockana/theorems/olfati_saber/os_5.py"),
-        ("erratum", "L10", "flockana/theorems/dead_zone/l10.py"),
-        ("claim", "os-3/iv-barrier", "flockana/theorems/olfati_saber/os_3.py"),
+        ("scenario", "msn-case1-printed", "flockana/sources/isola_2024/scenarios/cases.py"),
+        ("theorem", "os-5-terminal", "flockana/sources/olfati_saber_2006/theorems/theorem_5_planar_nets.py"),
+        ("erratum", "L10", "flockana/sources/li_dead_zone/theorems/l10_necessary_conditions.py"),
+        ("claim", "os-3/iv-barrier", "flockana/sources/olfati_saber_2006/theorems/theorem_3_led_flock.py"),
         ("proof", "signs_of_phi", "proofs/signs_of_phi.py"),
         ("notebook", "01", "notebooks/01_pair_potentials.py"),
     ],
