@@ -81,19 +81,22 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the compiled function; read-only arrays are passed as writable views."""
-        if self._compiled is not None and not self._thaws:
-            try:
-                return self._compiled(*arguments)
-            except TypeError:  # of another type, or frozen
-                pass
-        given = self._thawed(arguments)
-        if self._compiled is not None:
-            try:
-                return self._compiled(*given)
-            except TypeError:
-                pass
-        self._compile(given)
-        return self._compiled(*given)  # type: ignore[misc]
+        try:
+            if self._compiled is not None and not self._thaws:
+                try:
+                    return self._compiled(*arguments)
+                except TypeError:  # of another type, or frozen
+                    pass
+            given = self._thawed(arguments)
+            if self._compiled is not None:
+                try:
+                    return self._compiled(*given)
+                except TypeError:
+                    pass
+            self._compile(given)
+            return self._compiled(*given)  # type: ignore[misc]
+        except SystemError as error:  # of an alarm while numba made a tuple of arrays
+            raise _origin(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
         """Return the arguments with writable views of read-only arrays; note that this kernel gets such arrays."""
@@ -115,6 +118,11 @@ class Kernel:
     def __reduce__(self) -> Any:
         """Pickle a module's own function by its name."""
         return self.__qualname__ if _named(self) else (type(self), (self.function, self.kept, self.options))
+
+
+def _origin(error: BaseException) -> BaseException:
+    """Return the exception that the last of a chain of causes was raised for."""
+    return error if error.__cause__ is None else _origin(error.__cause__)
 
 
 def _ensure_plain(name: str, result: Any) -> None:

@@ -18,6 +18,7 @@ from flockana import AlphaInteraction, jit
 from flockana.jit import njit, register_jitable, thawed
 from flockana.kernels.bound import bound, made
 from flockana.kernels.scalars import sigma_1
+from tests.programs import out_of_a_kernel
 
 ROOT = Path(__file__).parents[1]
 MANY = "".join(
@@ -64,6 +65,19 @@ def test_no_kernel_gives_named_tuples_to_python(function):
     """An alarm that raises while numba makes one kills the process."""
     with pytest.raises(TypeError, match=r"returns .*Pair.*: expected numbers, as kernels that Python calls write"):
         njit()(function)(1.0)
+
+
+@pytest.mark.parametrize(
+    ("error", "raised"), [(out_of_a_kernel(), KeyboardInterrupt), (SystemError("own"), SystemError)]
+)
+def test_what_interrupts_numba_while_it_makes_arrays_is_raised_itself(error, raised):
+    def interrupted(x):
+        raise error
+
+    kernel = njit()(lambda x: x)
+    kernel._compiled = interrupted
+    with pytest.raises(raised):
+        kernel(1.0)
 
 
 def test_processes_that_compile_at_once_compute_what_they_should(tmp_path):
