@@ -37,6 +37,22 @@ def read_flock(
     >>> law.title, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
+    how: Any = {"start": start, "seed": seed, "algorithm": algorithm, "d": d, "r": r, "time": time}
+    return read_motion(source, **how, potential=potential)[:2]
+
+
+def read_motion(
+    source: str,
+    *,
+    start: str | None = None,
+    seed: int | None = None,
+    algorithm: int | None = None,
+    d: float | None = None,
+    r: float | None = None,
+    time: float | None = None,
+    potential: bool = False,
+) -> tuple[Any, FloatArray, FloatArray | None]:
+    """Return what `read_flock` returns, and the velocities of a run; None without a run."""
     from flockana.cli.source import ensure_source, read_source
     from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction
@@ -51,11 +67,11 @@ def read_flock(
     given = read_source(source, d=d, r=r, time=time)
     if given.law is not None:
         _refuse(source, "has a law of its own", algorithm=algorithm, d=d, r=r)
-        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
+        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q, given.p
     alpha = AlphaInteraction(d=given.d, r=given.r)
     if algorithm == 2:
-        return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
-    return Algorithm1(alpha), given.q
+        return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q, None
+    return Algorithm1(alpha), given.q, None
 
 
 def announce_time(n: int, *, as_given: bool | None = None) -> None:
@@ -85,7 +101,7 @@ def _refuse(name: str, reason: str, **given: object) -> None:
             raise ArgumentError(f"--{option} {value}: {name} {reason}, and has no such choice; leave it out")
 
 
-def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray]:
+def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray, FloatArray]:
     from flockana.cli.source import integrated_law
     from flockana.equilibria.classify import ensure_small
     from flockana.scenarios import scenario
@@ -94,29 +110,27 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
     law = _ensured(integrated_law(item.law), item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":
-        return _with_fixed_target(law, item.t_span[0]), item.q0
+        return _with_fixed_target(law, item.t_span[0]), item.q0, item.p0
     run = item.run()
     if run.status == "interrupted":
         raise KeyboardInterrupt
     if run.status != "complete":
         raise SolverError(f"the run of {name} {run.status}: {run.message}; use --start start")
-    return _with_fixed_target(law, float(run.t[-1])), run.q[-1]
+    return _with_fixed_target(law, float(run.t[-1])), run.q[-1], run.p[-1]
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
-    """Return the law; raise if it is not continuous, or lacks a potential that is needed."""
+    """Return the law; raise if it lacks a potential that is needed."""
     from flockana.equilibria.potential import ensure_flock_law
 
-    if potential or law.conservative:
-        return ensure_flock_law(law, m)
-    if law.continuous is None:
-        raise ArgumentError(f"{law.title} is a map from step to step: expected a continuous law to linearise")
-    return law
+    return ensure_flock_law(law, m) if potential or law.conservative else law
 
 
 def _with_fixed_target(law: Any, t: float) -> Any:
     """Return the law with its γ-agent fixed at its position at time t."""
     from flockana.environment import StaticTarget
 
-    target = law.target
+    target, within = law.target, getattr(law, "law", None)
+    if target is not None and within is not None:
+        return replace(law, law=_with_fixed_target(within, t))
     return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))

@@ -36,6 +36,7 @@ class Source:
     law: Any = None  # the law that came with the positions
     t: float = 0.0  # when they were taken
     max_ratio: float | None = None  # of a builder: largest κ at which its pattern is an α-lattice
+    p: FloatArray | None = None  # velocities, shape (n, m), of a saved run
 
 
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
@@ -49,9 +50,10 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
     path = ensure_path(name)
     d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
     law: Any = None
+    p: FloatArray | None = None
     t, ratio = 0.0, None
     if path.suffix == ".nc":
-        q, law, t = _sample(path, time)
+        q, p, law, t = _sample(path, time)
     elif time is not None:
         raise ArgumentError(f"--time {time:g}: {name} is no saved run (.nc) and has no time; leave it out")
     elif path.suffix == ".json":
@@ -68,7 +70,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
     own_d, own_r = law_scales(law)
     if r is None:  # the law's ratio to the scale is kept
         r = own_r if d is None else (own_r / own_d if ratio is None else KAPPA) * d
-    return Source(name, np.ascontiguousarray(q), own_d if d is None else d, r, law, t, ratio)
+    return Source(name, np.ascontiguousarray(q), own_d if d is None else d, r, law, t, ratio, p)
 
 
 def integrated_law(law: Any) -> Any:
@@ -99,7 +101,7 @@ def law_scales(law: Any) -> tuple[float, float]:
     return law.lattice or (d, KAPPA * d)
 
 
-def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:
+def _sample(path: Path, time: float | None) -> tuple[FloatArray, FloatArray, Any, float]:
     from flockana.dynamics.trajectory import Trajectory
 
     run = Trajectory.load(path)
@@ -107,7 +109,7 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, Any, float]:
     if time is not None and not first <= time <= last:
         raise ArgumentError(f"--time {time:g}: expected a time of the run, {first:g} to {last:g}")
     k = -1 if time is None else int(np.argmin(np.abs(run.t - time)))
-    return run.q[k], run.law, float(run.t[k])
+    return run.q[k], run.p[k], run.law, float(run.t[k])
 
 
 def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:

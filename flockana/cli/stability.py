@@ -45,6 +45,9 @@ def stability_command(
 ) -> int:
     """Linearise a law about the equilibrium nearest to a configuration: zero modes, slowest modes, margins, norms.
 
+    Any law is taken: of one with delays the rightmost roots are shown, of a map or a sampled law the multipliers, about
+    the motion at hand where it has no rest of its own.
+
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-patch:2 (see flockana
     lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
@@ -54,23 +57,23 @@ def stability_command(
     """
     from flockana.base.errors import SolverError
     from flockana.base.progress import progress_bar
-    from flockana.cli.flock import announce_time, read_flock
+    from flockana.cli.flock import announce_time, read_motion
     from flockana.cli.picture import KINDS, ensure_file, write_figure
-    from flockana.equilibria import find_equilibrium
-    from flockana.equilibria.rest import resting_state
-    from flockana.stability import linearise
+    from flockana.stability import Linearisation, linearise
 
     ensure_file(plot, KINDS)
     try:
-        law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
+        law, q, p = read_motion(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         announce_time(len(q), as_given=as_given)
         with progress_bar(2, enabled=q.size > DENSE) as advance:
             advance(0, "equilibrium")
-            here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
-            linear = linearise(law, here, allow_residual=as_given)
+            here = q if as_given else rest_of(law, q)
+            linear: Any = linearise(law, here, p if law.continuous is None else None, allow_residual=as_given)
             advance(1, "slowest modes")
+            if not isinstance(linear, Linearisation):
+                return _show_loop(linear, source, modes, delay=delay, as_json=as_json, plot=plot)
             slow = slowest(linear, modes)
-        facts = summary(linear, slow, source) | margins_and_norms(linear, delay=delay, norms=norms, strict=not as_given)
+        facts = summary(linear, slow, source) | margins_and_norms(linear, delay=delay, norms=norms)
     except SolverError as error:
         print_error(error)
         return UNEXPECTED
@@ -78,6 +81,65 @@ def stability_command(
     write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
     show_files(as_json, picture=plot)
     return OK
+
+
+def rest_of(law: Any, q: Any) -> Any:
+    """Return the equilibrium of a law near positions; of a map of its own the positions."""
+    from flockana.equilibria import find_equilibrium
+    from flockana.equilibria.rest import resting_state
+    from flockana.stability.loops import instant_law
+
+    if law.continuous is None:
+        return q
+    acting = instant_law(law.continuous)
+    return find_equilibrium(acting, q) if acting.conservative else resting_state(acting, q)
+
+
+def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool, plot: Path | None) -> int:
+    """Show a delayed law by its rightmost roots, a map by its slowest modes; they have no picture."""
+    from flockana.base.errors import ArgumentError
+    from flockana.stability import DelayLinearisation
+
+    if plot is not None:
+        raise ArgumentError(
+            f"--plot {plot}: expected a continuous law without a past or a clock, whose modes are drawn"
+        )
+    facts: dict[str, Any] = {"source": name, "law": linear.law.title, "n": len(linear.q)}
+    facts |= {"residual": linear.residual, "stable": linear.stable}
+    if isinstance(linear, DelayLinearisation):
+        facts["delays"] = list(linear.delays)
+        facts["rightmost roots"] = [[s.real, s.imag] for s in linear.rightmost(count).tolist()]
+        if delay:
+            facts |= _finite_margin("delay margin", linear.delay_margin())
+    else:
+        facts |= {"dt": linear.dt, "zero modes": [mode.name for mode in linear.zero_modes]}
+        facts["spectral radius"] = linear.spectral_radius
+        modes = linear.modes[:count]
+        facts["multipliers"] = [[mode.multiplier.real, mode.multiplier.imag] for mode in modes]
+    rows = [(key, _text(value)) for key, value in facts.items() if key not in ("source", "stable")]
+    show_facts(facts, as_json, f"{name}: {'stable off its zero modes' if linear.stable else 'unstable'}", rows)
+    return OK
+
+
+def _text(value: Any) -> str:
+    """Return a fact as a table writes it: complex numbers, names, numbers."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_text(one)}" for key, one in value.items())
+    if isinstance(value, list):
+        pairs = value and isinstance(value[0], list)
+        return ", ".join(
+            f"{one[0]:.5g}{f' {one[1]:+.5g}i' if one[1] else ''}" if pairs else _text(one) for one in value
+        )
+    return f"{value:.5g}" if isinstance(value, float) else "none" if value is None else str(value)
+
+
+def _finite_margin(name: str, margin: Any) -> dict[str, Any]:
+    """Return a delay margin as plain data; None where unbounded."""
+    from math import isfinite
+
+    numbers = {key: getattr(margin, key) for key in ("delay", "frequency", "least")}
+    plain = {key: value if isfinite(value) else None for key, value in numbers.items()}
+    return {name: plain | {"certified": margin.certified}}
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
@@ -123,31 +185,20 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
     }
 
 
-def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict: bool) -> dict[str, Any]:
+def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool) -> dict[str, Any]:
     """Return the requested delay margins and norms as plain data; None where unbounded."""
     from math import isfinite
 
-    from flockana.stability.blocks import law_blocks
-    from flockana.stability.delay import DELAYED, delay_margin, delay_system
-    from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
-
-    def finite(value: float) -> float | None:
-        return value if isfinite(value) else None
+    from flockana.stability.delay import DELAYED
 
     facts: dict[str, Any] = {}
-    law: Any = linear.law
     if delay:
         for kind in DELAYED:
-            system = delay_system(law, linear.q, delayed=kind, strict=strict)
-            margin = delay_margin(system, progress=sys.stderr.isatty())
-            numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
-            facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
+            margin = linear.delay_margin(delayed=kind, progress=sys.stderr.isatty())
+            facts |= _finite_margin(f"delay margin, {kind}", margin)
     if norms:
-        disturbed = disturbance_system(law_blocks(law, linear.q, strict=strict))
-        assert disturbed is not None  # shapes are always bounded
-        peak = hinf_norm(disturbed)
-        facts["H2"], facts["Hinf"] = finite(h2_norm(disturbed)), finite(peak[0])
-        facts["Hinf at"] = finite(peak[1])
+        numbers = zip(("H2", "Hinf", "Hinf at"), linear.norms(), strict=True)
+        facts |= {key: value if isfinite(value) else None for key, value in numbers}
     return facts
 
 

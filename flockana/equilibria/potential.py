@@ -23,8 +23,8 @@ def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
     """Return the law; raise unless its forces are gradients without jumps in m dimensions."""
     if not (isinstance(law, SumOfTerms) and law.conservative and law.term(PairTerm)):
         raise ArgumentError(
-            f"law = {law!r}: expected a sum of a pair term and others whose forces are gradients, such as Algorithm1, "
-            "Algorithm2, Algorithm3 or DeadZoneFlocking"
+            "expected a sum of a pair term and others whose forces are gradients, such as Algorithm1, Algorithm2, "
+            f"Algorithm3 or DeadZoneFlocking: got {type(law).__name__}"
         )
     if law.located:
         raise ArgumentError(

@@ -18,7 +18,7 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
     """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares)."""
     # Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
     if not isinstance(ensure_law(law), Law):
-        raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")
+        raise ArgumentError(f"expected a continuous law, as a map has no forces at rest: got {type(law).__name__}")
     q, t = ensure_points("q0", q0), ensure_finite_scalar("t", t)
     law.check_dimension(q.shape[1])
     law.check_start(q, np.zeros_like(q))

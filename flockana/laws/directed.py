@@ -22,11 +22,14 @@ from flockana.interactions.pair import kernel_values
 from flockana.kernels.alpha import R_ALPHA
 from flockana.kernels.directed import directed_forces, seen_edges
 from flockana.kernels.neighbours import pair_list
+from flockana.kernels.scalars import bump_slope, taper
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.features import Feature, function_feature
 from flockana.laws.law import Arrays
+from flockana.laws.matrices import assembled
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.term import Derivatives
 from flockana.laws.wrapped import WrappingLaw
 from flockana.measures.perception import Edges
 
@@ -174,6 +177,55 @@ class DirectedNet(WrappingLaw):
                 term.act(t, q, p, u)
         return u, float("nan")
 
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:
+        """Return (∂u/∂q, ∂u/∂p), sparse: of each agent's own pair law as its cone sees it, and of the other terms."""
+        pairs = [term for term in self.law.terms if isinstance(term, PairTerm)]
+        rest = [term.derivatives(t, q, p) for term in self.law.terms if not isinstance(term, PairTerm)]
+        by_position, by_velocity = zip(*(self._pair_derivatives(term, q, p) for term in pairs), *rest, strict=True)
+        return assembled(by_position), assembled(by_velocity)
+
+    def _pair_derivatives(self, term: PairTerm, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
+        """Derivatives of Σ_j w_ij (c1 s_ij Δ + c2 a_ij (p_j − p_i)), Δ = q_j − q_i."""
+        (n, m), reach = q.shape, self._reach(len(q))
+        first, second = pair_list(q, float(reach.max()))
+        i, j = np.concatenate([first, second]), np.concatenate([second, first])
+        delta, slip = q[j] - q[i], p[j] - p[i]
+        s2 = np.einsum("kc,kc->k", delta, delta)
+        near = s2 < reach[i] ** 2
+        i, j, delta, slip, s2 = i[near], j[near], delta[near], slip[near], s2[near]
+        stress, weight, slope, fade = np.zeros((4, i.size))
+        for r in np.unique(reach[i]):
+            own = reach[i] == r
+            stress[own], weight[own], slope[own], fade[own] = Reaching(self.alpha, float(r)).inner(s2[own])
+        sight, by_delta, by_own = self._sight_slopes(delta, p[i], s2)
+        force = term.stiffness * stress[:, None] * delta + term.damping * weight[:, None] * slip
+        bend = 2.0 * (term.stiffness * slope[:, None] * delta + term.damping * fade[:, None] * slip)
+        towards = bend[:, :, None] * delta[:, None, :] + term.stiffness * stress[:, None, None] * np.eye(m)
+        towards = sight[:, None, None] * towards + force[:, :, None] * by_delta[:, None, :]
+        drag = (term.damping * sight * weight)[:, None, None] * np.eye(m)
+        turned = force[:, :, None] * by_own[:, None, :]
+        return _rows(n, m, (i, j, towards), (i, i, -towards)), _rows(n, m, (i, j, drag), (i, i, turned - drag))
+
+    def _sight_slopes(
+        self, delta: FloatArray, ahead: FloatArray, s2: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Sight w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
+        sight, by_delta, by_own = np.ones(len(s2)), np.zeros(delta.shape), np.zeros(delta.shape)
+        if self._width >= 2.0:
+            return sight, by_delta, by_own
+        speed2 = np.einsum("kc,kc->k", ahead, ahead)
+        for k in np.flatnonzero(s2 * speed2 > 0.0):
+            there, way = delta[k] / s2[k] ** 0.5, ahead[k] / speed2[k] ** 0.5
+            cosine, total = float(there @ way), self._slow2 + speed2[k]
+            z = max(0.0, 1.0 - cosine) / self._width
+            cone, steep = taper(z, self.alpha.h), -bump_slope(z, self.alpha.h) / self._width
+            sight[k] = (self._slow2 + speed2[k] * cone) / total
+            share = speed2[k] * steep / total
+            by_delta[k] = share * (way - cosine * there) / s2[k] ** 0.5
+            by_own[k] = share * (there - cosine * way) / speed2[k] ** 0.5
+            by_own[k] += 2.0 * self._slow2 * (cone - 1.0) / total**2 * ahead[k]
+        return sight, by_delta, by_own
+
     def perceived(self, q: Any, p: Any) -> Edges:
         """Return the directed edges (j, i) of a state, where i sees j.
 
@@ -202,3 +254,17 @@ class DirectedNet(WrappingLaw):
             "one_way": ("share of the directed edges that have no counterpart", one_way),
             "undirected_energy": ("energy of the law on an undirected net (length²/time²)", energy),
         }
+
+
+def _rows(n: int, m: int, *entries: tuple[Any, Any, FloatArray]) -> Any:
+    """Return the sparse matrix (n m, n m) of blocks at (row, column); blocks at one place add up."""
+    from scipy.sparse import csr_array
+
+    rows, columns, blocks = (np.concatenate(part) for part in zip(*entries, strict=True))
+    places = np.indices((m, m))
+    across = [
+        m * at[:, None, None] + place for at, place in zip((rows.astype(int), columns.astype(int)), places, strict=True)
+    ]
+    return csr_array(
+        (blocks.ravel(), tuple(np.broadcast_to(part, blocks.shape).ravel() for part in across)), shape=(n * m,) * 2
+    )

@@ -16,6 +16,7 @@ from flockana.base.checks import (
     ensure_returned_array,
     ensure_state,
 )
+from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
@@ -33,27 +34,9 @@ if TYPE_CHECKING:
     from flockana.laws.terms.term import Compiled, Term
 
 
-def block_diagonal(blocks: FloatArray) -> csr_array:
-    """Return a sparse matrix with one block for each agent on its diagonal.
-
-    Parameters
-    ----------
-    blocks : ndarray, shape (n, m, m)
-        What each agent feels of itself.
-
-    Examples
-    --------
-    >>> block_diagonal(np.array([[[2.0]], [[3.0]]])).toarray().tolist()
-    [[2.0, 0.0], [0.0, 3.0]]
-    """
-    from scipy.sparse import bsr_array
-
-    n, m = blocks.shape[:2]
-    return bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(n * m, n * m)).tocsr()
-
-
 Arrays = Mapping[str, FloatArray]  # by name
 Block = Callable[..., tuple[FloatArray, FloatArray, FloatArray] | None]  # of steps, as `Law.block` returns it
+_SMOOTH = 1e-6  # relative: how far slopes by differences of several widths may be apart
 _Term = TypeVar("_Term", bound="Term")
 _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field": None}
 
@@ -357,9 +340,21 @@ class Law(LawOfMotion):
         return None
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
-        """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; a law that has them overrides this."""
-        name = type(self).__name__
-        raise ArgumentError(f"{name} gives no derivatives: expected a law that implements `derivatives` to linearise")
+        """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; by differences unless overridden."""
+        from scipy.sparse import csr_array
+
+        own = self.scales
+        length = own.length if own else float(np.abs(q - q[0]).max()) or 1.0
+        by_position = differences(lambda x: self.flow(t, x, p)[0], q, length)
+        pace = float(np.sqrt(np.abs(by_position.matrix).max(initial=0.0))) or float(np.abs(p).max()) / length or 1.0
+        by_velocity = differences(lambda v: self.flow(t, q, v)[0], p, own.speed if own else length * pace)
+        spread = max(by_position.spread, by_velocity.spread)
+        if spread > _SMOOTH:
+            raise ArgumentError(
+                f"{type(self).__name__} has a kink or a jump at this state (slopes differ by {spread:.2g} of the "
+                "largest): expected a state around which its input is smooth, or a law that implements `derivatives`"
+            )
+        return csr_array(by_position.matrix), csr_array(by_velocity.matrix)
 
     def jacobian(self, t: float, q: Any, p: Any, *, sparse: bool = False) -> FloatArray | csr_array:
         """Derivative of (p, u) in the state, ordered ``(q.ravel(), p.ravel())``: [[0, I], [∂u/∂q, ∂u/∂p]].
@@ -376,7 +371,7 @@ class Law(LawOfMotion):
         Raises
         ------
         ArgumentError
-            On bad arrays, a law without derivatives, or a dense matrix that would not fit in memory.
+            On bad arrays, a kink or a jump of the law at this state, or a dense matrix that would not fit in memory.
 
         Examples
         --------

@@ -2,17 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, normalise
+from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.laws.law import Law
+from flockana.laws.matrices import block_diagonal
+from flockana.laws.terms.term import Derivatives
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 from flockana.measures.frame import moving_frame
 
 BY = ("length", "component")
+_AT = 1e-9  # relative: an input as near as that to the limit is at it
 
 
 @dataclass(frozen=True)
@@ -77,3 +81,32 @@ class Saturated(Wrapper):
         given = self.bounded(u)
         velocity = moving_frame(p) if self.moving else p
         return given, rate + float(np.sum((given - u) * velocity))
+
+    def slopes(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise where an input is at it.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n, m)
+            Input that is asked for.
+        """
+        size = np.abs(u) if self.by == "component" else np.linalg.norm(u, axis=1, keepdims=True)
+        worst = int(np.argmin(np.abs(size - self.limit).min(axis=1)))
+        if np.abs(size[worst] - self.limit).min() <= _AT * self.limit:
+            raise ArgumentError(
+                f"the input of agent {worst} is at its limit {self.limit:g}, where it has a kink: expected a state in "
+                "which every input is within its limit, or beyond it"
+            )
+        one = np.broadcast_to(np.eye(u.shape[1]), (*u.shape, u.shape[1]))
+        if self.by == "component":
+            return one * (size < self.limit)[:, :, None]
+        ahead = u / np.maximum(size, 1e-300)
+        turned = self.limit / np.maximum(size, 1e-300)[:, :, None] * (one - ahead[:, :, None] * ahead[:, None, :])
+        return np.where((size < self.limit)[:, :, None], one, turned)
+
+    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
+        from scipy.sparse import csr_array
+
+        slopes: Any = self.law.derivatives(t, q, p)
+        bend = block_diagonal(self.slopes(self.law.flow(t, q, p)[0]))
+        return bend @ csr_array(slopes[0]), bend @ csr_array(slopes[1])

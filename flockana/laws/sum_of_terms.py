@@ -9,7 +9,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import overrides_consistently
-from flockana.laws.law import Law, block_diagonal
+from flockana.laws.law import Law
+from flockana.laws.matrices import assembled
 from flockana.laws.terms.term import Compiled, Derivatives, Term, TermKernel
 from flockana.measures.frame import moving_frame
 
@@ -83,7 +84,7 @@ class SumOfTerms(Law):
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         by_position, by_velocity = zip(*(term.derivatives(t, q, p) for term in self.terms), strict=True)
-        return _assembled(by_position), _assembled(by_velocity)
+        return assembled(by_position), assembled(by_velocity)
 
     def derivation(self, m: int = 2) -> EnergyIdentity:
         """Potential, force, energy and dH/dt with its closed form, for every number of agents; prints as LaTeX.
@@ -113,12 +114,4 @@ class SumOfTerms(Law):
         q = ensure_points("q", q)
         self.check_dimension(q.shape[1])
         self.check_agents(len(q))
-        return _assembled([term.hessian(t, q) for term in self.terms])
-
-
-def _assembled(parts: Any) -> Any:
-    """Return the sum of sparse matrices and of diagonal blocks of single agents."""
-    matrices, blocks = ([x for x in parts if isinstance(x, np.ndarray) == own] for own in (False, True))
-    if blocks:
-        matrices.append(block_diagonal(sum(blocks[1:], blocks[0])))
-    return sum(matrices[1:], matrices[0]).tocsr()
+        return assembled([term.hessian(t, q) for term in self.terms])

@@ -272,6 +272,6 @@ def ensure_hears(law: Law) -> None:
     core = law.core if isinstance(law, Wrapper) else law
     if not any(isinstance(term, PairTerm) for term in core.terms):
         raise ArgumentError(
-            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which the states "
-            'of others are apart from an agent\'s own; late="all" and of="all" take any law'
+            "expected a sum of terms with a pair term, such as Algorithm1(), in which the states of others are apart "
+            f'from an agent\'s own: got {type(core).__name__}; late="all" and of="all" take any law'
         )

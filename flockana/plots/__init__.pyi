@@ -20,7 +20,9 @@ from .control import bode as bode
 from .control import delay_chart as delay_chart
 from .control import gain_sweep as gain_sweep
 from .control import norms as norms
+from .control import nyquist as nyquist
 from .control import root_locus as root_locus
+from .control import singular_values as singular_values
 from .decay import linear_range as linear_range
 from .decay import measured_gains as measured_gains
 from .diameters import diameters as diameters

@@ -1,9 +1,10 @@
-"""Control-engineering plots: Bode, root locus, gain sweep, norms against size, delay margins."""
+"""Control-engineering plots: Bode, Nyquist, singular values, root locus, gain sweep, norms by size, delay margins."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping
+from itertools import count
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.ticker import MultipleLocator, NullFormatter
@@ -27,13 +28,13 @@ _UNITS = {"c1": "1/time²", "c2": "1/time"}
 
 @check_kinds
 def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = None, ax: Any = None) -> Any:
-    """Draw magnitude (decibels) and phase of scalar frequency responses, one above the other.
+    """Draw magnitude (decibels) and phase of frequency responses, one above the other.
 
     Parameters
     ----------
     responses : mapping of str to control.FrequencyResponseData
-        By label, such as those of `CentreOfMass.frequency_response`, or what has `omega` and `complex` as they have;
-        four at most.
+        By label, such as those of `Linearisation.response`, or what has `omega` and `complex` as they have. Of one with
+        several inputs or outputs each pair is drawn, labelled by its signals.
     marks : mapping of str to float, optional
         Frequencies to point out, by label.
     ax : sequence of two Axes, optional
@@ -43,28 +44,101 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     -------
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
-    for label, response in responses.items():
-        if not (hasattr(response, "omega") and hasattr(response, "complex")):
-            what = f"responses[{label!r}] = {format_value(response)}"
-            raise ArgumentError(f"{what}: expected a frequency response, as of CentreOfMass")
+    curves = [curve for label, response in responses.items() for curve in _curves(label, response)]
     if ax is None:
         import matplotlib.pyplot as plt
 
         with style():
             ax = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
     magnitude, phase = panels = np.ravel(ax)
-    for (label, response), (colour, dash) in zip(responses.items(), _DASHES, strict=False):
-        values, look = np.ravel(response.complex), {"color": colour, "linestyle": dash}
-        magnitude.semilogx(response.omega, 20.0 * np.log10(np.abs(values)), label=label, **look)
-        phase.semilogx(response.omega, np.degrees(np.unwrap(np.angle(values))), **look)
+    for curve, look in zip(curves, _looks(), strict=False):
+        magnitude.semilogx(curve.omega, 20.0 * np.log10(np.abs(curve.values)), label=curve.label, **look)
+        phase.semilogx(curve.omega, np.degrees(np.unwrap(np.angle(curve.values))), **look)
     for name, omega in (marks or {}).items():
         mark(magnitude, omega, name, width=0.9, color=MUTED, fontsize=8)
         mark(phase, omega, width=0.9)
     magnitude.axhline(0.0, color=FAINT, linewidth=1.2, linestyle="-", zorder=0)
-    finish(magnitude, y="|q_c/q_r| (dB)")
+    ratios = {curve.ratio for curve in curves}
+    finish(magnitude, y=f"|{ratios.pop()}| (dB)" if len(ratios) == 1 else "magnitude (dB)")
     finish(phase, "ω (radians/time)", "phase (degrees)")
     phase.yaxis.set_major_locator(MultipleLocator(45.0))
     return panels
+
+
+class _Curve(NamedTuple):
+    """One scalar frequency response: label, output over input, frequencies and values."""
+
+    label: str
+    ratio: str
+    omega: Any
+    values: Any
+
+
+def _curves(label: str, response: Any) -> list[_Curve]:
+    """Return the scalar responses from each input to each output."""
+    if not (hasattr(response, "omega") and hasattr(response, "complex")):
+        what = f"responses[{label!r}] = {format_value(response)}"
+        raise ArgumentError(f"{what}: expected a frequency response, as of Linearisation.response or CentreOfMass")
+    omega = np.ravel(response.omega)
+    values = np.reshape(response.complex, (-1, omega.size))
+    inputs, outputs = (list(getattr(response, f"{way}_labels", None) or ["?"]) for way in ("input", "output"))
+    if len(values) == 1:
+        ratio = "G" if "?" in (outputs[0], inputs[0]) else f"{outputs[0]}/{inputs[0]}"
+        return [_Curve(label, ratio, omega, values[0])]
+    pairs = [f"{outputs[k // len(inputs)]}/{inputs[k % len(inputs)]}" for k in range(len(values))]
+    return [_Curve(f"{label}: {pair}", pair, omega, row) for pair, row in zip(pairs, values, strict=True)]
+
+
+def _looks() -> Iterator[dict[str, Any]]:
+    """Colours with dashes, without end: four that differ in both, then other pairs of these."""
+    for turn in count():
+        for k, (colour, _) in enumerate(_DASHES):
+            yield {"color": colour, "linestyle": _DASHES[(k + turn) % len(_DASHES)][1]}
+
+
+@check_kinds
+def nyquist(responses: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
+    """Draw open loops L(jω) in the complex plane, for ω > 0 and dashed for ω < 0, about the point −1.
+
+    Parameters
+    ----------
+    responses : mapping of str to control.FrequencyResponseData
+        By label, such as frequency responses of `flockana.stability.open_loop`. What is farther than twice the distance
+        that matters is cut off.
+    """
+    ax = ensure_axes(ax)
+    angle, farthest = np.linspace(0.0, 2.0 * np.pi, 181), 1.5
+    curves = [curve for label, response in responses.items() for curve in _curves(label, response)]
+    for curve, look in zip(curves, _looks(), strict=False):
+        ax.plot(curve.values.real, curve.values.imag, color=look["color"], linestyle="-", label=curve.label)
+        ax.plot(curve.values.real, -curve.values.imag, color=look["color"], linestyle="--", linewidth=0.8)
+        sizes = np.abs(curve.values)
+        farthest = max(farthest, min(4.0, 1.1 * float(sizes.max(initial=0.0))))
+    ax.plot(np.cos(angle), np.sin(angle), color=FAINT, linestyle="-", linewidth=0.9, zorder=0)
+    ax.plot(-1.0, 0.0, "+", color=VERMILLION, markersize=9, markeredgewidth=1.6, linestyle="none", label="−1")
+    ax.axhline(0.0, color=MUTED, linewidth=0.6, linestyle="-", zorder=0)
+    ax.axvline(0.0, color=MUTED, linewidth=0.6, linestyle="-", zorder=0)
+    ax.set(xlim=(-farthest, farthest), ylim=(-farthest, farthest), aspect="equal")
+    return finish(ax, "Re L(jω)", "Im L(jω)")
+
+
+@check_kinds
+def singular_values(response: Any, *, ax: Axes | None = None) -> Axes:
+    """Draw the singular values of a frequency response with several inputs and outputs over frequency, in decibels.
+
+    Parameters
+    ----------
+    response : control.FrequencyResponseData
+        Such as `control.frequency_response(linearisation.structural, omega)`.
+    """
+    ax = ensure_axes(ax)
+    curves = _curves("response", response)
+    values = np.moveaxis(np.reshape(response.complex, (response.noutputs, response.ninputs, -1)), -1, 0)
+    sizes = 20.0 * np.log10(np.linalg.svd(values, compute_uv=False))
+    look: dict[str, Any] = {"color": MUTED, "linestyle": "-"}
+    ax.semilogx(curves[0].omega, sizes[:, 1:], **look)
+    ax.semilogx(curves[0].omega, sizes[:, 0], **look | {"color": BLUE, "label": "largest"})
+    return finish(ax, "ω (radians/time)", "singular values (dB)")
 
 
 @check_kinds

@@ -178,7 +178,8 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
     if not points:
         return None
     omegas = np.geomspace(0.3, 30.0, 200)  # drawn by the formula, without python-control
-    responses = {name: SimpleNamespace(omega=omegas, complex=x.response(omegas)) for name, x in centres.items()}
+    signals = {"omega": omegas, "input_labels": ["q_r"], "output_labels": ["q_c"]}
+    responses = {name: SimpleNamespace(complex=x.response(omegas), **signals) for name, x in centres.items()}
 
     def draw(figure: Any) -> None:
         axes = plots().bode(responses, ax=figure.subplots(2, 1, sharex=True))

@@ -14,9 +14,9 @@ from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
 from flockana.equilibria.terminal import rigid_motions
 from flockana.laws import Navigation, PairTerm
+from flockana.stability.bases import NEUTRAL, complement
 from flockana.stability.linearise import linearise
 
-NEUTRAL = 1e-9  # of the stiffness of its agents: a rigid motion that meets no more than that is neutral
 _LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which it cancels
 MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many
 
@@ -76,13 +76,6 @@ def reduced(stiffness: FloatArray, damping: FloatArray, positions: FloatArray, v
     return np.vstack([top, -velocities.T @ np.hstack([stiffness @ positions, damping @ velocities])])
 
 
-def complement(basis: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the orthogonal complement."""
-    if basis.shape[1] == 0:
-        return np.eye(basis.shape[0])
-    return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
-
-
 @check_kinds
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray, *, zero: float = NEUTRAL) -> Blocks:
     """Classify a flock's rigid motions by the forces that hold them.
@@ -114,7 +107,9 @@ def is_pairs_and_pull(law: Any) -> bool:
 def ensure_pairs_and_pull(law: Any) -> None:
     """Raise unless a law is one of pairs and a linear pull."""
     if not is_pairs_and_pull(law):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
+        raise ArgumentError(
+            f"expected Algorithm1 or Algorithm2, pairs and at most a linear pull: got {type(law).__name__}"
+        )
 
 
 def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:

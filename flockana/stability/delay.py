@@ -1,39 +1,34 @@
-"""Delayed interactions: delay margins and characteristic roots.
+"""Delayed interactions: the linear flock with its late part, and the delay that it bears.
 
 x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old, and so is its own state
-("all": K₀ = D₀ = 0); or the terms between agents, its own state in them included ("pairs": the γ-terms act at once); or
-only what it hears of other agents ("neighbours": it knows its own state at once, so that the blocks of an agent with
-itself are prompt).
+("all": K₀ = D₀ = 0); or what depends on differences from other agents, its own state in them included ("pairs": the
+γ-terms, drag and obstacles act at once); or only what it hears of other agents ("neighbours": it knows its own state at
+once, so that the blocks of an agent with itself are prompt).
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from math import inf, nan, pi
+from dataclasses import dataclass, replace
+from math import inf, nan
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import (
-    ComplexArray,
-    FloatArray,
-    ensure_count,
-    ensure_kind,
-    ensure_known,
-    ensure_nonnegative,
-    ensure_positive,
-)
+from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_kind, ensure_known, ensure_nonnegative
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
-from flockana.equilibria.curvature import EPS
-from flockana.laws import Law
-from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
+from flockana.stability.bases import NEUTRAL
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
-from flockana.stability.linearise import linearise
+from flockana.stability.linearisation import Linearisation
 from flockana.stability.rounding import eigenvalues
 from flockana.stability.zero_modes import ZERO, kernel_of
 
 DELAYED = ("all", "pairs", "neighbours")
-_ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
+CARRIES = ("both", "positions", "velocities")
+_GENERIC = 0.7310585786  # a delay, in units of D over K₁, at which by chance nothing cancels
+_BRIEF = 1e-4  # a delay, in the same unit: as short as matters
 _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutral motions the search begins there
 
 
@@ -56,10 +51,18 @@ class DelaySystem:
         (k0, d0), (k1, d1) = self.prompt, self.late
         return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 
-    def slope(self, s: complex, delay: float) -> ComplexArray:
-        """Return the derivative of `characteristic` by s."""
-        (_, d0), (k1, d1) = self.prompt, self.late
-        return 2.0 * s * np.eye(len(d0)) + d0 + (d1 - delay * (k1 + s * d1)) * np.exp(-s * delay)
+    def strong_parts(self) -> Iterator[DelaySystem]:
+        """Strongly connected parts: the roots of the whole are those of its parts, each taken by itself."""
+        matrices, parts = (*self.prompt, *self.late), []
+        for rows in strong_components(*matrices).indices:
+            k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)
+            kernel, cokernel = kernels(k0 + k1) if self.neutral else (np.zeros((len(rows), 0)),) * 2
+            parts.append(DelaySystem((k0, d0), (k1, d1), neutral_roots(kernel, cokernel, d0 + d1, k1)))
+        if sum(part.neutral for part in parts) == self.neutral:
+            return iter(parts)
+        return (
+            replace(part, neutral=self.neutral) for part in parts
+        )  # softer than rounding tells: any part may have them
 
 
 @dataclass(frozen=True)
@@ -90,16 +93,30 @@ class DelayMargin:
         return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
-def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True) -> DelaySystem:
-    """The linearised flock whose interactions are delayed.
+def delay_system(
+    law: Any,
+    q: Any,
+    *,
+    delayed: str = "all",
+    carries: str = "both",
+    links: Any = None,
+    strict: bool = True,
+) -> DelaySystem:
+    """Return the linearised flock whose interactions are delayed.
 
     Parameters
     ----------
     law : Law
-        Algorithm 1 or 2, gains one for all or one per agent; with ``"all"`` any law that `linearise` takes.
+        A law that `linearise` takes.
+    q : Equilibrium, Linearisation or array_like, shape (n, m)
+        As for `linearise`.
     delayed : {"all", "pairs", "neighbours"}
-        Everything, an agent's own state included; the terms between agents, its own state in them included; or only
-        what these terms hear of other agents.
+        Everything, an agent's own state included; what depends on differences from other agents, its own state in them
+        included; or only what it hears of other agents.
+    carries : {"both", "positions", "velocities"}
+        What is late of these.
+    links : array_like, shape (M, 2), optional
+        Pairs (i, j): only what agent i hears of agent j is late, of ``"pairs"`` or ``"neighbours"``; by default all.
     strict : bool
         Refuse a state that is no equilibrium.
 
@@ -112,29 +129,68 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
     ([[[1.1]], [[2.0976176963403033]]], 0)
     """
     ensure_known("set of delayed terms", delayed, DELAYED)
-    if delayed == "all" and isinstance(law, Law) and not is_pairs_and_pull(law):
-        found = linearise(law, q, allow_residual=not strict)
-        k, d, rest = found.stiffness.toarray(), found.damping.toarray(), found.second_order.invariant
-        zero = np.zeros_like(k)
-        return DelaySystem((zero, zero), (k, d), len(rest.zero) + rest.chains)
-    flock = law_blocks(law, q, strict=strict)
-    neutral, zero = flock.neutral.shape[1] + flock.drifting.shape[1], np.zeros_like(flock.stiffness)
-    if delayed == "all":
-        return DelaySystem((zero, zero), (flock.stiffness, flock.damping), neutral)
-    prompt_k, prompt_d = zero.copy(), zero.copy()
+    ensure_known("quantity that is late", carries, CARRIES)
+    from flockana.stability.delay_linearisation import DelayLinearisation
+    from flockana.stability.linearise import linearise  # it gives delayed laws what needs this module
+
+    flock: Any = linearise(law, q, allow_residual=not strict)
+    if isinstance(flock, DelayLinearisation):
+        return flock.system
+    if not isinstance(flock, Linearisation):
+        raise ArgumentError(f"{law.title} is a map: expected a continuous law; linearise(...) gives its map")
+    ensure_fits("K", flock.stiffness.shape, "ask of fewer agents")
+    k, d = flock.stiffness.toarray(), flock.damping.toarray()
+    late_k, late_d = (late_part(part, flock.q.shape[1], delayed, links) for part in (k, d))
+    late_k, late_d = late_k * (carries != "velocities"), late_d * (carries != "positions")
+    zero = flock.second_order.invariant
+    neutral = neutral_roots(zero.kernel, zero.cokernel, d, late_k)
+    return DelaySystem((k - late_k, d - late_d), (late_k, late_d), neutral)
+
+
+def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> FloatArray:
+    """Return the part of K or D, shape (n m, n m), that is late: see `delay_system`."""
+    n = len(matrix) // m
+    if links is None and delayed == "all":
+        return matrix
+    heard = ~np.eye(n, dtype=bool)
+    if links is not None:
+        if delayed == "all":
+            raise ArgumentError('links: expected delayed="pairs" or "neighbours", of which single links may be late')
+        i, j = ensure_directed_links(links, n).T
+        heard = np.zeros((n, n), dtype=bool)
+        heard[i, j] = True
+    others = np.where(np.kron(heard, np.ones((m, m), dtype=bool)), matrix, 0.0)
     if delayed == "neighbours":
-        m = np.shape(q)[1]
-        itself = np.kron(np.eye(len(zero) // m), np.ones((m, m))) > 0.0  # each agent's own block
-        prompt_k[itself], prompt_d[itself] = flock.stiffness[itself], flock.damping[itself]
-        # delayed neighbours of a drifting flock appear behind, which slows it down unless no force acts along the drift
-        held = np.linalg.matrix_rank(flock.drifting.T @ prompt_k @ flock.drifting, tol=NEUTRAL * np.abs(prompt_k).max())
-        neutral -= int(held)
-    elif law.target is not None:
-        gains: Any = law.gains  # type: ignore[attr-defined]  # Algorithm 2 has them
-        shape, own = np.shape(q), np.diag_indices(len(zero))
-        prompt_k[own] = np.broadcast_to(gains.pull, shape).ravel()
-        prompt_d[own] = np.broadcast_to(gains.drag, shape).ravel()
-    return DelaySystem((prompt_k, prompt_d), (flock.stiffness - prompt_k, flock.damping - prompt_d), neutral)
+        return others
+    # what depends on differences alone gives the rows of blocks that sum to 0
+    own = -others.reshape(n, m, n, m).sum(axis=2)
+    for i in range(n):
+        others[i * m : (i + 1) * m, i * m : (i + 1) * m] = own[i]
+    return others
+
+
+def ensure_directed_links(links: Any, n: int) -> Any:
+    """Return links (i, j), i hears j, as an int array (M, 2), in their directions; raise unless they are such pairs."""
+    pairs = np.asarray(links)
+    if pairs.ndim != 2 or pairs.shape[1] != 2 or pairs.dtype.kind not in "iu":
+        raise ArgumentError(f"links = {format_value(links)}: expected pairs (i, j) of agents, i hears j")
+    if (pairs < 0).any() or (pairs >= n).any() or (pairs[:, 0] == pairs[:, 1]).any():
+        raise ArgumentError(f"links = {format_value(links)}: expected pairs of two different agents from 0 to {n - 1}")
+    return pairs
+
+
+def neutral_roots(kernel: FloatArray, cokernel: FloatArray, damping: FloatArray, late: FloatArray) -> int:
+    """Return the number of characteristic roots that are 0 for almost every delay.
+
+    On the kernel of K the characteristic matrix begins with s (D − τK₁): where a part of it is 0 as well, a velocity
+    persists, and the root is double.
+    """
+    count = kernel.shape[1]
+    if not count:
+        return 0
+    parts = [(cokernel.T @ x @ kernel) / (float(np.abs(x).max()) or 1.0) for x in (damping, late)]
+    rank = int(np.sum(np.linalg.svd(parts[0] - _GENERIC * parts[1], compute_uv=False) > ZERO))
+    return 2 * count - rank
 
 
 def scalar_margin(k: float, d: float) -> DelayMargin:
@@ -189,7 +245,7 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
     if not _stable(system):
         return DelayMargin(0.0, float("nan"), 0.0)
-    parts = list(_strong_parts(system))
+    parts = list(system.strong_parts())
     with progress_bar(len(parts), enabled=progress, counted=False) as advance:
         margins = [
             _margin_of_part(part, lambda share, k=k: advance(k + share, f"part {k + 1} of {len(parts)}"))  # type: ignore[misc]
@@ -211,138 +267,56 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
     if found is None:
         top = 1.01 * system.highest / unit
         found = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
-    return DelayMargin(found.delay / unit, found.frequency * unit, found.least / unit)
+    least = min(found.least, still := _still_crossing(system) * unit)
+    if still < found.delay:
+        return DelayMargin(still / unit, 0.0, least / unit)
+    return DelayMargin(found.delay / unit, found.frequency * unit, least / unit)
 
 
-def _strong_parts(system: DelaySystem) -> Iterator[DelaySystem]:
-    """Strongly connected parts: the roots of the whole are those of its parts, each taken by itself."""
-    matrices = (*system.prompt, *system.late)
-    for rows in strong_components(*matrices).indices:
-        own = np.ix_(rows, rows)
-        k0, d0, k1, d1 = (part[own] for part in matrices)
-        yield DelaySystem((k0, d0), (k1, d1), system.neutral)
+def _still_crossing(system: DelaySystem) -> float:
+    """Return the least delay at which a further root reaches 0, without a swing; only neutral motions allow it."""
+    # There D − τK₁ on the kernel of K is singular where it is not for other delays.
+    from scipy.linalg import eigvals
+
+    if not system.neutral:
+        return inf
+    (k0, d0), (k1, d1) = system.prompt, system.late
+    kernel, cokernel = kernels(k0 + k1)
+    sizes = [float(np.abs(x).max()) or 1.0 for x in (d0 + d1, k1)]
+    drag, pull = (cokernel.T @ x @ kernel / size for x, size in zip((d0 + d1, k1), sizes, strict=True))
+    rows, columns = _range(np.hstack([drag, pull])), _range(np.vstack([drag, pull]).T)  # the rest drifts
+    drag, pull, unit = (rows.T @ x @ columns for x in (drag, pull, cokernel.T @ kernel))
+    if rows.shape != columns.shape or np.abs(pull).max(initial=0.0) <= ZERO:
+        return inf
+    early: Any = eigvals(drag - _BRIEF * pull, unit)
+    if np.any(early.real < -ZERO):  # with any delay what drifted grows
+        return 0.0
+    delays: Any = eigvals(drag, pull)
+    real = delays.real[np.isfinite(delays) & (np.abs(delays.imag) <= CLOSE * np.abs(delays)) & (delays.real > ZERO)]
+    return float(real.min(initial=inf)) * sizes[0] / sizes[1]
+
+
+def kernels(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return bases of the right and the left kernel of K."""
+    rows = np.abs(stiffness).sum(axis=1)
+    found = kernel_of(stiffness, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
+    return found.right, found.left
+
+
+def _range(matrix: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the columns' span."""
+    left, sizes, _ = np.linalg.svd(matrix)
+    return left[:, : int(np.sum(sizes > ZERO))]
 
 
 def _stable(system: DelaySystem) -> bool:
     """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
     # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     found = []
-    for part in _strong_parts(system):
+    for part in system.strong_parts():
         (k0, d0), (k1, d1) = part.prompt, part.late
         found.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
     roots, errors = (np.concatenate(x) for x in zip(*found, strict=True))
     neutral = np.abs(roots) <= errors
     neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
     return bool(np.all(roots.real[~neutral] < -errors[~neutral]))
-
-
-def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count: int = 6) -> ComplexArray:
-    """The rightmost characteristic roots, neutral ones left out, by Chebyshev collocation of the generator.
-
-    The delayed state over [−τ, 0] is a polynomial through nodes + 1 Chebyshev points (Breda, Maset, Vermiglio 2005);
-    each root is then refined by Newton's method on the characteristic matrix itself, which has no such error.
-
-    Parameters
-    ----------
-    system : DelaySystem
-        The linearised flock.
-    delay : float
-        τ > 0.
-    nodes : int
-        Degree of the polynomial; the matrix has 2N (nodes + 1) rows.
-    count : int
-        Roots wanted; conjugates count too.
-
-    Returns
-    -------
-    complex ndarray, shape (count,)
-        Largest real part first.
-
-    Examples
-    --------
-    At the margin of x'' = −x'(t − τ) the roots ±j are the rightmost:
-
-    >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.zeros((1, 1)), np.ones((1, 1))), neutral=1)
-    >>> [round(float(abs(s)), 9) for s in rightmost_roots(one, 0.5 * pi, count=2) - np.array([1j, -1j])]
-    [0.0, 0.0]
-    """
-    ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
-    delay, nodes, count = ensure_positive("delay", delay), ensure_count("nodes", nodes), ensure_count("count", count)
-    parts = list(_strong_parts(system))
-    neutral = [_neutral_roots(part, delay) for part in parts] if len(parts) > 1 else [system.neutral]
-    each = zip(parts, neutral, strict=True)
-    found = np.concatenate([_rightmost_of_part(part, zeros, delay, nodes, count) for part, zeros in each])
-    found = found[np.argsort(-found.real, kind="stable")]
-    pairs = [(s,) if s.imag == 0.0 else (s, s.conjugate()) for s in found.tolist()]  # each with its conjugate
-    return np.array([s for pair in pairs for s in pair], dtype=np.complex128)[:count]
-
-
-def _neutral_roots(part: DelaySystem, delay: float) -> int:
-    """Return how many roots a strongly connected part has at s = 0 for a delay."""
-    if part.neutral == 0:
-        return 0
-    (k0, d0), (k1, d1) = part.prompt, part.late
-    rows = np.abs(k0 + k1).sum(axis=1)
-    kernel = kernel_of(k0 + k1, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
-    slope = d0 + d1 - delay * k1
-    drag, terms = kernel.left.T @ slope @ kernel.right, np.abs(kernel.left).T @ np.abs(slope) @ np.abs(kernel.right)
-    held = np.linalg.matrix_rank(drag, tol=ZERO * float(terms.max(initial=0.0))) if drag.size else 0
-    return 2 * kernel.right.shape[1] - int(held)
-
-
-def _rightmost_of_part(system: DelaySystem, neutral: int, delay: float, nodes: int, count: int) -> ComplexArray:
-    """Return the rightmost roots with Im s >= 0 of a strongly connected part, `neutral` roots at 0 left out."""
-    (k0, d0), (k1, d1) = system.prompt, system.late
-    size, zero, one = len(k0), np.zeros_like(k0), np.eye(len(k0))
-    now, then = np.block([[zero, one], [-k0, -d0]]), np.block([[zero, zero], [-k1, -d1]])
-    if not then.any():  # nothing is late
-        nodes, generator = 0, now
-    else:
-        generator = np.kron(_chebyshev(nodes) * (2.0 / delay), np.eye(2 * size))
-        generator[: 2 * size] = 0.0
-        generator[: 2 * size, : 2 * size] = now
-        generator[: 2 * size, -2 * size :] += then
-    values = np.linalg.eigvals(generator)
-    values = np.delete(values, np.argsort(np.abs(values), kind="stable")[:neutral])
-    upper = values[values.imag >= 0.0]
-    upper = upper[np.argsort(-upper.real, kind="stable")][:count]
-    return np.array([_refine(system, complex(s), delay) for s in upper], dtype=np.complex128)
-
-
-def root_error(system: DelaySystem, s: complex, delay: float) -> float:
-    """Return an error bound of a refined root, from the residual and rounding."""
-    (k0, d0), (k1, d1) = system.prompt, system.late
-    u, sizes, vh = np.linalg.svd(system.characteristic(s, delay))
-    late, turn = np.exp(-s * delay), abs(complex(u[:, -1].conj() @ system.slope(s, delay) @ vh[-1].conj()))
-    size = float(np.linalg.norm(k0) + abs(s) * np.linalg.norm(d0))
-    size += abs(late) * float(np.linalg.norm(k1) + abs(s) * np.linalg.norm(d1)) + abs(s) ** 2
-    push = float(sizes[-1]) + _ROUNDINGS * EPS * size
-    return float(min(push / turn if turn > 0.0 else inf, np.sqrt(push)))
-
-
-def _chebyshev(nodes: int) -> FloatArray:
-    """Differentiation matrix on the Chebyshev points cos(πk/nodes), from 1 to −1 (Trefethen 2000, chapter 6)."""
-    k = np.arange(nodes + 1)
-    x = np.cos(pi * k / nodes)
-    weight = np.where((k == 0) | (k == nodes), 2.0, 1.0) * (-1.0) ** k
-    matrix = np.outer(weight, 1.0 / weight) / (x[:, None] - x[None, :] + np.eye(nodes + 1))
-    return matrix - np.diag(matrix.sum(axis=1))
-
-
-def _refine(system: DelaySystem, s: complex, delay: float) -> complex:
-    """Newton's method for (v, s) with M(s) v = 0, started from the singular vector at s."""
-    start = s
-    v = np.linalg.svd(system.characteristic(s, delay))[2][-1].conj()
-    fixed = v.conj()
-    for _ in range(8):
-        matrix, slope = system.characteristic(s, delay), system.slope(s, delay) @ v
-        bordered = np.block([[matrix, slope[:, None]], [fixed[None, :], np.zeros((1, 1))]])
-        try:
-            step = np.linalg.solve(bordered, np.append(-matrix @ v, 1.0 - fixed @ v))
-        except np.linalg.LinAlgError:
-            break
-        v, s = v + step[:-1], s + complex(step[-1])
-        if abs(step[-1]) <= 1e-14 * max(abs(start), 1.0 / delay):
-            break
-    near = abs(s - start) <= 0.1 * max(abs(start), 1.0 / delay)
-    return s if near and np.isfinite(s) else start

@@ -25,7 +25,8 @@ from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.laws import Algorithm2
-from flockana.stability.blocks import complement, reduced
+from flockana.stability.bases import complement
+from flockana.stability.blocks import reduced
 
 FORMS = ("full", "simplified")
 ROTATIONS = ("apart", "neutral", "counted")

@@ -16,6 +16,7 @@ from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.signals import structural_system, translational_system, whole_system
+from flockana.stability.studies import Studies
 
 if TYPE_CHECKING:
     import control
@@ -26,7 +27,7 @@ _MOST_SHOWN = 900  # coordinates up to which all poles are found for a table
 
 
 @dataclass(frozen=True, eq=False)
-class Linearisation:
+class Linearisation(Studies):
     """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
 
     Parameters
@@ -161,11 +162,16 @@ class Linearisation:
         return all(mode.decays for mode in self.modes)
 
     @property
-    def structural_decay_rate(self) -> float:
-        """`decay_rate` of the shape alone, the centre of mass left out; raises where they do not separate."""
+    def structural_modes(self) -> tuple[Mode, ...]:
+        """`modes` of the shape alone, the centre of mass left out; raises where they do not separate."""
         self.ensure_split()
         centre = {id(mode) for mode in self._dense.invariant.translational}
-        return min((mode.decay_rate for mode in self.modes if id(mode) not in centre), default=float("nan"))
+        return tuple(mode for mode in self.modes if id(mode) not in centre)
+
+    @property
+    def structural_decay_rate(self) -> float:
+        """`decay_rate` of the shape alone; raises where shape and centre do not separate."""
+        return min((mode.decay_rate for mode in self.structural_modes), default=float("nan"))
 
     @property
     def spectral_abscissa(self) -> float:

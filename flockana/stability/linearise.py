@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, sqrt
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, get_args, overload
 
@@ -19,10 +20,15 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
-from flockana.laws import DiscreteLaw, Law, ensure_law
+from flockana.laws import Delayed, DiscreteLaw, Law, Sampled, ensure_law
+from flockana.laws.wrapped import needs_steps
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
+from flockana.solvers.taylor_step import TaylorStep
+from flockana.stability.delay_linearisation import DelayLinearisation
+from flockana.stability.lifted import lifted_map
 from flockana.stability.linearisation import Linearisation
+from flockana.stability.loops import hold_of, instant_law, is_late, late_parts
 from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
 from flockana.stability.zero_modes import zero_threshold
 
@@ -50,7 +56,11 @@ class _Options(TypedDict, total=False):
 
 
 @overload
-def linearise(law: DiscreteLaw, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> MapLinearisation: ...
+def linearise(
+    law: DiscreteLaw | Sampled, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]
+) -> MapLinearisation: ...
+@overload
+def linearise(law: Delayed, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> DelayLinearisation: ...
 @overload
 def linearise(law: Any, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> Linearisation: ...
 def linearise(
@@ -64,7 +74,7 @@ def linearise(
     allow_residual: bool = False,
     zero: float | None = None,
     side: Side | None = None,
-) -> Linearisation | MapLinearisation:
+) -> Linearisation | MapLinearisation | DelayLinearisation:
     """Linearise a law or a map about an equilibrium, after checking that it is one.
 
     Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
@@ -74,13 +84,18 @@ def linearise(
     rests where the law does; a map of headings is linearised about parallel motion, `p`, and any other map where it is
     smooth about a motion that it keeps, by differences of its steps.
 
+    Of a wrapped law the loop is linearised: within its limits where it is `Saturated`, without its noise where it is
+    `Measured` or `Disturbed`, in the mean where it is `Lossy`, with its past where it is `Delayed`, and over a period
+    where it is `Sampled`.
+
     Parameters
     ----------
     law : Law or DiscreteLaw
-        A continuous law with `jacobian`, or a map: a scheme such as `TaylorStep`, the MSN project's, the minimal
-        model's, `HeadingAveraging`, `ZoneFlocking`.
+        Any continuous law, wrapped or not (a law of your own without `derivatives` is differentiated by differences);
+        or a map: a scheme such as `TaylorStep`, the MSN project's, the minimal model's, `HeadingAveraging`,
+        `ZoneFlocking`.
     equilibrium : Equilibrium or array_like, shape (n, m)
-        From `find_equilibrium`, or positions.
+        From `find_equilibrium`, or positions. A linearisation of this law is returned as it is.
     p : array_like, shape (n, m), optional
         Velocities; by default those of the γ-agent, else zero.
     t : float
@@ -102,7 +117,7 @@ def linearise(
 
     Returns
     -------
-    Linearisation, or of a map MapLinearisation
+    Linearisation; of a map or a `Sampled` law MapLinearisation, of a `Delayed` one DelayLinearisation
 
     Raises
     ------
@@ -119,9 +134,13 @@ def linearise(
     >>> [round(value.real, 6) for value in one.eigenvalues.tolist()] == [-1.048809, -1.048809]
     True
     """
+    how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero, "side": side}
+    if isinstance(equilibrium, (Linearisation, MapLinearisation, DelayLinearisation)) and equilibrium.law is law:
+        return equilibrium
     if isinstance(ensure_law(law), DiscreteLaw):
-        how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero, "side": side}
         return _linearised_map(law, equilibrium, p, how)
+    if needs_steps(law):
+        return _linearised_loop(law, equilibrium, p, how | {"links": links})
     if isinstance(equilibrium, Equilibrium):
         ensure_unedited_equilibrium("equilibrium", equilibrium)
     q, t = _positions(law, equilibrium), ensure_finite_scalar("t", t)
@@ -153,13 +172,39 @@ def linearise(
 def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
     """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
     if law.continuous is not None and (law.position_factor is not None or law.stability_function is not None):
-        return linearise_map(law, linearise(law.continuous, equilibrium, p, **how))
+        flow: Any = linearise(law.continuous, equilibrium, p, **how)
+        if not isinstance(flow, Linearisation):
+            raise ArgumentError(
+                f"{law.title} steps a law with a past or a clock: expected a law without, or Sampled(law, "
+                "period) around one that is Delayed, whose map linearise(...) gives"
+            )
+        return linearise_map(law, flow)
     q = _positions(law, equilibrium)
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
     law.check_start(q, p)
     by_headings = q.shape[1] == 2 and law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is not None
     ways = linearise_headings if by_headings else linearise_steps
     return ways(law, q, p, ensure_finite_scalar("t", how["t"]))
+
+
+def _linearised_loop(
+    law: Law, equilibrium: Any, p: Any, how: dict[str, Any]
+) -> Linearisation | MapLinearisation | DelayLinearisation:
+    """Linearise a wrapped law with a past, a clock or chance about a rest of the law within."""
+    from scipy.sparse import block_array, csr_array, eye_array
+
+    hold, acting = hold_of(law), instant_law(law)
+    flow = linearise(acting, equilibrium, p, **how)
+    law.check_agents(len(flow.q))
+    parts = late_parts(law, (flow.t, _on_side(acting, flow.q, how["side"])[0], flow.p))
+    known: Any = [csr_array(-np.sum(each, axis=0)) for each in zip(*(part[1:] for part in parts), strict=True)]
+    whole: Any = block_array([[None, eye_array(flow.q.size)], known], format="csr")
+    flow = replace(flow, law=law, A_sparse=csr_array(whole))
+    if hold is not None and (is_late(law) or hold.offsets is not None):
+        return lifted_map(law, flow, parts, hold)
+    if hold is not None:
+        return replace(linearise_map(TaylorStep(instant_law(law), hold.period), flow), law=law, step=hold.period)
+    return DelayLinearisation(law, flow, tuple(parts)) if is_late(law) else flow
 
 
 def _positions(law: Any, equilibrium: Any) -> FloatArray:

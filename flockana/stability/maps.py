@@ -91,8 +91,8 @@ class MapLinearisation:
 
     Parameters
     ----------
-    law : DiscreteLaw
-        The map.
+    law : DiscreteLaw or Law
+        The map, or the law that is sampled.
     q, p : ndarray, shape (n, m)
         Positions and velocities, all agents with the velocity of the frame.
     residual : float
@@ -109,6 +109,8 @@ class MapLinearisation:
     growth : tuple of float
         Coefficients r of z = Σ r_k (dt w)^k: w = (z − 1)/dt of a map with one stage; of others w is an eigenvalue of
         the flow, and R(dt w) the stability function of the solver.
+    step : float, optional
+        Period, of a law with a clock, which has no `dt` of its own.
 
     Examples
     --------
@@ -122,7 +124,7 @@ class MapLinearisation:
     ([('breathing', 0.0085), ('rotation', 0.0393)], True)
     """
 
-    law: DiscreteLaw
+    law: Any
     q: FloatArray = field(repr=False)
     p: FloatArray = field(repr=False)
     t: float
@@ -134,11 +136,12 @@ class MapLinearisation:
     second_order: SecondOrder | None = field(repr=False, default=None)
     off: float = 0.0
     growth: tuple[float, ...] = (1.0, 1.0)
+    step: float | None = None
 
     @property
     def dt(self) -> float:
         """Step, in time units."""
-        return self.law.dt
+        return self.law.dt if self.step is None else self.step
 
     @cached_property
     def _dense(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:

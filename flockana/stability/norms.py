@@ -16,7 +16,8 @@ from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws import Algorithm1, Algorithm2
-from flockana.stability.blocks import Blocks, complement, ensure_pairs_and_pull, law_blocks
+from flockana.stability.bases import complement
+from flockana.stability.blocks import Blocks, ensure_pairs_and_pull, law_blocks
 from flockana.stability.rounding import eigenvalues
 
 if TYPE_CHECKING:

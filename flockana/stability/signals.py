@@ -13,6 +13,7 @@ from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
 from flockana.laws import Navigation
+from flockana.laws.wrapped import WrappingLaw
 from flockana.stability.mode_names import translations
 
 if TYPE_CHECKING:
@@ -31,8 +32,10 @@ def axes_of(name: str, m: int) -> list[str]:
 
 def _target_inputs(flock: Any) -> tuple[FloatArray, list[str]]:
     """Return the columns of ∂u/∂(q_r, p_r) and their names; none without a γ-agent."""
-    size, m = flock.q.size, flock.q.shape[1]
-    if (pull := flock.law.term(Navigation)) is None:
+    size, m, law = flock.q.size, flock.q.shape[1], flock.law
+    while isinstance(law, WrappingLaw):
+        law = law.law
+    if (pull := law.term(Navigation)) is None:
         return np.zeros((size, 0)), []
     by_position, by_velocity = pull.target_derivatives(flock.t, flock.q)
     return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), axes_of("qr", m) + axes_of("pr", m)

@@ -4,7 +4,8 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, scalar_margin
+from flockana.stability.delay_roots import rightmost_roots, root_error
 from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, spectral
 
 _WHAT = {

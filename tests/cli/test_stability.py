@@ -2,6 +2,7 @@ from math import sqrt
 
 import pytest
 
+from flockana import Delayed, Gains, Sampled, simulate
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -127,4 +128,31 @@ def test_a_law_without_a_potential_is_linearised_about_a_state_of_rest(found, ca
         assert mode["eigenvalue"] == pytest.approx([-0.5, sqrt(0.75)], rel=1e-4)
     code, _, err = call("zone-51-printed")
     assert (code, err.count("\n")) == (2, 1)
-    assert "ZoneFlocking is a map from step to step: expected a continuous law" in err
+    assert "the state is no steady motion of ZoneFlocking" in err
+
+
+@pytest.mark.parametrize("wrap", [lambda law: Delayed(law, 0.01), lambda law: Sampled(Delayed(law, 0.01), 0.02)])
+def test_a_law_with_a_past_or_a_clock(found, call, tmp_path, wrap):
+    """One agent at its target, c1γ = 4 and c2γ = 3: the margin is the closed form's, the map's multiplier below 1."""
+    law = wrap(Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=3.0), target=StaticTarget((0.0,))))
+    simulate(law, [[0.01]], [[0.0]], (0.0, 0.1), dt=0.01).save(tmp_path / "late.nc")
+    one = found("late.nc", "--delay", "--modes", 2)
+    assert (one["law"], one["n"], one["stable"]) == (type(law).__name__, 1, True)
+    if isinstance(law, Delayed):
+        assert one["delay margin"]["delay"] == pytest.approx(scalar_margin(4.0, 3.0).delay, rel=1e-9)
+        assert one["rightmost roots"][0] == pytest.approx([linearise(law, [[0.0]]).rightmost(1)[0].real, 1.2], rel=0.2)
+    else:
+        assert (one["dt"], one["zero modes"]) == (0.02, [])
+        assert 0.9 < one["spectral radius"] < 1.0
+    code, out, err = call("late.nc")
+    assert (code, err) == (0, "")
+    assert "late.nc: stable off its zero modes" in out
+    assert call("late.nc", "--plot", "late.png")[0] == 2
+
+
+def test_any_law_has_delay_margins_and_norms(found):
+    """The tree of eight again: along each edge s² + (s + 1) e^(−sτ), across s² + s e^(−sτ)."""
+    one = found("zone-tree", "--delay")
+    best = min(scalar_margin(1.0, 1.0).delay, scalar_margin(0.0, 1.0).delay)
+    for kind in ("all", "pairs"):
+        assert one[f"delay margin, {kind}"]["delay"] == pytest.approx(best, rel=1e-4)

@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, DirectedNet, LinearTarget, Sphere, simulate
+from flockana.base.differences import differences
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from tests.refused import refused
 
@@ -88,6 +89,22 @@ def test_speeds_whose_squares_all_but_vanish_look_round():
     np.testing.assert_allclose(u, Algorithm1().acceleration(0.0, [[0.0], [1e-5]], np.zeros((2, 1))), rtol=1e-12)
 
 
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("view", [2.0 * pi, 2.5])
+def test_the_derivatives_are_those_of_the_input(m, view):
+    """By differences of order 6, for moving agents of different ranges whose cones end among their neighbours."""
+    rng = np.random.default_rng(m)
+    q, p = rng.uniform(-9.0, 9.0, (8, m)), rng.normal(0.0, 1.0, (8, m))
+    law = DirectedNet(Algorithm2(target=LinearTarget((0.0,) * m, (1.0,) * m)), rng.uniform(5.0, 12.0, 8), view, 0.5)
+    by_position, by_velocity = (part.toarray() for part in law.derivatives(0.0, q, p))
+    for exact, found in (
+        (by_position, differences(lambda x: law.flow(0.0, x, p)[0], q, 7.0).matrix),
+        (by_velocity, differences(lambda v: law.flow(0.0, q, v)[0], p, 1.0).matrix),
+    ):  # the bump's second derivative jumps where it begins: differences across that are less exact
+        np.testing.assert_allclose(found, exact, atol=1e-7 * np.abs(exact).max())
+    assert np.abs(by_position - by_position.T).max() > 0.01 * np.abs(by_position).max()  # action is not reaction
+
+
 test_refusals = refused(
     (lambda: DirectedNet(3), "law = 3: expected Algorithm1"),
     (lambda: DirectedNet(Algorithm1(), (1.0, -1.0)), r"ranges\[1\] = -1: expected a number > 0"),
@@ -100,5 +117,4 @@ test_refusals = refused(
         lambda: DirectedNet(Algorithm1(), (1.0, 2.0)).acceleration(0.0, [[0.0]], [[0.0]]),
         "2 ranges and 1 agents: expected one range each",
     ),
-    (lambda: DirectedNet(Algorithm1()).jacobian(0.0, [[0.0]], [[0.0]]), "DirectedNet gives no derivatives"),
 )

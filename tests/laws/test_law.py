@@ -198,13 +198,22 @@ def test_an_obstacle_without_a_turn_serves_agents_at_rest_only():
         bare.jacobian(0.0, q, q)
 
 
-class Still(Law):
+class Push(Law):
+    """−2q³ − |p|: smooth in the positions, with a kink where an agent rests."""
+
     def flow(self, t, q, p):
-        return 0.0 * q, 0.0
+        return -2.0 * q**3 - np.abs(p), 0.0
+
+
+def test_a_law_without_derivatives_is_differentiated_by_differences():
+    """∂u/∂q = −6q² and ∂u/∂p = −sign p, beside the other agent nothing."""
+    A = Push().jacobian(0.0, [[0.5], [-2.0]], [[1.0], [-3.0]])
+    np.testing.assert_allclose(A[2:, :2], np.diag([-1.5, -24.0]), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(A[2:, 2:], np.diag([-1.0, 1.0]), rtol=1e-9, atol=1e-9)
 
 
 test_bad_input = refused(
-    (lambda: Still().jacobian(0.0, [[0.0]], [[0.0]]), "Still gives no derivatives: expected a law that implements"),
+    (lambda: Push().jacobian(0.0, [[1.0]], [[0.0]]), "Push has a kink or a jump at this state"),
     (lambda: Algorithm1().jacobian(0.0, [[0.0]], [[0.0, 0.0]]), "expected equal shapes"),
     (
         lambda: Algorithm2(target=StaticTarget((0.0,)), gains=PER_AGENT).jacobian(0.0, [[0.0]], [[0.0]]),

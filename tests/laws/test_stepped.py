@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from flockana import Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Trajectory, linearise, simulate
+from flockana import Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Trajectory, simulate
 from flockana.ensemble import ensemble
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.explore.parameters import changed, numbers, tree_of
@@ -109,5 +109,4 @@ test_bad_input = refused(
     (lambda: Stepped(LAW, 0.01), "expected a law that wraps one"),
     (lambda: Stepped(ALL, 0.01, 3), "order = 3: expected one of 1, 2, 4"),
     (lambda: Stepped(ALL, 0.03), "dt = 0.03: expected a step that divides the delay or period 0.02, such as 0.02"),
-    (lambda: linearise(Delayed(LAW, 0.1), Q), "Delayed gives no derivatives"),
 )

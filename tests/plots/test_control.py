@@ -1,3 +1,4 @@
+import control
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -27,6 +28,39 @@ def test_bode_in_decibels_and_degrees():
     assert (top.get_ylabel(), bottom.get_xlabel()) == ("$|q_c/q_r|$ (dB)", r"$\omega$ (radians/time)")
     assert [t.get_text() for t in top.texts] == ["case 4"]
     assert [t.get_text() for t in top.get_legend().get_texts()] == ["0", "1"]
+
+
+def test_bode_draws_all_that_it_is_given():
+    """A system with two outputs is two curves, named by their signals; six responses are six curves."""
+    omega = np.array([0.5, 1.0, 2.0])
+    swing = control.ss([[0.0, 1.0], [-4.0, -1.0]], [[0.0], [1.0]], np.eye(2), 0, inputs=["f0_x"], outputs=["x0_x", "v"])
+    top, _ = draw.bode({"swing": control.frequency_response(swing, omega)}, ax=Figure().subplots(2, 1))
+    assert [t.get_text() for t in top.get_legend().get_texts()] == ["swing: x0_x/f0_x", "swing: v/f0_x"]
+    np.testing.assert_allclose(lines(top)["swing: v/f0_x"][1, 1], 20.0 * np.log10(abs(1j / (3.0 + 1j))))
+    assert top.get_ylabel() == "magnitude (dB)"
+    one = control.frd([1.0, 2.0, 3.0], omega, inputs=["f0_x"], outputs=["l0_1"])
+    top, _ = draw.bode({"one": one}, ax=Figure().subplots(2, 1))
+    assert "l0_1/f0_x" in top.get_ylabel()
+    top, _ = draw.bode({str(k): one for k in range(6)}, ax=Figure().subplots(2, 1))
+    drawn = [line for line in top.get_lines() if line.get_label() in "012345"]
+    assert len({(line.get_color(), line.get_linestyle()) for line in drawn}) == 6
+
+
+def test_nyquist_draws_both_branches_about_minus_one():
+    """L = 2/(s + 1): at ω = 1 it is 1 − j."""
+    loop = control.tf([2.0], [1.0, 1.0])
+    ax = draw.nyquist({"L": control.frequency_response(loop, [0.0, 1.0, 10.0])}, ax=axes())
+    forward, mirrored = ax.get_lines()[:2]
+    np.testing.assert_allclose([forward.get_xdata()[1], forward.get_ydata()[1]], [1.0, -1.0])
+    np.testing.assert_allclose(mirrored.get_ydata(), -forward.get_ydata())
+    np.testing.assert_allclose(lines(ax)["−1"], [[-1.0, 0.0]])
+
+
+def test_singular_values_are_those_of_the_response():
+    omega = np.array([1.0, 2.0])
+    values = np.array([[[3.0, 3.0], [0.0, 0.0]], [[0.0, 0.0], [4.0, 5.0]]])
+    ax = draw.singular_values(control.frd(values, omega), ax=axes())
+    np.testing.assert_allclose(lines(ax)["largest"][:, 1], 20.0 * np.log10([4.0, 5.0]))
 
 
 def test_the_root_locus_starts_at_crosses_and_ends_at_dots():

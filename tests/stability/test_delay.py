@@ -12,7 +12,8 @@ from flockana import Algorithm1, Algorithm2, Delayed, Gains, MinimalFlocking, St
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.stability import crossings
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, scalar_margin
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, scalar_margin
+from flockana.stability.delay_roots import rightmost_roots
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)
@@ -105,8 +106,9 @@ def test_a_tree_of_the_minimal_model_bears_what_one_edge_does():
     system = delay_system(law, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
     best = min(scalar_margin(1.0, 1.0), scalar_margin(0.0, 1.0), key=lambda margin: margin.delay)
     assert delay_margin(system).delay == pytest.approx(best.delay, rel=1e-6)
-    with pytest.raises(ArgumentError, match="expected Algorithm1 or Algorithm2"):
-        delay_system(law, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], delayed="neighbours")
+    heard = delay_system(law, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], delayed="neighbours")
+    assert not any(part[4:, 4:].any() for part in heard.late)  # agent 2 knows its own state at once
+    np.testing.assert_array_equal(heard.late[1][4:, 2:4], system.late[1][4:, 2:4])
 
 
 @pytest.mark.parametrize("seed", range(16))

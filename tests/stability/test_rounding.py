@@ -14,7 +14,8 @@ from flockana.stability import linearise, slowest_modes
 from flockana.stability.blocks import law_blocks
 from flockana.stability.centre_path import centre_path
 from flockana.stability.decay import decay
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system
+from flockana.stability.delay_roots import rightmost_roots, root_error
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
 from flockana.stability.rounding import eigen, eigenvalues, slowest_first
 from flockana.stability.sweeps import gain_sweep

@@ -14,7 +14,7 @@ from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.features import Feature, target_feature
-from flockana.laws.law import block_diagonal
+from flockana.laws.matrices import block_diagonal
 from flockana.laws.terms.term import Derivatives, Term
 
 

@@ -1,0 +1,50 @@
+"""Poles with damping ratio, natural frequency, time constant and settling time, as control engineers print them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf, log, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.base.checks import ensure_positive
+from flockana.base.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DataFrame:
+    """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp` prints them.
+
+    Parameters
+    ----------
+    poles : iterable of (str, complex)
+        Names and poles; with a step `dt` multipliers z, whose s = ln z/dt is what the other columns say.
+    settled : float
+        Share of a deviation at which it counts as settled.
+
+    Examples
+    --------
+    >>> print(damp_table([("swing", -3 + 4j), ("creep", -0.5 + 0j)]).round(3).to_string())
+              pole  damping ratio  natural frequency  time constant  settling time
+    creep -0.5+0.0j            1.0                0.5          2.000          7.824
+    swing -3.0+4.0j            0.6                5.0          0.333          1.304
+    """
+    import pandas as pd
+
+    settled = ensure_positive("settled", settled)
+    if settled >= 1.0:
+        raise ArgumentError(f"settled = {settled:g}: expected a share of the deviation, below 1")
+    rows = []
+    for name, pole in poles:
+        s = pole if dt is None else np.log(pole) / dt if pole else complex(-inf)
+        size, rate = abs(s), -s.real
+        times = (1.0 / rate, log(1.0 / settled) / rate) if rate > 0.0 else (inf, inf)
+        rows.append(
+            (name, complex(pole), rate / size if 0.0 < size < inf else nan if size == 0.0 else 1.0, size, *times)
+        )
+    rows.sort(key=lambda row: row[3])
+    columns = ["pole", "damping ratio", "natural frequency", "time constant", "settling time"]
+    return pd.DataFrame([row[1:] for row in rows], index=[row[0] for row in rows], columns=columns)

@@ -1,0 +1,209 @@
+"""Studies that a linearised flock offers as methods: tables, margins, norms, responses, controllability, the plant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import ensure_fits, ensure_known, ensure_nonnegative, ensure_series
+from flockana.base.errors import ArgumentError
+from flockana.base.files import atomic_write
+from flockana.stability.damp_table import damp_table
+
+if TYPE_CHECKING:
+    import os
+
+    from control import FrequencyResponseData, StateSpace
+    from pandas import DataFrame
+
+    from flockana.stability.controllability import Controllability
+    from flockana.stability.delay import DelayMargin
+    from flockana.stability.robustness import RobustnessMargins
+    from flockana.stability.sampling import SamplingMargin
+
+_BESIDE, _FREQUENCIES = 30.0, 400  # times the fastest pole and a thirtieth of the slowest: the range of a response
+
+
+class ShapeNorms(NamedTuple):
+    """Norms from a force on each agent to the deviation of the shape, and the frequency of the largest gain."""
+
+    h2: float
+    hinf: float
+    peak: float
+
+
+class Studies:
+    """Methods of a `Linearisation`; each calls a function of `flockana.stability` that takes other flocks as well."""
+
+    def damp(self: Any, *, settled: float = 0.02) -> DataFrame:
+        """Return a table of all poles by rising natural frequency, as MATLAB's `damp` prints them.
+
+        Columns are pole, damping ratio, natural frequency, time constant and settling time; rows bear the names of the
+        modes. Zero modes come first, without a damping ratio.
+
+        Parameters
+        ----------
+        settled : float
+            Share of a deviation at which it counts as settled.
+        """
+        poles = [(mode.name, mode.eigenvalue) for mode in self.modes]
+        pairs = [(name, s.conjugate()) for name, s in poles if s.imag]
+        zeros = [(mode.name, 0j) for mode in self.zero_modes]
+        zeros += [("drift", 0j)] * (len(self.eigenvalues) - len(poles) - len(pairs) - len(zeros))
+        return damp_table([*zeros, *poles, *pairs], settled=settled)
+
+    def delay_margin(
+        self: Any,
+        *,
+        delayed: str = "all",
+        carries: str = "both",
+        links: Any = None,
+        sampled: float | None = None,
+        progress: bool = False,
+    ) -> DelayMargin:
+        """Return the longest delay with which the flock is stable.
+
+        Parameters
+        ----------
+        delayed, carries, links
+            What is late: see `flockana.stability.delay_system`.
+        sampled : float, optional
+            Period of a zero-order hold by which the delayed input is sampled; then the margin is found by search.
+        progress : bool
+            Whether to show a bar of a long search.
+        """
+        from flockana.stability.delay import delay_margin, delay_system
+        from flockana.stability.sampled_delays import sampled_delay_margin
+
+        system = delay_system(self.law, self, delayed=delayed, carries=carries, links=links, strict=False)
+        return delay_margin(system, progress=progress) if sampled is None else sampled_delay_margin(system, sampled)
+
+    def sampling_margin(
+        self: Any, *, delay: float = 0.0, delayed: str = "all", carries: str = "both", links: Any = None
+    ) -> SamplingMargin:
+        """Return the longest period of a zero-order hold with which the flock is stable.
+
+        Parameters
+        ----------
+        delay : float
+            Delay of the sampled input, whatever the period; then the margin is found by search.
+        delayed, carries, links
+            What is late: see `flockana.stability.delay_system`.
+        """
+        from flockana.stability.delay import delay_system
+        from flockana.stability.sampled_delays import delayed_sampling_margin
+        from flockana.stability.sampling import sampling_margin
+
+        if ensure_nonnegative("delay", delay) == 0.0:
+            return sampling_margin(self.law, self)
+        system = delay_system(self.law, self, delayed=delayed, carries=carries, links=links, strict=False)
+        return delayed_sampling_margin(system, delay)
+
+    def robustness(self: Any) -> RobustnessMargins:
+        """Return gain, phase and disk margins of the loops broken at each agent's input."""
+        from flockana.stability.robustness import robustness_margins
+
+        return robustness_margins(self.law, self)
+
+    def norms(self: Any) -> ShapeNorms:
+        """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out."""
+        from flockana.stability.blocks import blocks
+        from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
+
+        ensure_fits("A", self.A_sparse.shape, "ask of fewer agents")
+        system = disturbance_system(blocks(self.stiffness.toarray(), self.damping.toarray(), self.q))
+        return ShapeNorms(h2_norm(system), *hinf_norm(system))
+
+    def response(self: Any, input: str, output: str, omega: Any = None) -> FrequencyResponseData:
+        """Return the frequency response from one named input to one named output of `state_space`.
+
+        Parameters
+        ----------
+        input, output : str
+            Such as "f0_x", a force on agent 0, or "qr_x", the γ-agent's place; and "qc_x", the centre, or "l0_1", the
+            length of a link.
+        omega : array_like, shape (F,), optional
+            Angular frequencies, in radians per time unit; by default around the poles.
+        """
+        import control
+
+        whole = self.state_space
+        ensure_known("input", input, whole.input_labels)
+        ensure_known("output", output, whole.output_labels)
+        one = whole[whole.output_labels.index(output), whole.input_labels.index(input)]
+        rates = np.abs(self.eigenvalues)
+        rates = rates[rates > 0.0] if rates.any() else np.ones(1)
+        grid = np.geomspace(rates.min() / _BESIDE, rates.max() * _BESIDE, _FREQUENCIES)
+        omega = grid if omega is None else ensure_series("omega", omega)
+        return control.frd(
+            np.ravel(one(1j * omega)), omega, inputs=[input], outputs=[output], name=f"{input} to {output}"
+        )
+
+    def controllability(self: Any, informed: Any, *, horizon: float | None = None) -> Controllability:
+        """Return which motions forces on the informed agents reach: see `flockana.stability.controllability`.
+
+        Parameters
+        ----------
+        informed : sequence of int
+            Agents on which forces act.
+        horizon : float, optional
+            Time of the Gramian; by default for ever, off the motions that nothing brings back.
+        """
+        from flockana.stability.controllability import controllability
+
+        return controllability(self, informed, horizon=horizon)
+
+    def plant(self: Any, inputs: Any = "all") -> StateSpace:
+        """Return the open loop for synthesis: the flock whose feedback to some inputs is taken away.
+
+        Parameters
+        ----------
+        inputs : "all", or sequence of int or str
+            Agents, or components of their inputs such as "u3_x". Their own law does not act; all others keep theirs.
+
+        Returns
+        -------
+        control.StateSpace
+            States and outputs q0_x, …, p0_x, …, all measured; inputs u0_x, …, the accelerations that are free. With
+            u = −F x and F the rows of [K D] for these inputs it is the flock again.
+        """
+        import control
+
+        from flockana.stability.controllability import ensure_agents
+        from flockana.stability.signals import labels
+
+        n, m = self.q.shape
+        names = labels("u", n, m)
+        if isinstance(inputs, str) and inputs == "all":
+            free = list(range(n * m))
+        elif np.size(inputs) and all(isinstance(one, str) for one in np.atleast_1d(inputs).tolist()):
+            given = np.atleast_1d(inputs).tolist()
+            free = [names.index(ensure_known("input", one, names)) for one in given]
+        else:
+            free = [i * m + c for i in ensure_agents("inputs", inputs, n) for c in range(m)]
+        a, b = self.A.copy(), np.zeros((2 * n * m, len(free)))
+        rows = n * m + np.array(free)
+        a[rows], b[rows, np.arange(len(free))] = 0.0, 1.0
+        states, chosen = labels("q", n, m) + labels("p", n, m), [names[k] for k in free]
+        read, blank = np.eye(2 * n * m), np.zeros((2 * n * m, len(free)))
+        return control.ss(a, b, read, blank, states=states, inputs=chosen, outputs=states, name="plant")
+
+    def to_mat(self: Any, path: str | os.PathLike[str]) -> None:
+        """Write A, B, C, D of `state_space` and the names of its signals to a MATLAB file.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write, ending in .mat.
+        """
+        from scipy.io import savemat
+
+        if not str(path).endswith(".mat"):
+            raise ArgumentError(f"path = {str(path)!r}: expected a name that ends in .mat")
+        system = self.state_space
+        parts: dict[str, Any] = {name: getattr(system, name) for name in "ABCD"}
+        for name in ("state", "input", "output"):
+            parts[f"{name}s"] = np.array(getattr(system, f"{name}_labels"), dtype=object)
+        with atomic_write(path) as partial:
+            savemat(partial, parts)
