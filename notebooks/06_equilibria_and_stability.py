@@ -75,7 +75,7 @@ import flockana as fl
 from flockana import lattice, plots, stability
 from flockana.course import figures, grade
 from flockana.lattice.rigidity import rigidity_matrix
-from flockana.stability.blocks import complement
+from flockana.stability.bases import complement
 
 figure, axes = plots.subplots(1, 3, size=(12, 3.9))
 _ = figures.equilibria(axes=axes)
@@ -117,12 +117,12 @@ law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
 rest = fl.find_equilibrium(law, lattice.hexagonal_patch(2, 7.0))
 print(f"{rest.kind}, residual {rest.residual:.1e} of the force scale")
 print(f"its links are off d by {lattice.strain(rest.q, 7.0, 8.4):.1%} at most")
-flock = fl.linearise(law, rest)
-print("zero modes:", [mode.name for mode in flock.zero_modes], " semisimple:", flock.semisimple)
-print(f"slowest decay rate {flock.decay_rate:.4f}; of the structure alone {flock.structural_decay_rate:.4f}")
-for mode in flock.modes[:7]:
+L = fl.linearise(law, rest)
+print("zero modes:", [mode.name for mode in L.zero_modes], " semisimple:", L.semisimple)
+print(f"slowest decay rate {L.decay_rate:.4f}; of the structure alone {L.structural_decay_rate:.4f}")
+for mode in L.modes[:7]:
     print(plots.mode_title(mode))
-_ = plots.pole_map(flock.eigenvalues)
+_ = plots.pole_map(L.eigenvalues)
 
 # %% [markdown]
 # **Figure 6.2.** The poles of nineteen agents. All lie in the open left half-plane but one, at 0: the rotation.
@@ -138,12 +138,12 @@ _ = plots.pole_map(flock.eigenvalues)
 # so at the rate $\sqrt{1.1} = 1.049$. Then the structure begins:
 
 # %%
-shapes = [mode for mode in flock.modes if "translation" not in mode.name][:3]
+shapes = L.structural_modes[:3]
 figure, axes = plots.subplots(1, 3, size=(13, 4.2))
 pairs = lattice.links(rest.q, law.alpha.r)
 for ax, mode in zip(axes, shapes, strict=True):
     plots.mode_shape(rest.q, pairs, mode.shape, ax=ax, title=plots.mode_title(mode))
-stability.mode_motion(flock, shapes[0]).player(height=520)
+stability.mode_motion(L, shapes[0]).player(height=520)
 
 # %% [markdown]
 # **Figure 6.3.** The three slowest structural modes. The slowest is *breathing*: all agents move outwards together
@@ -203,10 +203,10 @@ print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")
 # For a flock, a Chebyshev discretisation finds the rightmost roots.
 
 # %%
-margin = stability.delay_margin(stability.delay_system(law, rest.q))
+margin = L.delay_margin()
 print(margin)
 for share in (0.9, 1.1):
-    root = stability.rightmost_roots(stability.delay_system(law, rest.q), share * margin.delay)[0]
+    root = fl.linearise(fl.Delayed(law, share * margin.delay), rest).rightmost(1)[0]
     print(f"at {share:.1f} of the margin the rightmost root is {root:.3f}")
 w = np.sqrt((law.gains.c2_gamma**2 + np.sqrt(law.gains.c2_gamma**4 + 4.0 * law.gains.c1_gamma**2)) / 2.0)
 alone = np.arctan(law.gains.c2_gamma * w / law.gains.c1_gamma) / w
@@ -290,7 +290,7 @@ assert late(1.1 * alone) > 5.0
 # shorter the period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
 
 # %%
-held = stability.sampling_margin(law, rest)
+held = L.sampling_margin()
 print(f"stable for periods below {held.period:.5f}, {held.period / margin.delay:.2f} times the delay margin")
 print(f"the mode that goes first swings at {held.first.frequency:.1f} radians a time unit")
 generator = np.random.default_rng(0)
@@ -332,7 +332,7 @@ for share in (0.95, 1.05):
 # vibrates, and the nonlinear flock answer.
 
 # %%
-flow, g = stability.law_blocks(law, rest.q), 0.2
+flow, g = stability.law_blocks(law, rest), 0.2
 shape = stability.stationary_covariance(stability.disturbance_system(flow), g)
 stretch = rigidity_matrix(rest.q, rest.links).toarray() @ complement(flow.rigid)
 predicted = np.sqrt(np.diag(stretch @ shape @ stretch.T))
@@ -664,7 +664,7 @@ seven_sampled = ...
 # %% tags=["solution"]
 seven = fl.find_equilibrium(law, lattice.hexagonal_patch(1, 7.0))
 longest = stability.sampling_margin(law, seven).period
-seven_sampled = [longest, longest / stability.delay_margin(stability.delay_system(law, seven.q)).delay]
+seven_sampled = [longest, longest / fl.linearise(law, seven).delay_margin().delay]
 print(seven_sampled)
 
 # %% tags=["check"]

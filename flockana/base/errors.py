@@ -5,15 +5,17 @@ Every message names the value it got, what was expected, and the remedy. Anythin
 
 import math
 from collections.abc import Iterable
+from dataclasses import is_dataclass
 from typing import Any, Self
 
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all listed
+_LONG = 120  # letters of a law or the like, beyond which its parameters are left out
 DIGITS = 40  # of a whole number; a longer one is described by its size: Python itself refuses to write some
 
 
 def format_value(value: Any) -> str:
-    """Return a value as messages write it: on one line, very long whole numbers by their size.
+    """Return a value as messages write it: on one line, very long whole numbers by their size, long laws by name.
 
     Parameters
     ----------
@@ -31,7 +33,8 @@ def format_value(value: Any) -> str:
     if isinstance(value, str):
         return repr(value)  # its own spaces stay
     try:
-        return " ".join(repr(value).split())
+        text = " ".join(repr(value).split())
+        return f"{type(value).__name__}(...)" if len(text) > _LONG and is_dataclass(value) else text
     except ValueError:  # such a number in a list
         return f"a {type(value).__name__} that cannot be written"
 

@@ -15,7 +15,7 @@ import numpy as np
 from flint import arb, ctx
 
 from flockana._version import __version__
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.balls import ball
@@ -130,9 +130,9 @@ def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it, or None")
     law: Any = tube.law
     if law.alpha.unit != 1.0 or (isinstance(law, Algorithm3) and law.beta.unit != 1.0):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with unit = 1")
+        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1, 2 or 3 with unit = 1")
     if type(law) is Algorithm3 and (basin is not None or tube.law.target.harmonic.terms[1].any()):
-        raise ArgumentError(f"law = {law!r}: expected a γ-agent at rest under Algorithm3, and no basin")
+        raise ArgumentError(f"law = {format_value(law)}: expected a γ-agent at rest under Algorithm3, and no basin")
     if tube.n < 2 or tube.status != "complete" or any(tube.stats["radius"]):
         raise ArgumentError(f"{tube!r}: expected a complete tube of two agents or more from one start, radius=0")
     if basin is not None and (tube.m > 2 or not tube.ends_in(basin)):

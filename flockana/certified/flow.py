@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series, fmpq
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
 from flockana.certified.balls import exact, minus, norm2, series_length
 from flockana.certified.krawczyk import column, identity
@@ -173,7 +173,7 @@ def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
 def ensure_enclosable(law: Any) -> None:
     """Raise unless `enclose` supports a law."""
     if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
+        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
     if isinstance(law, _LED):
         ensure_one_gain(law.gains)
         if type(law.target) not in (StaticTarget, LinearTarget):

@@ -14,7 +14,7 @@ import numpy as np
 from flint import arb, arb_mat
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.rounding import eigen
@@ -58,10 +58,10 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     >>> gain_box(Algorithm2(target=StaticTarget((0.0, 0.0))), triangle, 0.5).status
     'verified'
     """
-    q = ensure_points("q", q)
+    q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
     spread = ensure_nonnegative("spread", spread)
     if type(law) is not Algorithm2:
-        raise ArgumentError(f"law = {law!r}: expected Algorithm2(...)")
+        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm2(...)")
     law.check_dimension(q.shape[1])
     law.check_agents(len(q))
     if len(q) > MOST:

@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import rescale
 from flockana.certified.balls import AlphaParameters, ball, exact, norm2, square
 from flockana.certified.series import PairNumbers
@@ -49,7 +49,9 @@ class Structure:
     def of(cls, law: Any, n: int, m: int) -> Structure:
         """Return the exact numbers of a law; raise unless it is Algorithm 1 or 2."""
         if type(law) not in (Algorithm1, Algorithm2) or not isinstance(law.alpha, AlphaInteraction):
-            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2 with AlphaInteraction, unwrapped")
+            raise ArgumentError(
+                f"law = {format_value(law)}: expected Algorithm1 or Algorithm2 with AlphaInteraction, unwrapped"
+            )
         if law.alpha.unit != 1.0:
             raise ArgumentError(f"unit = {law.alpha.unit:g}: expected 1; rescale law and places by it (fl.rescale)")
         led, gains = isinstance(law, Algorithm2), law.gains

@@ -13,7 +13,7 @@ import numpy as np
 from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.seals import ensure_sealed
 from flockana.certified.balls import minus, norm
 from flockana.certified.flow import sphere_terms
@@ -220,7 +220,9 @@ class Tube:
             Step; negative from the end.
         """
         if type(law := self.law) not in (Algorithm1, Algorithm2):
-            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
+            raise ArgumentError(
+                f"law = {format_value(law)}: expected Algorithm1 or Algorithm2, whose structural energy this is"
+            )
         return structural_energy(law, *self.state(k))
 
     def ends_in(self, basin: Basin) -> bool:

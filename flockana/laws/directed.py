@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, normalise, per_agent
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
 from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
@@ -109,7 +109,9 @@ class DirectedNet(WrappingLaw):
 
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2, Algorithm3):
-            raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...), Algorithm2(...) or Algorithm3(...)")
+            raise ArgumentError(
+                f"law = {format_value(self.law)}: expected Algorithm1(...), Algorithm2(...) or Algorithm3(...)"
+            )
         paper_pair(self.law)
         if self.ranges is not None:
             normalise(self, per_agent, "ranges")

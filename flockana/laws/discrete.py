@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.overrides import ensure_consistent
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -161,4 +161,6 @@ def ensure_law(law: Any) -> Law | DiscreteLaw:
         ensure_consistent(law)
         return law
     hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
-    raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}")
+    raise ArgumentError(
+        f"law = {format_value(law)}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}"
+    )

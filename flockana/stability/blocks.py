@@ -121,7 +121,7 @@ def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
+    q : Equilibrium or array_like, shape (n, m)
     strict : bool
         Refuse a state that is no equilibrium.
 
@@ -133,7 +133,7 @@ def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
     >>> one.stiffness.tolist(), one.neutral.shape
     ([[1.1]], (1, 0))
     """
-    q = ensure_points("q", q)
+    q = ensure_points("q", getattr(q, "q", q))
     ensure_pairs_and_pull(law)
     law.check_dimension(q.shape[1])
     law.check_agents(len(q))

@@ -103,7 +103,7 @@ def gain_problem(
     >>> problem.damping.shape, problem.apart.shape
     ((2, 2), (2, 0))
     """
-    q = ensure_points("q", q)
+    q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
     n, m = q.shape
     for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
         ensure_known(name, value, known)

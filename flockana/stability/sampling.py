@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_fits, ensure_nonnegative, ensure_positive
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
 from flockana.stability.growth import CLOSE, Growth, Steps, first_growth
@@ -173,7 +173,7 @@ def sampling_margin(law: Any, equilibrium: Any) -> SamplingMargin:
     name, factor, in_place = "hold", 0.5, False
     if isinstance(law, DiscreteLaw):
         if law.continuous is None or law.position_factor is None:
-            raise ArgumentError(f"law = {law!r}: expected a continuous law, or a map that steps one")
+            raise ArgumentError(f"law = {format_value(law)}: expected a continuous law, or a map that steps one")
         name, factor, in_place = law.title, law.position_factor, law.in_place
         law = law.continuous
     flow = linearise(law, equilibrium)

@@ -167,7 +167,7 @@ def _followed(
     if not isinstance(law, Algorithm1 | Algorithm2):
         raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1(...) or Algorithm2(...)")
     ensure_known("gain", name, GAINS[:2] if law.target is None else GAINS)
-    q = ensure_points("q", q)
+    q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
     for level in levels.tolist():
         here = replace(law, gains=replace(law.gains, **{name: level}))
         q = np.array(find_equilibrium(here, q).q) if follow else q

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_kind, ensure_positive, normalise
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.neighbours import pair_list
@@ -44,7 +44,7 @@ class MSNDiscretisation(DiscreteLaw):
 
     def __post_init__(self) -> None:
         if type(self.law) not in (Algorithm1, Algorithm2):
-            raise ArgumentError(f"law = {self.law!r}: expected Algorithm1(...) or Algorithm2(...) itself")
+            raise ArgumentError(f"law = {format_value(self.law)}: expected Algorithm1(...) or Algorithm2(...) itself")
         ensure_kind("alpha", self.alpha, AlphaInteraction, "AlphaInteraction(...), whose sums are compiled")
         if self.target is not None:
             ensure_one_gain(self.law.gains)
