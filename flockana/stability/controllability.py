@@ -70,6 +70,8 @@ class Controllability:
         By distinct pole, the slowest first.
     horizon : float or None
         Time of the Gramian; None for ever, modulo the motions that nothing brings back.
+    model : ScaledModel
+        The flock in units of its fastest motion.
     """
 
     informed: tuple[int, ...]

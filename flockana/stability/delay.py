@@ -34,11 +34,25 @@ _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutra
 
 @dataclass(frozen=True)
 class DelaySystem:
-    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ)."""
+    """Linear flock x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ), whose one delay is free.
 
-    prompt: tuple[FloatArray, FloatArray]  # (K₀, D₀), shape (N, N)
-    late: tuple[FloatArray, FloatArray]  # (K₁, D₁)
-    neutral: int = 0  # roots at s = 0, whatever the delay: of rigid motions that nothing holds
+    Parameters
+    ----------
+    prompt, late : (ndarray, ndarray), shapes (N, N)
+        (K₀, D₀) and (K₁, D₁).
+    neutral : int
+        Roots at s = 0, whatever the delay: of motions that nothing brings back.
+
+    Examples
+    --------
+    >>> drag = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.zeros((1, 1)), np.eye(1)), neutral=1)
+    >>> bool(abs(drag.characteristic(1j, np.pi / 2.0)[0, 0]) < 1e-12)
+    True
+    """
+
+    prompt: tuple[FloatArray, FloatArray]
+    late: tuple[FloatArray, FloatArray]
+    neutral: int = 0
 
     @property
     def highest(self) -> float:
@@ -47,7 +61,15 @@ class DelaySystem:
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
-        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots."""
+        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots.
+
+        Parameters
+        ----------
+        s : complex
+            Per time unit.
+        delay : float
+            τ.
+        """
         (k0, d0), (k1, d1) = self.prompt, self.late
         return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 

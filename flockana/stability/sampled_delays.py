@@ -79,6 +79,13 @@ def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin
     -------
     SamplingMargin
         The first period at which a search, 48 steps long, meets growth: nothing is certified (`least` is 0).
+
+    Examples
+    --------
+    >>> blank = np.zeros((1, 1))
+    >>> swing = DelaySystem((blank, blank), (4.0 * np.eye(1), np.eye(1)))
+    >>> 0.0 < delayed_sampling_margin(swing, 0.1).period < 0.5
+    True
     """
     delay, ideal = ensure_positive("delay", delay), delay_margin(system).delay
     if delay >= ideal:
