@@ -12,6 +12,8 @@ from flockana.kernels.march import FULL, RUNNING, SINGULAR, UNLISTED, march, ste
 from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.verlet import COUNT
 
+AT_ONCE = 50_000_000  # agents and pairs in all evaluations of one call, some tenths of a second: then signals are heard
+
 
 class Advanced(NamedTuple):
     """What `advance` returns."""
@@ -69,8 +71,8 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
     """
     (pairs, near), (due, states, work) = lists, samples
     energetic, evaluations, redone, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
-    made = np.int64(0)  # typed: of a literal, all that is called would be compiled once more
-    while made + 1 < block.t.size and stop < stops.size:
+    agents, made = system.order.size, np.int64(0)  # typed: of a literal, all that is called would be compiled once more
+    while made + 1 < block.t.size and stop < stops.size and evaluations * (agents + pairs.counts[COUNT]) < AT_ONCE:
         now = march(block, made, h, (stops[stop], stops[-1]), system, method, room, pairs)
         status, evaluations, at = now.status, evaluations + now.evaluations, block.t[made + 1]
         if status != RUNNING:

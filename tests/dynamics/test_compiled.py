@@ -199,6 +199,15 @@ def test_rk4_grows_back_after_an_encounter_as_step_by_step():
     np.testing.assert_allclose(ours.path.t, plain.path.t, rtol=1e-9)
 
 
+def test_a_call_ends_early_where_steps_are_much_work():
+    """So that Ctrl-C is heard: 600 agents in one place are 180,000 pairs, 13 times a step."""
+    q = 1e-3 * np.random.default_rng(0).normal(size=(600, 2))
+    control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
+    crowd = engine(Algorithm1(), q, np.zeros_like(q), Plan(DOP853(), np.array([9.0]), np.empty(0), control))
+    assert crowd.advance(StepChecks(Algorithm1(), crowd.frame, crowd.plan)) < 5e7 / (12 * 180_000) + 2
+    assert crowd.failure == ""
+
+
 def test_calls_of_one_step_make_the_same_run(monkeypatch):
     law = Algorithm2(target=TARGETS[1])
     many = simulate(law, *calm(), (0.0, 0.3), t_eval=[0.0, 0.1, 0.3])
