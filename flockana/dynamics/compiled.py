@@ -7,6 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Start
 from flockana.dynamics.stepper import Stepper
 from flockana.jit import thawed
@@ -19,6 +20,7 @@ from flockana.laws.terms.term import Compiled
 from flockana.solvers.tableau import Tableau
 
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
+_BEGIN = 50_000  # components times steps in the first call
 _LISTS = 8  # lists made after which agents are sorted by cell again
 _BLOCKS = "scipy-DOP853"  # which looks at pairs in blocks
 _SMALL = "Required step size is less than spacing between numbers."  # scipy's words
@@ -39,6 +41,7 @@ class Engine(Stepper):
         self.pairs, self._sorted, self._h = no_pairs(n, m), 0, 0.0
         rows = int(np.clip(_NUMBERS // (4 * frame.size), 1, _STEPS)) + 1
         self.block = Block(*(np.empty((rows, *shape)) for shape in ((), y.shape, y.shape, ())))
+        self._pace, self._unsorted = Pace(_BEGIN // frame.size, rows - 1), 0
         for each, value in zip(self.block, (frame.t0, y, f, np.nan), strict=True):
             each[0] = value
         self._system, self._sampled = form.system(frame.view, n, m), 0
@@ -51,13 +54,18 @@ class Engine(Stepper):
         self._method = Method(*given)
 
     def advance(self, checks: StepChecks) -> int:  # noqa: D102
-        if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
-            self._sort()
+        if self._unsorted <= 0:  # by a count of steps, so that no order of sums hangs on the clock
+            self._unsorted = len(self.block.t) - 1
+            if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
+                self._sort()
         judged = checks.judged(self.order)
         lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
-        made = Advanced(
-            *advance(self._system, self._method, self.block, self._room, self._h, lists, self.stops, samples, judged)
-        )
+        with self._pace as steps:
+            block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
+            made = Advanced(
+                *advance(self._system, self._method, block, self._room, self._h, lists, self.stops, samples, judged)
+            )
+        self._unsorted -= made.steps
         self._h, self._sampled = made.h, made.samples if made.steps else 0
         self.evaluations, self.redone = self.evaluations + made.evaluations, self.redone + made.redone
         t = float(self.block.t[made.steps])

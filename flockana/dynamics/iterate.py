@@ -6,11 +6,13 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Samples, Tally, copied, finite
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
 from flockana.laws.law import Arrays
 
 _NUMBERS = 6_000_000  # kept of the steps made at once, at most
+_BEGIN = 16  # steps made at once at first
 
 
 def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
@@ -30,14 +32,15 @@ def discrete(
     if wanted is None or 0 in wanted:
         extra = {name: values[None] for name, values in copied(memory).items() if name not in law.private}
         yield Samples(np.array([t0]), q[None], p[None], np.zeros((1, *q.shape)), extra)
-    at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
-    for first in range(0, steps, at_once):
-        last = min(first + at_once, steps)
+    pace, first, last = Pace(min(_BEGIN, 20_000 // q0.size), min(law.steps_at_once, _NUMBERS // (3 * q0.size))), 0, 0
+    while last < steps:
+        first, last = last, min(last + pace.steps, steps)
         own = np.arange(first + 1, last + 1)
         if wanted is not None:
             own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
         times = t0 + np.arange(float(first), float(last)) * dt  # so a step hangs on its own time, and on no block's
-        made, rows, states = _chunk(law, times, q, p, memory, own - first)
+        with pace:
+            made, rows, states = _chunk(law, times, q, p, memory, own - first)
         qs, ps, us, series = states
         good = made.size
         if not finite(qs, ps):

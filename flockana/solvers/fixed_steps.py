@@ -34,7 +34,7 @@ _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
 class _Stepwise(Solver):
     """Solver with a step."""
 
-    dt: float
+    dt: float  # type: ignore[misc]  # of an instance here
 
     units: ClassVar[Any] = {"dt": (0, 1)}
 

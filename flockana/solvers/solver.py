@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
@@ -27,6 +28,7 @@ class Limits(NamedTuple):
     first: float | None
 
 
+@dataclass(frozen=True)
 class Solver(ABC):
     """Integration method of a law.
 
@@ -45,7 +47,7 @@ class Solver(ABC):
     order: ClassVar[int]
     one_step: ClassVar[bool] = True
     takes_noise: ClassVar[bool] = False
-    dt: float | None = None
+    dt: ClassVar[float | None] = None
 
     @property
     def name(self) -> str:

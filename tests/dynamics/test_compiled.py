@@ -282,7 +282,7 @@ def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch)
     full = no_pairs(*q.shape)
     full.counts[0] = -1
     monkeypatch.setattr(compiled, "fill", lambda *_: full)
-    assert engine(Algorithm1(), q, p, Plan("DOP853", np.array([0.01]), np.empty(0))) is None
+    assert engine(Algorithm1(), q, p, Plan(DOP853(), np.array([0.01]), np.empty(0))) is None
     monkeypatch.undo()
     advance = compiled.advance
 

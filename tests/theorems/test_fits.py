@@ -73,7 +73,7 @@ def test_a_run_that_leaps_over_a_spike_of_its_law_is_judged_not_accused() -> Non
 
 
 @dataclass(frozen=True)
-class Watched(SemiImplicitEuler):
+class Watched(fl.FixedSteps):
     """A map that notes the times at which it is asked to step."""
 
     asked: list = field(default_factory=list, compare=False)
@@ -85,7 +85,7 @@ class Watched(SemiImplicitEuler):
 
 @pytest.mark.parametrize(("steps", "again"), [(50, 12), (5, 5), (12, 12)])
 def test_steps_of_a_map_from_its_first_to_its_last_are_made_again(steps: int, again: int) -> None:
-    law = Watched(fl.DeadZoneFlocking(), dt=0.125)
+    law = Watched(fl.DeadZoneFlocking(), SemiImplicitEuler(0.125))
     run = fl.simulate(law, *PAIR, (0.0, 0.125 * steps))
     law.asked.clear()
     ensure_fits(run)
