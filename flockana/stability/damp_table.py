@@ -27,10 +27,8 @@ def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, d
 
     Examples
     --------
-    >>> print(damp_table([("swing", -3 + 4j), ("creep", -0.5 + 0j)]).round(3).to_string())
-              pole  damping ratio  natural frequency  time constant  settling time
-    creep -0.5+0.0j            1.0                0.5          2.000          7.824
-    swing -3.0+4.0j            0.6                5.0          0.333          1.304
+    >>> damp_table([("swing", -3 + 4j), ("creep", -0.5 + 0j)]).round(3).iloc[1, 1:].tolist()
+    [0.6, 5.0, 0.333, 1.304]
     """
     import pandas as pd
 

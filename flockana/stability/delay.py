@@ -227,7 +227,7 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
 
     Examples
     --------
-    >>> round(scalar_margin(0.0, 2.0).delay / pi, 12)
+    >>> round(scalar_margin(0.0, 2.0).delay / np.pi, 12)
     0.25
     """
     k, d = ensure_nonnegative("k", k), ensure_nonnegative("d", d)

@@ -44,7 +44,7 @@ class DelayLinearisation:
     >>> from flockana.stability import linearise
     >>> late = linearise(Delayed(Algorithm2(target=StaticTarget((0.0,))), 0.2), [[0.0]])
     >>> late.stable, late.delays, round(late.delay_margin().delay, 4)
-    (True, (0.2,), 0.5989)
+    (True, (0.2,), 0.6173)
     """
 
     law: Law

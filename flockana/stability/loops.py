@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.laws import Delayed, Disturbed, Law, Lossy, Measured, Sampled, Saturated
+from flockana.laws import Delayed, Disturbed, Law, Lossy, Measured, PairTerm, Sampled, Saturated
 from flockana.laws.wrapped import Step, View, Wrapper, WrappingLaw, input_of
 from flockana.stability.delay import late_part
 from flockana.stability.delay_roots import LatePart
@@ -58,13 +58,6 @@ class _MeanLoss(WrappingLaw):
         kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), alone)
         return (1.0 - self.loss) * self.law.flow(t, q, p)[0] + self.loss * kept, float("nan")
 
-    def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        from scipy.sparse import csr_array
-
-        slopes: Any = self.law.derivatives(t, q, p)
-        parts = (part.toarray() for part in slopes)
-        return tuple(csr_array(part - self.loss * late_part(part, q.shape[1], "pairs")) for part in parts)
-
 
 def hold_of(law: Law) -> Sampled | None:
     """Return the zero-order hold among the wrappers of a law; None without one."""
@@ -83,7 +76,8 @@ def is_late(law: Law) -> bool:
 def late_parts(law: Law, state: State) -> list[LatePart]:
     """Return the parts of K and D of a wrapped law at a steady state (t, q, p), by rising delay.
 
-    Of lost messages the mean remains: what depends on others, times the share that arrives.
+    As in a run, what is heard enters the pair terms. Of lost messages the mean remains: these terms, times the share
+    that arrives.
     """
     core = law.core if isinstance(law, Wrapper) else law
     slopes: Any = core.derivatives(*state)
@@ -105,7 +99,7 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
         elif isinstance(one, Delayed):
             heard = _Heard(shift + np.asarray(one.delay), one.late == "pairs")
     m = state[1].shape[1]
-    pairs = [late_part(part, m, "pairs") for part in (by_position, by_velocity)]
+    pairs = _pair_terms(core, state)
     add(shift, bend @ (by_position - pairs[0]), bend @ (by_velocity - pairs[1]))
     pairs = [share * bend @ part for part in pairs]
     if heard is None:
@@ -122,6 +116,17 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
             add(delay, *(np.where(lags == delay, part, 0.0) for part in others))
     used = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
     return sorted(used, key=lambda part: part.delay)
+
+
+def _pair_terms(core: Law, state: State) -> list[FloatArray]:
+    """Return K and D of the pair terms of a law, the terms into which heard states can be put."""
+    size = state[1].size
+    total = [np.zeros((size, size)), np.zeros((size, size))]
+    for term in core.terms:
+        if isinstance(term, PairTerm):
+            slopes: Any = term.derivatives(*state)
+            total = [part - slope.toarray() for part, slope in zip(total, slopes, strict=True)]
+    return total
 
 
 def _ensure_at_rest(p: FloatArray, heard: _Heard) -> None:

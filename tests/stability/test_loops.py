@@ -13,6 +13,7 @@ from flockana import (
     Lossy,
     Measured,
     NetConsensus,
+    RationalWeight,
     Sampled,
     Saturated,
     StaticTarget,
@@ -68,8 +69,9 @@ def by_differences(law, q, delays):
         Delayed(Delayed(LAW, 0.01, "neighbours"), 0.02),
         Saturated(Delayed(LAW, 0.01, "neighbours"), 50.0),
         Delayed(compose(pair=AlphaInteraction(), navigation=StaticTarget((0.0, 0.0)), drag=0.7), 0.01, "pairs"),
+        Delayed(compose(pair=AlphaInteraction(), consensus=RationalWeight(9.0, 1.0)), 0.01, "neighbours"),
     ],
-    ids=["all", "pairs", "neighbours", "by pair", "nested", "saturated", "drag"],
+    ids=["all", "pairs", "neighbours", "by pair", "nested", "saturated", "drag", "alignment"],
 )
 def test_the_parts_are_those_of_the_input(law):
     parts = late_parts(law, (0.0, REST.q, 0.0 * REST.q))
