@@ -193,6 +193,15 @@ def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
         )
 
 
+def ensure_affordable(work: str, size: int, seconds: float, megabytes: float, limit: float) -> None:
+    """Raise before work of an estimated time and memory that takes longer than `limit` seconds."""
+    if seconds > limit:
+        raise ArgumentError(
+            f"{work} would take about {seconds:.2g} s and {megabytes:.2g} MB (from its measured time for fewer), more "
+            f"than limit = {limit:g} s: take fewer agents than these {size} coordinates, or give a larger limit"
+        )
+
+
 def ensure_time_span(t_span: Any) -> tuple[float, float]:
     """Return (t0, t1) with t0 < t1, both finite."""
     try:

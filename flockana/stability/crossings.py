@@ -45,7 +45,7 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
     # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
     # Stiffness up to `neutral` is 0.
-    found = _common_diagonals(four)
+    found = common_diagonals(four)
     if found is None:
         return None
     best = Crossing(inf, nan, inf)
@@ -83,7 +83,7 @@ class _Diagonals(NamedTuple):
     real: bool
 
 
-def _common_diagonals(four: Four) -> _Diagonals | None:
+def common_diagonals(four: Four) -> _Diagonals | None:
     """Return the diagonals of four matrices diagonalised or triangularised together; None if that is impossible."""
     from scipy.linalg import schur
 

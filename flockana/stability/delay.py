@@ -15,12 +15,20 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_kind, ensure_known, ensure_nonnegative
+from flockana.base.checks import (
+    ComplexArray,
+    FloatArray,
+    ensure_affordable,
+    ensure_fits,
+    ensure_kind,
+    ensure_known,
+    ensure_nonnegative,
+)
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
 from flockana.stability.bases import NEUTRAL
 from flockana.stability.components import strong_components
-from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
+from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.rounding import eigenvalues
 from flockana.stability.zero_modes import ZERO, kernel_of
@@ -29,6 +37,8 @@ DELAYED = ("all", "pairs", "neighbours")
 CARRIES = ("both", "positions", "velocities")
 _GENERIC = 0.7310585786  # a delay, in units of D over K₁, at which by chance nothing cancels
 _BRIEF = 1e-4  # a delay, in the same unit: as short as matters
+_SECONDS, _SECONDS_OF_SPECTRUM = 2e-9, 6e-9  # per cubed size: of all modes, of one spectrum of the search
+_SPECTRA = 60  # that a search needs, as a rule
 _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutral motions the search begins there
 
 
@@ -239,7 +249,7 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
     return DelayMargin(float(np.arctan2(omega * d, k)) / omega / unit, omega * unit)
 
 
-def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
+def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 600.0) -> DelayMargin:
     """The least delay at which a root reaches the imaginary axis.
 
     In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;
@@ -251,6 +261,13 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
+    limit : float
+        Seconds of estimated work from which on it is refused.
+
+    Raises
+    ------
+    ArgumentError
+        If the work would take longer than the limit.
 
     Examples
     --------
@@ -265,9 +282,11 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     1.43389
     """
     ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
+    parts = list(system.strong_parts())
+    for part in parts:
+        _ensure_affordable(part, limit)
     if not _stable(system):
         return DelayMargin(0.0, float("nan"), 0.0)
-    parts = list(system.strong_parts())
     with progress_bar(len(parts), enabled=progress, counted=False) as advance:
         margins = [
             _margin_of_part(part, lambda share, k=k: advance(k + share, f"part {k + 1} of {len(parts)}"))  # type: ignore[misc]
@@ -275,6 +294,15 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
         ]
     first = min(margins, key=lambda margin: margin.delay)
     return DelayMargin(first.delay, first.frequency, min(margin.least for margin in margins))
+
+
+def _ensure_affordable(part: DelaySystem, limit: float) -> None:
+    """Raise before the margin of a part that takes longer than a limit: of its modes, or of a search."""
+    size = len(part.late[0])
+    modes, spectra = _SECONDS * (2 * size) ** 3, _SPECTRA * _SECONDS_OF_SPECTRUM * size**3
+    searched = spectra > limit and common_diagonals((*part.prompt, *part.late)) is None
+    seconds = modes + spectra if searched else modes
+    ensure_affordable(f"the delay margin of {size} coordinates", size, seconds, 2e-4 * size**2, limit)
 
 
 def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> DelayMargin:

@@ -241,3 +241,13 @@ def test_the_nonlinear_flock_decays_below_the_margin_and_grows_above(delayed, sh
 def test_refusals(call, message):
     with pytest.raises(ArgumentError, match=message):
         call()
+
+
+def test_long_work_is_refused_with_an_estimate_before_it_begins():
+    rng = np.random.default_rng(0)
+    k, d = (x @ x.T for x in rng.standard_normal((2, 40, 40)))
+    system = DelaySystem((k, np.zeros_like(k)), (k, d + np.eye(40)))
+    with pytest.raises(ArgumentError, match=r"the delay margin of 40 coordinates would take about .* s and .* MB"):
+        delay_margin(system, limit=1e-3)
+    alike = DelaySystem((k, k), (k, k))  # in closed form, mode by mode: no search
+    assert delay_margin(alike, limit=0.01).certified

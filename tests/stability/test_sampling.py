@@ -127,3 +127,8 @@ def test_what_is_not_damped_has_no_margin_and_drift_is_set_apart():
 def test_bad_input_is_refused(call, message):
     with pytest.raises(ArgumentError, match=message):
         call()
+
+
+def test_long_work_is_refused_with_an_estimate_before_it_begins():
+    with pytest.raises(ArgumentError, match=r"10 agents, 40 states in one component, would take about .* s and .* MB"):
+        sampling_margin(LAW, REST, limit=0.001)
