@@ -12,11 +12,12 @@ from flockana.dynamics.tolerance import rounding_floors
 from flockana.recorded.accuracy import CONFIDENCE
 from flockana.recorded.recording import Recording
 from flockana.recorded.shooting import matched, usual_window, windows
-from flockana.recorded.steps import predicted
+from flockana.recorded.steps import SHARE, predicted
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
 _ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two samples
+_AT_MOST = 50_000  # steps of a law that follow a recording: some ten seconds of a small flock
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +62,7 @@ def following(rec: Recording, law: Any) -> Following:
 def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     """Compare each sample with the law's prediction from the one before, and from one law time before."""
     assert rec.p is not None
+    _ensure_few_steps(rec, law)
     place, speed = (np.broadcast_to(x, rec.present.shape) for x in (rec.accuracy.place, rec.accuracy.speed))
     known = bool(np.isfinite(place).all())
     worst: list[tuple[float, float, str, float, int]] = []
@@ -84,6 +86,18 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     else:
         text = f"within {reach} from sample to sample (worst: {where}), {accuracy}"
     return Following(status, 1.0 - excess, text, rec.q[0], rec.p[0], rec.p, speed)
+
+
+def _ensure_few_steps(rec: Recording, law: Any) -> None:
+    """Raise if following a recording takes so many steps of the law that no answer comes for minutes."""
+    if law.is_map or law.scales is None:
+        return
+    time, span = law.scales.time, float(rec.t[-1] - rec.t[0])
+    if (steps := span / (SHARE * time)) > _AT_MOST:
+        raise ArgumentError(
+            f"{len(rec.t)} samples over {span:g}, where the law's own time is {time:.3g}: following them takes "
+            f"{steps:.3g} steps, expected at most {_AT_MOST}; are both in one unit of time? Else judge a shorter part"
+        )
 
 
 def _differences(

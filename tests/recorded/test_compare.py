@@ -194,3 +194,16 @@ def test_uneven_times_and_free_flight_show_no_scheme():
     run = fl.simulate(LAW, Q0, P0, (0.0, 1.0), method="RK4", dt=0.04, t_eval=np.arange(26) * 0.04)
     late = fl.Recording(run.t + 0.02 * (np.arange(26) > 7), run.q, run.p)
     assert scheme_by_law(late, LAW) is None
+
+
+def test_a_recording_in_another_unit_of_time_is_refused_with_what_it_would_take():
+    """In ms under a law in s: millions of steps from sample to sample, and no answer for minutes."""
+    law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+    run = fl.simulate(
+        law, [[0.0, 0.0], [7.5, 0.0]], [[0.1, 0.0], [0.0, 0.1]], (0.0, 4.0), t_eval=np.linspace(0, 4, 401)
+    )
+    rec = fl.Recording(run.t * 1e3, run.q, run.p * 1e-3, bound=1e-6)
+    expected = r"401 samples over 4000, where the law's own time is 0\.\d+: following them takes \d\S* steps, expected"
+    with pytest.raises(ArgumentError, match=expected):
+        fl.verify("os-3", rec, law=law)
+    assert fl.verify("os-3", fl.Recording(run.t, run.q, run.p, bound=1e-6), law=law).hypotheses
