@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, gain_box
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium, gain_box
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch
 
@@ -25,14 +25,18 @@ def test_a_lattice_is_stable_for_all_gains_and_so_is_every_choice(spread):
         assert np.linalg.eigvals(np.block([[0 * k, np.eye(14)], [-k, -d]])).real.max() < 0.0
 
 
-def test_a_pressed_flock_has_a_witness():
-    """Pressed to 0.93 of d: the pairs' push buckles it unless the γ-agent's pull is strong."""
-    found = gain_box(LAW, 0.93 * HEXAGON, 0.5)
-    assert found.status == "refuted"
-    c1, c2, pull, drag = found.witness
-    k = c1 * LAW.alpha.hessian(0.93 * HEXAGON).toarray() + pull * np.eye(14)
-    d = c2 * LAW.alpha.laplacian(0.93 * HEXAGON).toarray() + drag * np.eye(14)
-    assert np.linalg.eigvals(np.block([[0 * k, np.eye(14)], [-k, -d]])).real.max() > 0.0
+def test_the_rotation_of_a_frozen_configuration_refutes_nothing():
+    """S7: with other gains the flock rests elsewhere, and there its rotation is neutral; pressed to 0.93 it relaxes."""
+    rest = find_equilibrium(LAW, HEXAGON).q
+    assert gain_box(LAW, rest, 0.1).status == "inconclusive"
+    assert gain_box(LAW, 0.93 * HEXAGON, 0.5).status == "inconclusive"
+
+
+def test_an_equilibrium_is_stable_with_its_own_gains_but_for_its_rotation():
+    rest = find_equilibrium(LAW, HEXAGON).q
+    assert gain_box(LAW, rest, 0.0).status == "verified"
+    line = Algorithm2(target=StaticTarget((0.0,)))
+    assert gain_box(line, find_equilibrium(line, [[-3.5], [3.5]]).q, 0.0).status == "verified"
 
 
 def test_without_any_pull_nothing_is_certain():
