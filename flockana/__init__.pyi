@@ -52,6 +52,7 @@ from .interactions import FormulaInteraction as FormulaInteraction
 from .interactions import Gains as Gains
 from .interactions import PairInteraction as PairInteraction
 from .interactions import pair_law as pair_law
+from .interactions.from_formula import PairLawWarning as PairLawWarning
 from .interactions.weights import RationalWeight as RationalWeight
 from .interactions.weights import Weight as Weight
 from .lammps.dump import read_lammps as read_lammps

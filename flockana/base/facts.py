@@ -40,6 +40,7 @@ class PairFacts:
     least: tuple[float, float]  # Bounds of the least potential of a pair, far ones included
     contact: tuple[float, float]  # Bounds of the limit of the potential where two agents meet; infinite at a barrier
     least_weight: tuple[float, float]  # Bounds of the least adjacency within the range
+    zeros: tuple[float, ...] | None = None  # Distances below the range at which the force changes its sign; None: open
 
     @property
     def faults(self) -> tuple[str, ...]:

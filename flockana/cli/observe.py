@@ -103,7 +103,7 @@ def observe_command(
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if none is given."""
-    from flockana.interactions import pair_law
+    from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
     from flockana.recorded.recording import scaled_alpha
     from flockana.scenarios import scenario
@@ -111,7 +111,7 @@ def _law(name: str | None, formula: str | None, d: float | None, r: float | None
     if formula is not None:
         if d is None or r is None:
             raise ArgumentError(f"--formula {formula!r}: expected --d and --r, its length and its range")
-        return Algorithm1(alpha=pair_law(formula, adjacency="(1 - s/r)**2", range=r, length=d))
+        return Algorithm1(alpha=FormulaInteraction(formula, adjacency_formula="(1 - s/r)**2", r=r, d=d))
     if name is None:
         return None
     if name == "algorithm-1":

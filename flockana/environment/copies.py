@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_state, normalise
 from flockana.base.units import Powers
 from flockana.environment.motion import Forced
+from flockana.environment.spring import Spring
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,16 @@ class Copies(Forced):
     def shape(self) -> tuple[int, int]:
         """Shape (n, m) of the estimates."""
         return len(self.q), len(self.q[0])
+
+    @property
+    def feature(self) -> float | None:
+        """Time in which a spring or the coupling bends the motion; None under a function."""
+        known = super().feature
+        return (
+            None
+            if known is None
+            else min(known, Spring((0.0,), self.position_coupling, self.velocity_coupling).feature)
+        )
 
     def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
         k1, k2 = self.position_coupling, self.velocity_coupling

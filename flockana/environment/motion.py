@@ -78,6 +78,11 @@ class Forced(ABC):
             raise ArgumentError(f"force = {self.force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
         _ = self._motion
 
+    @property
+    def feature(self) -> float | None:
+        """Time in which a spring bends the motion; None under a function, of which nothing is known."""
+        return self.force.feature if isinstance(self.force, Spring) else None
+
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without the cached motion, which holds functions that cannot be pickled."""
         return {name: value for name, value in self.__dict__.items() if name != "_motion"}

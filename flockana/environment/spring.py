@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,6 +40,11 @@ class Spring:
     damping: float = 0.0
     push: Any = 0.0
     reach: float | None = None
+
+    @property
+    def feature(self) -> float:
+        """Time in which it bends a motion: the shorter of 1/√|k| and 1/b."""
+        return min((1.0 / rate for rate in (sqrt(abs(self.stiffness)), self.damping) if rate > 0.0), default=inf)
 
     units: ClassVar[Mapping[str, Powers]] = {
         "centre": (1, 0),

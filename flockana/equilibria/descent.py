@@ -110,6 +110,8 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
         if _largest(force) <= _DONE * scale:
             break
         hessian = potential.stiffness(q)
+        if not np.isfinite(hessian.data).all():  # a force with a vertical tangent
+            break
         least = _LEAST * float(abs(hessian).sum(axis=1).max() or scale / length)
         step = Elimination(hessian, q, least=least).solve(force.ravel()).reshape(q.shape)
         for _ in range(_TRIES):

@@ -1,5 +1,7 @@
 """The α-pair law among agents."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +14,7 @@ from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
+from flockana.interactions.functions import SlopeBound
 from flockana.interactions.pair import PairInteraction, Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
@@ -36,6 +39,24 @@ _ALPHA = lift(
     kernel.pair_alpha_adjacency_slope,
     norm=kernel.norm_alpha,
 )
+
+
+def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBound, ...]:
+    """Return bounds of the slopes of φ_α(‖x‖_σ) dz/ds and of the bump, for a bump that ends at r.
+
+    On each part z, φ and dz/ds rise, the bump and d²z/ds² fall, and φ′ and the bump's slope have one summit.
+    """
+    s = r * np.arange(parts + 1) / parts
+    z, end, root = law.sigma_norm(s), float(law.sigma_norm(r)), np.sqrt(1.0 + law.eps * s * s)
+    x, place = (z - law.d_alpha) / law.unit**2 + law.c, (z / end - law.h) / (1.0 - law.h)
+    phi = np.abs(law.phi(z - law.d_alpha))
+    most = np.maximum(phi[1:], phi[:-1])
+    rise = 0.5 * (law.a + law.b) / law.unit**2 * (1.0 + np.clip(0.0, x[:-1], x[1:]) ** 2) ** -1.5
+    fall = 0.5 * np.pi / (1.0 - law.h) / end * np.sin(np.pi * np.clip(0.5, *np.clip((place[:-1], place[1:]), 0.0, 1.0)))
+    along, bump = (s / root)[1:], law.bump(z[:-1] / end)
+    force = bump * (rise * along**2 + most / root[:-1] ** 3) + fall * most * along**2
+    rows = zip(s[:-1], s[1:], (1.0 + 1e-12) * force, (1.0 + 1e-12) * fall * along, strict=True)
+    return tuple(SlopeBound(*map(float, row)) for row in rows)
 
 
 @dataclass(frozen=True)
@@ -120,7 +141,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
         if type(self) is not AlphaInteraction:
             return super().facts
         smooth, weight, inside = (Fact("met", text) for text in _PROOFS)
-        return PairFacts(smooth, weight, inside, (0.0, 0.0), (self.c_star, self.c_star), (0.0, 0.0))
+        return PairFacts(smooth, weight, inside, (0.0, 0.0), (self.c_star, self.c_star), (0.0, 0.0), (self.d,))
 
     @property
     def range(self) -> float:
@@ -146,6 +167,16 @@ class AlphaInteraction(Tabulated, PairInteraction):
     def feature(self) -> float:
         """Length of the shorter of repulsion, from 0 to d, and attraction, from d to r; the adjacency only falls."""
         return min(self.d, self.r - self.d)
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
+        """Return bounds of |dF/ds| and |da/ds| on equal parts of the range.
+
+        Parameters
+        ----------
+        parts : int
+            How many.
+        """
+        return slopes_within(self, self.r, parts)
 
     @cached_property
     def strength(self) -> float:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FormulaInteraction(PairInteraction):
     """Pair law given by a formula as text, with numbers for its parameters; `pair_law` accepts sympy too.
 
@@ -133,6 +133,34 @@ class FormulaInteraction(PairInteraction):
         """Points where the law is not C¹, does not end smoothly or has no limit, each in words."""
         none = "coincidence is excluded: the force has no limit where two agents meet"
         return (*(() if self.coincidence else (none,)), *self.facts.faults)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a user should know: where the force changes its sign besides d or is infinite, what jumps at the range.
+
+        The signs are those at 255 distances; `facts.zeros` has the places between them.
+
+        Examples
+        --------
+        >>> for remark in FormulaInteraction("(s**2 - 1)*(s**2 - 4)**2", r=2.5, d=1.0).remarks:
+        ...     print(remark)
+        the force changes sign again at s = 1.41421: beyond, agents repel each other
+        the force changes sign again at s = 2: beyond, agents attract each other
+        the force jumps from -143.4 to 0 at the range, s = 2.5
+        """
+        signs = (
+            f"the force changes sign again at s = {s:.6g}: beyond, agents {'attract' if up else 'repel'} each other"
+            for s, up in self._parts.zeros
+            if (s, up) != (self.d, True)
+        )
+        return (*signs, *self._parts.ends)
+
+    def __repr__(self) -> str:
+        """Return the call that makes the law, with its remarks."""
+        what = f"{self.potential!r}" if self.potential else f"force={self.force_formula!r}"
+        numbers = f", parameters={dict(self.parameters)}" if self.parameters else ""
+        call = f"pair_law({what}, adjacency={self.adjacency_formula!r}, range={self.r:g}, length={self.d:g}{numbers})"
+        return f"{call} [{'; '.join(self.remarks)}]" if self.remarks else call
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
         """Return bounds of |dF/ds| and |da/ds| on parts of the range; infinite where unknown.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import inf, isfinite, nan
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 _KEPT = 64  # formulas
 _GRID = 257  # distances at which the force is looked at
 _SMALL = 1e-9  # of the strength: a jump below it is rounding of the parameters
+_NARROW = 1e-13  # of the range: to which a sign change is located, or a pole
+_NEAR, _FAR = 1e-12, 1e-8  # of the range: how far from a pole the force is read
+_GROWN, _STEEP = 1e6, 1e3  # times the force on the grid, and times that farther away: so a pole grows, and no spike
 _HALVINGS = 12  # of a panel
 _TAIL = 4e-15  # last coefficients of a panel, relative to the strength, or to the largest where that is larger
 _ROUGH = 1e-9  # the same, where halving no longer helps
@@ -45,13 +48,16 @@ class FormulaParts:
     coincidence: bool
     holds: bool
     looks: FloatArray
+    zeros: tuple[tuple[float, bool], ...]  # distances at which the force changes its sign; whether it attracts beyond
+    ends: tuple[str, ...]  # where the force is infinite within the range, and what jumps at its end, in words
 
     @cached_property
     def facts(self) -> PairFacts:
         """Facts proved of the formula over its whole range."""
         from flockana.symbolic.pair_facts import pair_facts
 
-        return pair_facts(self.cut, float(self.par[2]), self.strength, float(np.abs(self.looks[1]).max()) or 1.0)
+        facts = pair_facts(self.cut, float(self.par[2]), self.strength, float(np.abs(self.looks[1]).max()) or 1.0)
+        return replace(facts, zeros=tuple(zero for zero, _ in self.zeros))
 
     def slopes(self, parts: int) -> tuple[SlopeBound, ...]:
         """Return bounds of the slopes of force and adjacency on parts of the range."""
@@ -78,7 +84,7 @@ def formula_parts(
 
     from flockana.symbolic import pair_formula as pf
 
-    names = [name for name, _ in parameters]
+    names = tuple(name for name, _ in parameters)
     formula = pf.read_pair("" if forces else main, main if forces else "", adjacency, names)
     eps = dict(parameters).get("eps", nan) if formula.distance == pf.Z else 0.0
     if formula.distance == pf.Z and not eps > 0.0:
@@ -113,6 +119,8 @@ def formula_parts(
         near.kind != "excluded",
         view.holds(d),
         view.looks,
+        view.zeros(d),
+        (*view.poles(), *view.ends()),
     )
 
 
@@ -172,6 +180,49 @@ class _PreciseForce:
         poles = not isfinite(self.force(self.r, len(self.cut.pieces) - 1))
         usual = (grid >= (0.5 * d if unbounded else 0.0)) & (grid <= (0.9 * self.r if poles else self.r))
         self.strength = float(np.abs(self.looks[0][usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
+
+    def poles(self) -> tuple[str, ...]:
+        """Return where the force grows without bound within the range, in words."""
+        poles: list[str] = []
+        grid, sizes = np.linspace(0.0, self.r, _GRID)[1:-1], np.abs(self.looks[0])
+        for k in np.flatnonzero((sizes[1:-1] >= sizes[:-2]) & (sizes[1:-1] >= sizes[2:])) + 1:
+            left, right, most = float(grid[k - 1]), float(grid[k + 1]), float(sizes[k])
+            while right - left > _NARROW * self.r:
+                third = (right - left) / 3.0
+                low, high = (abs(self.force(s)) for s in (left + third, right - third))
+                left, right = (left + third, right) if low < high else (left, right - third)
+            at = 0.5 * (left + right)
+            near, far = (abs(self.force(at + share * self.r)) for share in (_NEAR, _FAR))
+            if near > _GROWN * most and near > _STEEP * far:
+                poles.append(f"the force is infinite at s = {at:.6g}, within the range")
+        return tuple(poles)
+
+    def zeros(self, d: float) -> tuple[tuple[float, bool], ...]:
+        """Return where the force changes its sign between distances of a grid, and whether it attracts beyond."""
+        grid = np.linspace(0.0, self.r, _GRID)[1:-1]
+        signed = [(float(s), float(f)) for s, f in zip(grid, self.looks[0], strict=True) if f != 0.0]
+        changes = [(a, b, right > 0.0) for (a, left), (b, right) in pairwise(signed) if left * right < 0.0]
+        places = (self._change_between(a, b, attracts=attracts) for a, b, attracts in changes)
+        return tuple(
+            (d if abs(s - d) <= 2.0 * _NARROW * self.r else s, up) for s, (*_, up) in zip(places, changes, strict=True)
+        )
+
+    def _change_between(self, left: float, right: float, *, attracts: bool) -> float:
+        while right - left > _NARROW * self.r:
+            middle = 0.5 * (left + right)
+            left, right = (left, middle) if (self.force(middle) > 0.0) is attracts else (middle, right)
+        return 0.5 * (left + right)
+
+    def ends(self) -> tuple[str, ...]:
+        """Return what does not vanish at the range, where it ends, in words."""
+        force = -self.force(self.r, len(self.cut.pieces) - 1)
+        adjacency = float(self._weights[-1](self.y(self.r)))
+        sizes = (force, self.strength, "the force"), (adjacency, float(np.abs(self.looks[1]).max()), "the adjacency")
+        return tuple(
+            f"{name} jumps from {value:.4g} to 0 at the range, s = {self.r:g}"
+            for value, scale, name in sizes
+            if isfinite(value) and abs(value) > _SMALL * scale
+        )
 
     def holds(self, d: float) -> bool:
         """Return whether the force repels just below a distance and attracts just above."""

@@ -1,11 +1,16 @@
 """`pair_law`: pair law from sympy expressions, text or numbers."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
+
+
+class PairLawWarning(UserWarning):
+    """Warning about what a pair law lacks: a pole or a jump, or a force that changes its sign again."""
 
 
 def pair_law(
@@ -22,15 +27,16 @@ def pair_law(
 
     Formulas are sympy expressions, text or numbers, in the distance s, or in the σ-norm z with a parameter ``eps``;
     r and d mean range and length, r_z and d_z their σ-norms, and every other name is a parameter. Pieces are
-    ``Piecewise`` with conditions linear in the distance. What a formula lacks that theorems ask for stands in
-    `FormulaInteraction.faults`.
+    ``Piecewise`` with conditions linear in the distance. A law that is infinite within the range or jumps at it, or
+    whose force changes its sign besides d, is made with a `PairLawWarning`, and shows it
+    (`FormulaInteraction.remarks`). What theorems ask for and the formula lacks is in `FormulaInteraction.faults`.
 
     Parameters
     ----------
     potential : sympy.Expr, str or float, optional
-        ψ, of which the derivative is the force: negative repels.
+        ψ; where it rises with the distance, agents attract each other.
     force : sympy.Expr, str or float, optional
-        Instead of it dψ/ds or dψ/dz, where ψ has no closed form, as that of Olfati-Saber has none.
+        Instead of it dψ/ds or dψ/dz, where ψ has no closed form, as that of Olfati-Saber has none: positive attracts.
     adjacency : sympy.Expr, str or float
         a_ij, by which velocities are averaged; 0 for none.
     range : float
@@ -44,10 +50,10 @@ def pair_law(
 
     Examples
     --------
-    >>> law = pair_law("k*(s**2 - d**2)**2*(r**2 - s**2)**2", adjacency="(1 - s/r)**2", range=3.0,
-    ...                length=2.0, parameters={"k": 0.01})
-    >>> law.faults, law.lattice
-    ((), (2.0, 3.0))
+    >>> law = pair_law("k*((r**2 - s**2)**4/8 - (r**2 - d**2)*(r**2 - s**2)**3/6)", adjacency="(1 - s/r)**2",
+    ...                range=3.0, length=2.0, parameters={"k": 0.01})
+    >>> law.faults, law.lattice, law.facts.zeros
+    ((), (2.0, 3.0), (2.0,))
     """
     if (potential is None) == (force is None):
         raise ArgumentError(
@@ -59,7 +65,7 @@ def pair_law(
     for name, both in (units or {}).items():
         if not (isinstance(both, Sequence) and len(both) == 2 and all(type(power) is int for power in both)):
             raise ArgumentError(f"units[{name!r}] = {format_value(both)}: expected whole powers (length, time)")
-    return FormulaInteraction(
+    law = FormulaInteraction(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),
         adjacency_formula=_as_text("adjacency", adjacency),
@@ -68,6 +74,9 @@ def pair_law(
         parameters=tuple((parameters or {}).items()),
         powers=tuple((name, *both) for name, both in (units or {}).items()),
     )
+    if law.remarks:
+        warnings.warn(f"pair_law: {'; '.join(law.remarks)}", PairLawWarning, stacklevel=2)
+    return law
 
 
 def _as_text(name: str, formula: Any) -> str:

@@ -17,7 +17,8 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
-from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
+from flockana.interactions.alpha import slopes_within
+from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction, SlopeBound
 from flockana.interactions.pair import kernel_values
 from flockana.kernels.alpha import R_ALPHA
 from flockana.kernels.directed import directed_forces, seen_edges
@@ -54,6 +55,9 @@ class Reaching(DistanceFunction):
     def feature(self) -> float:
         """Length of the shorter of repulsion and attraction; a range at most d leaves repulsion alone."""
         return min(self.alpha.d, self.r - self.alpha.d if self.r > self.alpha.d else self.r)
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:  # noqa: D102
+        return slopes_within(self.alpha, self.r, parts)
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
         par = self.alpha.par.copy()

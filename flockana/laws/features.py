@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import inf, pi
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from flockana.interactions.functions import LawFunction
 
 if TYPE_CHECKING:
+    from flockana.environment.copies import Copies
     from flockana.environment.target import Target
 
 
@@ -41,9 +41,6 @@ def function_feature(function: LawFunction) -> Feature:
     return Feature(function.name, "pairs", width, function)
 
 
-def target_feature(target: Target | Any) -> Feature:
-    """Return the feature in time of a γ-agent: a quarter of the period of a harmonic one."""
-    width, path = getattr(target, "feature", None), getattr(target, "harmonic", None)
-    if width is None and path is not None:
-        width = 0.5 * pi / abs(path.omega) if path.omega else inf
-    return Feature("the γ-agent", "time", width)
+def target_feature(target: Target | Copies) -> Feature:
+    """Return the feature in time of a γ-agent, or of its copies."""
+    return Feature("the γ-agent", "time", target.feature)

@@ -22,7 +22,7 @@ from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
 from flockana.interactions.functions import LawFunction, PairCorner, UnknownEdges
 from flockana.interactions.pair import PairInteraction
-from flockana.laws.features import Feature, Unknown
+from flockana.laws.features import Feature, Unknown, function_feature
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -115,6 +115,10 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     def features(self) -> tuple[Feature, ...]:
         """Return the narrowest features of all parts: functions of the distance, obstacles, γ-agents."""
+        kind = type(self)
+        says = getattr(kind, "functions", None) is not LawOfMotion.functions  # a law that names them by itself
+        if says and overrides_consistently(kind, "functions", ("flow", "step")):
+            return tuple(map(function_feature, self.functions))
         return tuple(feature for part in self._parts() for feature in part.features())
 
     def _parts(self) -> Iterator[Any]:

@@ -41,6 +41,7 @@ from .lattice import defect_map as defect_map
 from .obstacles import obstacles as obstacles
 from .pair import action as action
 from .pair import deviation as deviation
+from .pair import force as force
 from .pair import potential as potential
 from .paper import save as save
 from .phase import phase_portrait as phase_portrait

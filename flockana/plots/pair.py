@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.interactions import AlphaInteraction
+from flockana.interactions.functions import DistanceFunction
 from flockana.measures.metrics import deviation_energy
 from flockana.plots.palette import BLUE, MUTED, VERMILLION
 from flockana.plots.style import ensure_axes, finish, mark, place_legend
@@ -23,6 +25,34 @@ def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax.plot(x, interaction.phi_alpha(interaction.sigma_norm(x)), color=BLUE, linestyle="-")
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     return _frame(ax, interaction, "φ_α, the pair's action")
+
+
+@check_kinds
+def force(function: DistanceFunction, *, ax: Axes | None = None) -> Axes:
+    """Draw the force of any function of the distance, −dV/ds, with the distances at which it changes its sign.
+
+    Parameters
+    ----------
+    function : DistanceFunction
+        A pair law or another function of finite range, such as `pair_law(...)`.
+
+    Raises
+    ------
+    ArgumentError
+        If the range is infinite.
+    """
+    if not np.isfinite(function.range):
+        raise ArgumentError(f"{function!r} has no range: expected a pair law of finite range")
+    ax, end = ensure_axes(ax), function.range
+    x = np.linspace(0.0, 1.15 * end, _SAMPLES)[1:]
+    values = function.force(x)
+    near = x >= (0.0 if np.abs(values[0]) < 1e3 * np.abs(values[_SAMPLES // 2 :]).max() else 0.25 * end)
+    ax.plot(x[near], values[near], color=BLUE, linestyle="-")
+    ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
+    for zero in function.facts.zeros or ():
+        mark(ax, zero, f"{zero:.4g}", offset=(3, -9), height=1.0)
+    ax.set_xlim(0.0, x[-1])
+    return finish(ax, "distance of the pair (length)", "force −dV/ds: positive repels")
 
 
 @check_kinds

@@ -52,6 +52,9 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
         raise ArgumentError(f"{where} = {text!r}: expected a sympy expression, or text")
     if len(text) > LENGTH:
         raise ArgumentError(f"{where} has {len(text)} characters: expected at most {LENGTH}")
+    if "^" in text:
+        power = _short(text.replace("^", "**"))
+        raise ArgumentError(f"{where}: {_short(text)} has a ^, which is no power here; expected **, as in {power}")
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError):
@@ -171,7 +174,7 @@ class _Reader:
         if isinstance(value, int) and value.bit_length() <= _BITS:
             return sp.Integer(value)
         if isinstance(value, float) and isfinite(value):
-            return sp.Float(value, 17)
+            return sp.Rational(repr(value))  # 0.1 is 1/10, so that terms cancel exactly, and no exponential overflows
         given = value if isinstance(value, float) else type(value).__name__
         raise ArgumentError(f"{self.where}: {given} is no number of a formula; expected a finite one")
 

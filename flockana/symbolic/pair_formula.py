@@ -4,9 +4,9 @@ A formula is in the distance s or in the σ-norm z = (√(1 + εs²) − 1)/ε. 
 between two cuts it is smooth, and sympy derives there, in y = s² or y = z, what the sums over pairs need.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +23,7 @@ S, Z = sp.Symbol("s", positive=True), sp.Symbol("z", positive=True)
 SQUARE, ROOT = sp.Symbol("s2", positive=True), sp.Symbol("root", positive=True)
 EPS = sp.Symbol("eps", positive=True)
 _SLOPE, _CURVATURE = 4000, 20_000  # nodes of a first and of a second derivative
+_KEPT = 64  # texts
 _CUTS = 24  # distances at which pieces meet
 OWN = ("r", "d", "r_z", "d_z")  # range and length, and their σ-norms
 RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTIONS))
@@ -43,15 +44,20 @@ class PairFormula:
         return self.main if self.forces else sp.diff(self.main, self.distance)
 
 
-def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
-    """Return a pair law from texts, given either the potential or its derivative."""
+def read_pair(potential: str, force: str, adjacency: str, names: Iterable[str]) -> PairFormula:
+    """Return a pair law from texts, given either the potential or its derivative; each text is read once."""
+    return _read_pair(potential, force, adjacency, tuple(names))
+
+
+@lru_cache(maxsize=_KEPT)
+def _read_pair(potential: str, force: str, adjacency: str, names: tuple[str, ...]) -> PairFormula:
     bad = sorted(RESERVED & {*names}) or [name for name in names if not name.isidentifier()]
     if bad:
         raise ArgumentError(f"parameter {bad[0]!r}: expected a name that has no meaning of its own, such as 'k'")
     symbols: dict[str, sp.Symbol] = {"s": S, "z": Z} | {name: sp.Symbol(name, positive=True) for name in OWN}
     symbols |= {name: EPS if name == "eps" else sp.Symbol(name, real=True) for name in names}
-    main = _in_fractions(read_formula(force or potential, symbols, where="force" if force else "potential"))
-    weight = _in_fractions(read_formula(adjacency, symbols, where="adjacency"))
+    main = read_formula(force or potential, symbols, where="force" if force else "potential")
+    weight = read_formula(adjacency, symbols, where="adjacency")
     used = main.free_symbols | weight.free_symbols
     if {S, Z} <= used:
         raise ArgumentError("the formula is in s and in z: expected the distance s alone, or the σ-norm z alone")
@@ -66,9 +72,13 @@ def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> P
     return PairFormula(main, weight, Z if in_norm else S, bool(force))
 
 
-def _in_fractions(expression: sp.Expr) -> sp.Expr:
-    """Return an expression with decimals as fractions (0.1 as 1/10), so that terms cancel exactly."""
-    return expression.xreplace({number: sp.Rational(repr(float(number))) for number in expression.atoms(sp.Float)})
+def _without_overflow(expression: sp.Expr) -> sp.Expr:
+    """Return an expression with logistic switches 1/(1 + exp(g)) as (1 − tanh(g/2))/2, whose slopes do not overflow."""
+
+    def is_switch(node: sp.Basic) -> bool:
+        return bool(node.is_Pow and node.exp.is_Integer and node.exp < 0 and isinstance(node.base - 1, sp.exp))
+
+    return expression.replace(is_switch, lambda node: ((1 - sp.tanh((node.base - 1).exp / 2)) / 2) ** -node.exp)
 
 
 @dataclass(frozen=True)
@@ -86,8 +96,10 @@ class Piece:
     adjacency_slope: sp.Expr
 
 
+@lru_cache(maxsize=_KEPT)
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
     """Return weight w of q_j − q_i, dw/d(s²), adjacency and da/d(s²) of smooth expressions."""
+    main, adjacency = _without_overflow(main), _without_overflow(adjacency)
     _ensure_derived(sp.diff(main, distance), _SLOPE)
     if distance == Z:
         force = main if forces else sp.diff(main, Z)
@@ -182,11 +194,7 @@ class PiecewiseFormula:
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
         """Return an expression as a function of y, to `DIGITS`; NaN where it is not real."""
-        y = Z if self.formula.distance == Z else SQUARE
-        expression = expression.subs(ROOT, 1 + EPS * Z)
-        bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
-        given = {symbol: sp.Dummy() for symbol in self.numbers}  # a parameter may be named like a function of mpmath
-        compiled = sp.lambdify([y, *given.values()], bounded.xreplace(given), [_BOUNDED, "mpmath"], dummify=True)
+        compiled = _compiled(expression, Z if self.formula.distance == Z else SQUARE, tuple(self.numbers))
         values = [mpmath.mpf(number) for number in self.numbers.values()]
 
         def at(distance: Any) -> Any:
@@ -198,6 +206,18 @@ class PiecewiseFormula:
                 return found if isinstance(found, mpmath.mpf) else mpmath.nan
 
         return at
+
+
+@lru_cache(maxsize=16 * _KEPT)
+def _compiled(expression: sp.Expr, y: sp.Symbol, symbols: tuple[sp.Symbol, ...]) -> Callable[..., Any]:
+    """Return an expression as a function of y and of its parameters, for mpmath."""
+    expression = expression.subs(ROOT, 1 + EPS * Z)
+    bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
+    given = {symbol: sp.Dummy() for symbol in symbols}  # a parameter may be named like a function of mpmath
+    compiled: Callable[..., Any] = sp.lambdify(
+        [y, *given.values()], bounded.xreplace(given), [_BOUNDED, "mpmath"], dummify=True
+    )
+    return compiled
 
 
 _POWER = sp.Function("bounded_power")

@@ -3,6 +3,8 @@
 import dataclasses
 import json
 import pickle
+import re
+import warnings
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
@@ -320,3 +322,65 @@ def test_the_strength_of_a_force_that_acts_below_half_the_distance_only_is_its_l
     text = "Piecewise((s + 1/s*0.01, s < 0.1), (0.2, True))"
     pair = fl.pair_law(text, adjacency=7, range=3.0, length=2.0)
     assert pair.strength > 50.0
+
+
+WELL = "k*((r**2 - s**2)**4/8 - (r**2 - d**2)*(r**2 - s**2)**3/6)"
+TWICE = (
+    "k*(s**2 - d**2)**2*(r**2 - s**2)**2"  # its force is 4 k s (s² − d²)(r² − s²)(r² + d² − 2s²): another zero at √6.5
+)
+
+
+@pytest.mark.parametrize(
+    ("potential", "adjacency", "zeros", "remarks"),
+    [
+        (WELL, "(1 - s/r)**2", (2.0,), []),
+        (
+            TWICE,
+            "(1 - s/r)**2",
+            (2.0, 6.5**0.5),
+            ["changes sign again at s = 2.54951: beyond, agents repel each other"],
+        ),
+        ("k*(s - d)**2", "0", (2.0,), ["the force jumps from -0.02 to 0 at the range, s = 3"]),
+        ("k*(r - s)**2", "1", (), ["the adjacency jumps from 1 to 0 at the range, s = 3"]),
+        (
+            "k*(r - s)**2/(s - 1)**2",
+            "0",
+            None,
+            ["changes sign again at s = 1", "the force is infinite at s = 1, within"],
+        ),
+    ],
+)
+def test_what_a_law_lacks_is_said_when_it_is_made(potential, adjacency, zeros, remarks):
+    numbers = {"adjacency": adjacency, "range": 3.0, "length": 2.0, "parameters": {"k": 0.01}}
+    if remarks:
+        with pytest.warns(fl.PairLawWarning, match=re.escape(remarks[0])):
+            law = fl.pair_law(potential, **numbers)
+    else:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            law = fl.pair_law(potential, **numbers)
+    assert len(law.remarks) >= len(remarks)
+    assert all(any(remark in given for given in law.remarks) for remark in remarks)
+    assert all(given in repr(law) for given in law.remarks)
+    assert not any("infinite" in given for given in law.remarks) or "(s - 1)" in potential
+    if zeros is not None:
+        assert law.facts.zeros == pytest.approx(zeros, rel=1e-12)
+
+
+def test_a_caret_is_no_power():
+    with pytest.raises(
+        ArgumentError, match=re.escape("'k*s^2' has a ^, which is no power here; expected **, as in 'k*s**2'")
+    ):
+        fl.pair_law("k*s^2", adjacency=0, range=3.0, length=1.0, parameters={"k": 1.0})
+
+
+@pytest.mark.parametrize("width", ["1e-3", "1e-5"])
+def test_a_steep_logistic_switch_is_computed_without_overflow(width):
+    """1/(1 + exp(−(s − 1)/w)) = (1 + tanh((s − 1)/2w))/2, whose slope is sech²/4w."""
+    law = fl.pair_law("0", adjacency=f"1/(1 + exp(-(s - 1)/{width}))", range=3.0, length=1.0)
+    w, s = float(width), np.array([0.01, 0.5, 1.0, 1.0 + 3.0 * float(width), 2.0])
+    values = law.values(s)
+    x = np.minimum(np.abs(s - 1.0) / (2.0 * w), 300.0)
+    assert values.adjacency == pytest.approx(0.5 + 0.5 * np.tanh((s - 1.0) / (2.0 * w)), abs=4e-16 / w)  # of √s²
+    assert values.adjacency_slope == pytest.approx(0.25 / w / np.cosh(x) ** 2, rel=1e-9, abs=1e-15 / w**2)
+    assert law.facts.weight.status == "met" or w < 1e-4  # there it is left open

@@ -146,3 +146,32 @@ def test_what_does_not_say_what_it_reads_is_unknown_and_has_corners_at_its_surfa
 
     assert [entry.name for entry in Changed().functions] == ["the pair law", "what Changed reads"]
     assert isinstance(Changed().functions[0].function, DistanceFunction)
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"h": 0.9, "a": 1.0, "b": 9.0}, {"unit": 0.1}, {"d": 2.0, "r": 9.0, "eps": 3.0}]
+)
+def test_slopes_of_the_papers_pair_law_are_bounded_on_parts(options):
+    """Against exact slopes on a grid: never below them, and not far above their largest."""
+    law = fl.AlphaInteraction(**options)
+    s = np.linspace(1e-6, law.r * (1.0 - 1e-9), 20001)
+    force, adjacency = np.abs(law.values(s).force_slope), np.abs(law.values(s).adjacency_slope)
+    bounds = law.slopes()
+    for bound in bounds:
+        inside = (s >= bound.left) & (s <= bound.right)
+        assert force[inside].max() <= bound.force
+        assert adjacency[inside].max() <= bound.adjacency
+    assert max(bound.force for bound in bounds) <= 2.0 * force.max()
+    assert max(bound.adjacency for bound in bounds) <= 1.2 * adjacency.max()
+
+
+def test_slopes_of_a_rational_weight_are_bounded_at_all_distances():
+    weight = fl.RationalWeight(3.0, 1.5, 0.1)
+    s = np.geomspace(1e-9, 1e9, 20001)
+    slope = np.abs(weight.values(s).adjacency_slope)
+    bounds = weight.slopes()
+    assert (bounds[0].left, bounds[-1].right) == (0.0, np.inf)
+    for bound in bounds:
+        inside = (s >= bound.left) & (s <= bound.right)
+        assert slope[inside].max(initial=0.0) <= bound.adjacency
+    assert max(bound.adjacency for bound in bounds) == pytest.approx(slope.max(), rel=1e-6)

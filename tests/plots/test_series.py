@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flockana import Algorithm1, AlphaInteraction, Law, plots, simulate
+from flockana import Algorithm1, AlphaInteraction, Law, RationalWeight, pair_law, plots, simulate
+from flockana.base.errors import ArgumentError
 from tests.plots.artists import Halving, a_run, axes
 
 
@@ -79,6 +80,17 @@ def test_laws_without_range_energy_or_target_draw_what_there_is(law):
     plots.centre_path(run, ax=axes())
     bounded = any(p.get_label() == "lower bound between samples" for p in plots.distances(run, ax=axes()).patches)
     assert bounded == isinstance(law, Law)  # between the steps of a map there is nothing to bound
+
+
+def test_the_force_of_a_formula_is_drawn_with_its_sign_changes():
+    pair = pair_law("k*((r**2 - s**2)**4/8 - (r**2 - d**2)*(r**2 - s**2)**3/6)", adjacency=0, range=3.0, length=2.0,
+                       parameters={"k": 0.01})  # fmt: skip
+    ax = axes()
+    x, force = plots.force(pair, ax=ax).get_lines()[0].get_data()
+    np.testing.assert_allclose(force, np.where(x < 3.0, -0.01 * x * (x**2 - 4.0) * (9.0 - x**2) ** 2, 0.0), atol=1e-13)
+    assert "2" in [text.get_text() for text in ax.texts]
+    with pytest.raises(ArgumentError, match="has no range: expected a pair law of finite range"):
+        plots.force(RationalWeight())
 
 
 def test_pair_curves_pass_through_their_known_points():

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from math import asinh, exp, inf, sinh, sqrt
 from typing import Any, ClassVar, NamedTuple
 
@@ -158,8 +157,8 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     @property
     def feature(self) -> float:
-        """Length of the shortest of repulsion, dead zone and attraction."""
-        return min(b - a for a, b in pairwise((0.0, *self.surfaces)))
+        """Length d₁ of repulsion; a run watches every end of a zone (`surfaces`)."""
+        return self.d1
 
     @property
     def strength(self) -> float:

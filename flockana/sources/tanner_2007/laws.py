@@ -15,7 +15,6 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.functions import LawFunction, Within
-from flockana.laws.features import Feature, function_feature
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import ensure_apart
@@ -40,10 +39,6 @@ class _MatchingLaw(Law):
     def __post_init__(self) -> None:
         ensure_kind("potential", self.potential, LogPotential, "LogPotential(strength, d)")
         normalise(self, ensure_positive, "k2")
-
-    def features(self) -> tuple[Feature, ...]:
-        """Return those of the potential."""
-        return tuple(map(function_feature, self.functions))
 
     @property
     def scales(self) -> Scales:

@@ -60,6 +60,7 @@ class NetConsensus(Law):
     velocity: float = 1.0
 
     references: ClassVar[tuple[str, ...]] = ("ren-atkins-2007",)
+    functions = ()  # its weights do not depend on distances
 
     def __post_init__(self) -> None:
         normalise(self, ensure_weights, "weights")
