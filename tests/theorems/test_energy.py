@@ -153,10 +153,10 @@ class Unsaid(ToySwarm):
 @pytest.mark.parametrize(
     ("law", "k", "rate", "balance"),
     [
-        (ToySwarm, 0.5, "verified", "verified"),
-        (ToySwarm, 0.0, "verified", "verified"),
+        (ToySwarm, 0.5, "inconclusive", "verified"),  # samples of a term of one's own bound nothing between them
+        (ToySwarm, 0.0, "inconclusive", "verified"),
         (ToySwarm, -0.5, "vacuous", "verified"),  # it adds energy, and says so
-        (Unsaid, 0.5, "verified", "refuted"),  # the rate that it gives is 0, and its energy falls
+        (Unsaid, 0.5, "inconclusive", "inconclusive"),  # its energy falls; nobody says how fast its term changes
     ],
 )
 def test_a_law_of_one_s_own_is_judged_by_what_its_terms_give(law, k, rate, balance):
