@@ -11,13 +11,15 @@ from flockana.kernels.runge_kutta import rate_of
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of a method of fixed steps."""
+    """Coefficients of a method of fixed steps, its step, and the range of pairs."""
 
     a: Any  # weights of the stages, and in its last row those of the step
     c: Any  # their times, as shares of the step
     stages: Any
     one: Any  # whether it has one stage, and positions q + h p + f h² u
     lead: Any  # f
+    h: Any
+    reach: Any
 
 
 @inlined
@@ -40,14 +42,14 @@ def _finite(y):
 
 
 @kernel
-def fixed_steps(times, h, y, kicks, wanted, method, system, pairs, out):
+def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
     """Write (q, p, u) after the steps wanted, numbered from 1; return whether the pairs fit into the list.
 
     `times` are those at which steps begin; `kicks` has a row of changes of the velocities for each step, or none. Pairs
-    are listed anew for each input, so that the order of sums hangs on the positions alone. y is overwritten; once it is
+    are listed anew for each input, not by `system`, so that the order of sums hangs on the positions alone. y is overwritten; once it is
     not finite it stays so.
     """
-    (n, m), row, reach = (system.order.size, system.frame.shape[1]), 0, system.reach[0]
+    (n, m), row, h, reach = (system.order.size, system.frame.shape[1]), 0, method.h, method.reach
     size, stages, noisy = n * m, method.stages, kicks.size > 0
     rates, trial, u = np.zeros((stages, y.size)), np.zeros(y.size), np.empty(size)
     for k in range(wanted[-1]):

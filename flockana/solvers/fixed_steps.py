@@ -260,7 +260,7 @@ class FixedSteps(DiscreteLaw):
         if (form := self.law.compiled_push(m)) is None:
             return None
         system = form.system((float(times[0]), np.zeros(m), np.zeros(m)), n, m)
-        system = system._replace(reach=(system.reach[0], 0.0))
+        reach, system = system.reach[0], system._replace(reach=(0.0, 0.0))
         table, kicks = self.solver.tableau, np.empty((0, n * m))
         if memory:
             first = int(memory["step"])
@@ -268,11 +268,13 @@ class FixedSteps(DiscreteLaw):
             kicks = sum(pushes, np.zeros((steps, n, m))).reshape(steps, n * m)
             after = {"step": np.array([float(first + steps)]), "past": np.empty((1, 0, 4, n, m))}
             memory = after | {"held": np.full((1, len(self._wrappers), n, m), np.nan)}
-        method = Coefficients(table.a, table.c, table.stages, self.solver.position_factor is not None, table.lead)
+        method = Coefficients(
+            table.a, table.c, table.stages, self.solver.position_factor is not None, table.lead, self.dt, reach
+        )
         y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
         wanted = np.asarray(wanted)
         pairs: Pairs | None = no_pairs(n, m)
-        while not fixed_steps(times, self.dt, y.copy(), kicks, wanted, method, system, pairs, out):
+        while not fixed_steps(times, y.copy(), kicks, wanted, method, system, pairs, out):
             if (pairs := with_room(pairs)) is None:  # type: ignore[arg-type]
                 return None
         return out[0], out[1], out[2], memory
