@@ -1,0 +1,206 @@
+"""What a net does beside decaying: disturbances along a chain, growth before decay, passivity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.norms import Balanced, largest_gain
+
+_TOLERANCE = 1e-9  # relative, of a norm
+_TIMES = 400  # at which growth is looked at
+_SETTLED = 20.0  # time constants of the slowest mode, and two for each state of a chain: the last time
+
+
+@dataclass(frozen=True, eq=False)
+class StringGains:
+    """Largest gains from the motion of one agent to those of all others.
+
+    Parameters
+    ----------
+    first : int
+        The agent that is moved.
+    gains, peaks : ndarray, shape (n,)
+        Largest |q_k/q_first| over all frequencies (over all directions of the plane or space), and where it is, in
+        radians per time unit; 1 and 0 of the agent itself.
+    """
+
+    first: int
+    gains: FloatArray
+    peaks: FloatArray
+
+    @property
+    def amplifies(self) -> bool:
+        """Whether some agent moves more than the first: then what disturbs a chain may grow along it."""
+        return bool(self.gains.max() > 1.0 + 10.0 * _TOLERANCE)
+
+
+@check_kinds
+def string_gains(flock: Linearisation, first: int = 0) -> StringGains:
+    """Return the H∞ norms from the motion of one agent to those of all others, which follow it.
+
+    Along a chain in which each hears the one before, the k-th gain is the k-th power of the first at one frequency: a
+    first gain above 1 makes a chain string unstable, however well each follower is damped.
+
+    Parameters
+    ----------
+    flock : Linearisation
+        Stable while the first agent is held.
+    first : int
+        The agent that is moved.
+
+    Raises
+    ------
+    ArgumentError
+        If the others are not stable while the first is held, or there are none.
+
+    Examples
+    --------
+    x'' = −(x' − x₀') − (x − x₀) answers its leader with up to 1.47 times its motion, the next with 1.47² times:
+
+    >>> from flockana import MinimalFlocking
+    >>> from flockana.stability import linearise
+    >>> row = linearise(MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0, radius=3.0), [[0.0], [1.0], [2.0]])
+    >>> found = string_gains(row)
+    >>> found.gains.round(4).tolist(), found.amplifies
+    ([1.0, 1.4679, 2.1547], True)
+    """
+    n, m = flock.q.shape
+    first = ensure_count("first + 1", first + 1) - 1
+    if not first < n or n < 2:
+        raise ArgumentError(f"first = {first}: expected one of {n} agents, and others to follow it")
+    moved = np.arange(n * m) // m == first
+    k, d = flock.stiffness.toarray(), flock.damping.toarray()
+    inner, heard = np.ix_(~moved, ~moved), np.ix_(~moved, moved)
+    size, unit = (n - 1) * m, flock.second_order.pace
+    stiffness, damping, push, drag = k[inner] / unit**2, d[inner] / unit, k[heard] / unit**2, d[heard] / unit
+    # with p = x' + D₀ u the velocity u' of the input does not appear
+    a = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness, -damping]])
+    system = Balanced(
+        a, np.vstack([-drag, damping @ drag - push]), np.eye(m, 2 * size), np.zeros((m, m)), discrete=False
+    )
+    if not system.stable:
+        raise ArgumentError(
+            f"the others are not stable while agent {first} is held: expected each to be held by others"
+        )
+    gains, peaks = np.ones(n), np.zeros(n)
+    for place, agent in enumerate(np.delete(np.arange(n), first).tolist()):
+        seen = system._replace(c=np.eye(2 * size)[place * m : (place + 1) * m])
+        gains[agent], peaks[agent] = largest_gain(seen, _TOLERANCE)
+    return StringGains(first, gains, peaks * unit)
+
+
+@dataclass(frozen=True)
+class TransientGrowth:
+    """Largest growth of a small perturbation before it decays, and when.
+
+    Parameters
+    ----------
+    growth : float
+        max ‖e^(At)‖ over t >= 0, off the neutral motions: 1 if nothing ever grows.
+    time : float
+        When, in time units.
+    """
+
+    growth: float
+    time: float
+
+
+@check_kinds
+def transient_growth(flock: Linearisation) -> TransientGrowth:
+    """Return how much a perturbation may grow before it decays: much, in a net that is far from normal.
+
+    A perturbation is measured by its positions times the rate of the fastest motion, and its velocities, from the
+    nearest neutral motion. Times are searched on a grid from the fastest motion to the slowest mode and refined: what
+    is returned is reached, and a narrow peak between two times may be higher.
+
+    Parameters
+    ----------
+    flock : Linearisation
+        A stable flock.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not stable.
+
+    Examples
+    --------
+    >>> from flockana import NetConsensus
+    >>> from flockana.stability import linearise
+    >>> net = linearise(NetConsensus([[0, 1], [1, 0]]), [[0.0], [0.0]])
+    >>> transient_growth(net).growth >= 1.0
+    True
+    """
+    from scipy.linalg import expm
+    from scipy.optimize import minimize_scalar
+
+    if not flock.stable:
+        raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
+    a = flock.second_order.quotient.A
+    if not len(a):
+        return TransientGrowth(1.0, 0.0)
+
+    def size(exponent: float) -> float:
+        return float(np.linalg.norm(expm(a * np.exp(exponent)), 2))
+
+    grid = np.linspace(log(0.01 / flock.second_order.pace), log((_SETTLED + 2.0 * len(a)) / flock.decay_rate), _TIMES)
+    sizes = [size(x) for x in grid.tolist()]
+    best = int(np.argmax(sizes))
+    bounds = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _TIMES - 1)])
+    finer = minimize_scalar(lambda x: -size(x), bounds=bounds, method="bounded", options={"xatol": 1e-9})
+    growth, exponent = max((sizes[best], float(grid[best])), (-float(finer.fun), float(finer.x)))
+    return TransientGrowth(growth, float(np.exp(exponent))) if growth > 1.0 else TransientGrowth(1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Passivity:
+    """Whether a flock takes up energy only, from forces on all agents to their velocities.
+
+    Parameters
+    ----------
+    passive : bool
+        K = Kᵀ >= 0 and D + Dᵀ >= 0, to rounding: exactly then, with all agents as channels.
+    asymmetry : float
+        Largest entry of K − Kᵀ, over the largest of K.
+    stiffness, damping : float
+        Least eigenvalues of (K + Kᵀ)/2 and (D + Dᵀ)/2, over the largest row sum of each.
+    """
+
+    passive: bool
+    asymmetry: float
+    stiffness: float
+    damping: float
+
+
+@check_kinds
+def passivity(flock: Linearisation) -> Passivity:
+    """Return whether a linearised flock is passive from forces on all agents to their velocities.
+
+    Parameters
+    ----------
+    flock : Linearisation
+        From `linearise`.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.stability import linearise
+    >>> passivity(linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])).passive
+    True
+    """
+    k, d = flock.stiffness.toarray(), flock.damping.toarray()
+    zero = max(flock.zero, 1e-13)
+    asymmetry = float(np.abs(k - k.T).max()) / (float(np.abs(k).max()) or 1.0)
+    rows = [float(np.abs(x).sum(axis=1).max()) or 1.0 for x in (k, d)]
+    stiffness, damping = (
+        float(np.linalg.eigvalsh(0.5 * (x + x.T))[0]) / row for x, row in zip((k, d), rows, strict=True)
+    )
+    passive = asymmetry <= zero and stiffness >= -zero and damping >= -zero
+    return Passivity(passive, asymmetry, stiffness, damping)

@@ -1,0 +1,81 @@
+"""Disturbances along chains, growth before decay and passivity: closed forms of equal followers, and a fine grid."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.sparse import csr_array
+
+from flockana import Algorithm1, Algorithm2, MinimalFlocking, StaticTarget, find_equilibrium, linearise
+from flockana.base.errors import ArgumentError
+from flockana.lattice import hexagonal_patch
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.nets import passivity, string_gains, transient_growth
+
+LAW = Algorithm2(target=StaticTarget((0.0,)))
+
+
+def net(k, d):
+    n = len(k)
+    a = np.block([[np.zeros((n, n)), np.eye(n)], [-np.asarray(k), -np.asarray(d)]])
+    places, links = np.arange(n, dtype=float)[:, None], np.zeros((0, 2), dtype=np.int32)
+    return Linearisation(LAW, places, 0.0 * places, 0.0, 0.0, links, csr_array(a), 1e-12)
+
+
+@pytest.mark.parametrize(("k", "d"), [(1.0, 1.0), (4.0, 0.5), (1.0, 3.0)])
+def test_gains_along_a_chain_are_powers_of_the_first(k, d):
+    """(d s + k)/(s² + d s + k) of each follower: its peak exceeds 1 whatever the damping."""
+    n = 6
+    chain = np.eye(n) - np.eye(n, k=-1)
+    chain[0, 0] = 0.0
+    found = string_gains(net(k * chain, d * chain))
+    w = np.linspace(1e-4, 10.0, 400_001)
+    peak = np.abs((1j * w * d + k) / (k - w * w + 1j * w * d)).max()
+    np.testing.assert_allclose(found.gains, peak ** np.arange(n), rtol=1e-6)
+    assert found.amplifies
+
+
+def test_followers_with_a_drag_of_their_own_pass_on_less():
+    n = 5
+    chain, drag = np.eye(n) - np.eye(n, k=-1), 4.0 * np.eye(n)
+    chain[0, 0] = 0.0
+    found = string_gains(net(chain, drag))  # k/(s² + 4 s + k) falls from 1 at rest
+    np.testing.assert_allclose(found.gains, 1.0, rtol=1e-8)
+    assert not found.amplifies
+    np.testing.assert_array_equal(found.peaks, 0.0)
+
+
+def test_a_follower_that_nothing_holds_is_refused():
+    with pytest.raises(ArgumentError, match="the others are not stable while agent 1 is held"):
+        string_gains(net(np.diag([0.0, 1.0]), np.eye(2)), first=1)
+    with pytest.raises(ArgumentError, match="first = 2: expected one of 2 agents"):
+        string_gains(net(np.eye(2), np.eye(2)), first=2)
+
+
+@pytest.mark.parametrize("n", [1, 4, 8])
+def test_growth_before_decay_against_a_fine_grid(n):
+    """A chain that amplifies threefold from each to the next, in units in which the fastest rate is a power of 2."""
+    k = np.eye(n) - 3.0 * np.eye(n, k=-1)
+    flock = net(k, 2.0 * np.eye(n))
+    found, pace = transient_growth(flock), flock.second_order.pace
+    a = np.block([[np.zeros((n, n)), pace * np.eye(n)], [-k / pace, -2.0 * np.eye(n)]])
+    sizes = [np.linalg.norm(expm(a * t), 2) for t in np.linspace(0.0, 40.0, 4001)]
+    assert found.growth == pytest.approx(max(sizes), rel=1e-4)
+    assert found.growth >= max(sizes) * (1.0 - 1e-9)
+    assert np.linalg.norm(expm(a * found.time), 2) == pytest.approx(found.growth, rel=1e-9)
+
+
+def test_an_unstable_flock_grows_without_end_and_is_refused():
+    with pytest.raises(ArgumentError, match="the flock is not stable"):
+        transient_growth(net([[1.0]], [[-1.0]]))
+
+
+def test_passive_are_the_flocks_whose_matrices_say_so():
+    q = find_equilibrium(Algorithm1(), hexagonal_patch(1, 7.0))
+    assert passivity(linearise(Algorithm1(), q)).passive
+    chain = linearise(MinimalFlocking(edges=((0, 1),), spacing=1.0, radius=2.0), [[0.0], [1.0]])
+    assert not passivity(chain).passive
+    assert passivity(chain).asymmetry == pytest.approx(1.0)
+    assert not passivity(net(np.diag([1.0, -1e-6]), np.eye(2))).passive
+    assert passivity(net(np.eye(2), [[1.0, 5.0], [-5.0, 1.0]])).passive  # what turns only takes no energy
+    found = passivity(net(np.eye(2), [[1.0, 3.0], [0.0, 1.0]]))
+    assert (found.passive, found.damping) == (False, pytest.approx(-0.5 / 4.0))
