@@ -22,6 +22,7 @@ from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
+from flockana.stability.damp_table import damp_table
 from flockana.stability.mode_names import translations
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import eigen
@@ -29,6 +30,7 @@ from flockana.stability.signals import axes_of, labels
 
 if TYPE_CHECKING:
     import control
+    from pandas import DataFrame
 
     from flockana.stability.linearisation import Linearisation
 
@@ -194,6 +196,20 @@ class MapLinearisation:
     def stable(self) -> bool:
         """Return whether every mode off the neutral motions decays, beyond rounding; True without such modes."""
         return all(mode.decays for mode in self.modes)
+
+    def damp(self, *, settled: float = 0.02) -> DataFrame:
+        """Return a table of all multipliers by rising natural frequency: see `Linearisation.damp`; s = ln z/dt.
+
+        Parameters
+        ----------
+        settled : float
+            Share of a deviation at which it counts as settled.
+        """
+        poles = [(mode.name, complex(mode.multiplier)) for mode in self.modes]
+        pairs = [(name, z.conjugate()) for name, z in poles if z.imag]
+        zeros = [mode.name for mode in self.zero_modes]
+        zeros += ["neutral"] * (len(self.multipliers) - len(poles) - len(pairs) - len(zeros))
+        return damp_table([*((name, 1.0 + 0j) for name in zeros), *poles, *pairs], settled=settled, dt=self.dt)
 
     @cached_property
     def state_space(self) -> control.StateSpace:

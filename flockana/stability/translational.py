@@ -109,7 +109,9 @@ class CentreOfMass:
         return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
 
     def step_response(self, t: Any) -> TimeResponseData:
-        """Return q_c after a unit step of q_r, by python-control.
+        """Return q_c after a unit step of q_r with p_r held at 0, whatever the factor, by python-control.
+
+        A γ-agent that jumps has no velocity to tell; `system()` has p_r = factor dq_r/dt, an impulse at a step.
 
         Parameters
         ----------

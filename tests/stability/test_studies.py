@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from flockana import Algorithm1, Algorithm2, DirectedNet, Gains, NetConsensus, StaticTarget, TaylorStep, linearise
+from flockana import (
+    Algorithm1,
+    Algorithm2,
+    DirectedNet,
+    Gains,
+    NetConsensus,
+    Sampled,
+    StaticTarget,
+    TaylorStep,
+    linearise,
+)
 from flockana.stability import delay_margin, delay_system, rightmost_roots, scalar_margin, scalar_period
 from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelaySystem, late_part
@@ -41,6 +51,15 @@ def test_damp_shows_every_pole_once():
     step = damp_table([("z", -0.5 + 0j), ("end", 0j)], dt=0.1)
     assert step["natural frequency"].tolist() == pytest.approx([abs(complex(log(0.5), np.pi)) / 0.1, inf])
     assert nan not in step["damping ratio"].tolist()
+
+
+def test_damp_of_a_map_tells_its_multipliers():
+    """c1γ = 4, c2γ = 1 held for 0.2: z² − 1.72 z + 0.88 = 0, ζ ω_n = −ln √0.88/0.2."""
+    held = linearise(Sampled(ONE.law, 0.2), ONE.q)
+    table = held.damp()
+    roots = np.roots([1.0, 0.2 + 0.08 - 2.0, 1.0 - 0.2 + 0.08])
+    assert table["pole"].tolist() == pytest.approx(sorted(roots.tolist(), key=lambda z: -z.imag))
+    np.testing.assert_allclose(1.0 / table["time constant"], -log(0.88) / 0.4, rtol=1e-12)
 
 
 def test_structural_modes_leave_the_centre_out():
