@@ -21,7 +21,7 @@ class Found:
         self.asked, self.rates, self.errors = [], (alike, apart), errors
         patch.setattr(heterogeneous_gains, "gain_problem", self.problem)
         patch.setattr(heterogeneous_gains, "design_gains", self.design)
-        patch.setattr(heterogeneous_gains, "eigen", self.eigen)
+        patch.setattr(heterogeneous_gains, "eigenvalues", self.eigenvalues)
         self.claims = theorem("heterogeneous-gains").examine(Tolerances())[1]
 
     def problem(self, q, **options):
@@ -34,10 +34,10 @@ class Found:
         return SimpleNamespace(problem=problem, rate_homogeneous=alike, rate_heterogeneous=apart, ratio=apart / alike,
                                homogeneous=0, heterogeneous=1)  # fmt: skip
 
-    def eigen(self, k):
+    def eigenvalues(self, k):
         """A root further left, found badly, and the slowest, at minus the rate."""
         rate = self.rates[k]
-        return np.array([-3.0 * rate + 1j, -rate]), None, np.array([9.0, 1.0]) * self.errors[k]
+        return np.array([-3.0 * rate + 1j, -rate]), np.array([9.0, 1.0]) * self.errors[k]
 
 
 @pytest.mark.parametrize(
