@@ -214,7 +214,7 @@ _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 #
 # Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
 # arrives. Kill it at any moment and call it again: only what is missing is computed. `executor=` takes any
-# `concurrent.futures.Executor`, `cluster=` a Dask scheduler's address; the numbers are the same to the bit.
+# `concurrent.futures.Executor`, Dask's for a cluster among them; the numbers are the same to the bit.
 #
 # ## Do not wait for the counterexample
 #

@@ -22,7 +22,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 # Folders and files whose tests are all marked slow: `make test-all` and CI run them, `make test` does not.
 SLOW = (
-    *("adversarial", "benchmarks", "tools", "ensemble/test_cluster.py", "ensemble/test_processes.py"),
+    *("adversarial", "benchmarks", "tools", "ensemble/test_processes.py"),
     *("base/test_interrupts.py", "proofs"),
     *("explore/test_server.py", "explore/test_worker.py", "test_jit.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),

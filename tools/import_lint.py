@@ -2,7 +2,8 @@
 
 No room of the package imports a source. In a source, a part of a kind (``laws.py``, ``theorems/``) stands at the stage
 of the room of that kind; it imports other parts of its source that do not come later, and of other sources the public
-names alone, ``from flockana.sources.SOURCE import NAME``, and in no circle.
+names alone, ``from flockana.sources.SOURCE import NAME``, and in no circle. No modules import each other in a circle,
+also not for type checking.
 
 Exit status 0 if it holds, 1 with one line per violation if it does not.
 """
@@ -107,12 +108,34 @@ def faults_of(path: Path, parts: tuple[str, ...], uses: dict[str, set[str]]) -> 
             yield line, f"{room} imports {module}, which does not come before it"
 
 
+def circle(root: Path) -> list[str]:
+    """Return modules that import each other in a circle, for type checking too; none if there is none."""
+    paths = {".".join(path.relative_to(root).with_suffix("").parts): path for path in (root / PACKAGE).rglob("*.py")}
+    graph = dict[str, set[str]]()
+    for name, path in paths.items():
+        tree = ast.walk(ast.parse(path.read_text()))
+        froms = [node for node in tree if isinstance(node, ast.ImportFrom) and node.module and not node.level]
+        named = {
+            f"{node.module}.{alias.name}" if f"{node.module}.{alias.name}" in paths else node.module
+            for node in froms
+            for alias in node.names
+        }
+        graph[name] = {str(one) for one in named} & paths.keys() - {name}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
 def main(root: Path) -> int:
     """Check every file of the package under `root`; return the exit status."""
     faults, uses = [], dict[str, set[str]]()
     for path in sorted((root / PACKAGE).rglob("*.py")):
         parts = path.relative_to(root / PACKAGE).with_suffix("").parts
         faults += [f"{path}:{line}: {fault}" for line, fault in faults_of(path, parts, uses)]
+    if modules := circle(root):
+        faults.append(f"modules import each other in a circle: {', '.join(modules)}")
     try:
         TopologicalSorter(uses).prepare()
     except CycleError as error:

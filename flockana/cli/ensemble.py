@@ -34,9 +34,6 @@ def ensemble_command(
     ] = None,
     store: Annotated[Path | None, typer.Option(metavar="FILE", help="File that stores finished runs.")] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Retry failed runs of the store.")] = False,
-    cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one.")
-    ] = None,
     jobs: Jobs = None,
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
     save_to: Annotated[Path | None, output("netCDF file to write.")] = None,
@@ -47,9 +44,6 @@ def ensemble_command(
 
     With --store, finished runs are kept: after Ctrl-C or a crash, the same command continues from there.
     --plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
-
-    A Dask cluster: `dask scheduler` on one machine, `dask worker tcp://HOST:8786 --nworkers auto --nthreads 1` on each,
-    with the same flockana everywhere (pip install 'flockana[cluster]'); then --cluster tcp://HOST:8786.
 
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
@@ -71,7 +65,6 @@ def ensemble_command(
         range(first, first + seeds),
         theorems=theorem or None,
         parameters=parameters,
-        cluster=cluster,
         jobs=jobs,
         store=store,
         retry=retry,

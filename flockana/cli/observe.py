@@ -105,7 +105,7 @@ def _law(name: str | None, formula: str | None, d: float | None, r: float | None
     """Return the law to compare the recording with; None if none is given."""
     from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
-    from flockana.recorded.recording import scaled_alpha
+    from flockana.recorded.unknown import scaled_alpha
     from flockana.scenarios import scenario
 
     if formula is not None:
@@ -121,7 +121,7 @@ def _law(name: str | None, formula: str | None, d: float | None, r: float | None
 
 def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
     from flockana.cli.source import law_scales
-    from flockana.recorded.recording import scaled_alpha
+    from flockana.recorded.unknown import scaled_alpha
 
     if d is not None or r is not None:
         alpha = scaled_alpha(d, r)

@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future
 from concurrent.futures import wait as wait_for
 from typing import Any, TypeVar
 
-from flockana.base.errors import FlockanaError, SolverError
+from flockana.base.errors import SolverError
 from flockana.ensemble.executors import WorkerPool
 
 _TICK = 0.2  # seconds between looks around
@@ -61,8 +61,7 @@ def map_in_batches(
                     results = future.result()
                 except Exception as error:
                     alone = len(batch) == 1 and not pending
-                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` raises without a cluster
-                    suspected = batch if lost else _suspected(error, batch, pending, workers)
+                    suspected = _suspected(error, batch, pending, workers)
                     if not alone:
                         suspects.extend(suspected)
                         break  # what else is done is still pending, or under suspicion

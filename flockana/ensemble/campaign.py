@@ -55,7 +55,6 @@ def ensemble(
     metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,
     tolerances: Tolerances | None = None,
     executor: Executor | None = None,
-    cluster: str | None = None,
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
     retry: bool = False,
@@ -86,11 +85,11 @@ def ensemble(
         What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
     executor : concurrent.futures.Executor, optional
-        Who computes; it is left running. By default a pool of processes that is started for the purpose.
-    cluster : str, optional
-        Address of a Dask scheduler, or ``"local"`` to start one on this machine (needs ``flockana[cluster]``).
+        Who computes, such as Dask's ``client.get_executor(pure=False)`` or loky's; it is left running. By default a
+        pool of processes that is started for the purpose.
     jobs : int, optional
-        Processes to start, by default one per core; with 1 this process computes.
+        Processes to start, by default one per core; with 1 this process computes. Of a given executor the number of
+        its workers, where it does not say it itself.
     store : path-like, optional
         File that keeps runs as they are done. What it holds is not computed again, so an interrupted ensemble goes on
         from where it was when the same call is made again; a larger one computes what it lacks.
@@ -114,7 +113,7 @@ def ensemble(
     FileError
         If the store cannot be written, is damaged, or is of another version.
     SolverError
-        If the executor fails, or the cluster's scheduler is lost; what was done is in the store.
+        If the executor fails; what was done is in the store, and the same call with another executor goes on from it.
     KeyboardInterrupt
         On Ctrl-C; what was done is in the store.
 
@@ -126,7 +125,7 @@ def ensemble(
     >>> runs.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
     [0, 0, 0, 0]
     """
-    ensure_worker_options(executor, cluster, jobs)
+    ensure_worker_options(executor, jobs)
     grid = Grid(*_split(parameters), ensure_seeds(seeds))
     if (runs := prod(grid.shape)) > MOST:
         raise ArgumentError(f"{runs} runs: expected at most {MOST}, seeds times values of options; {_REMEDY}")
@@ -156,10 +155,10 @@ def ensemble(
             advance = stack.enter_context(progress_bar(len(missing), enabled=progress, steady=True))
             text = f"runs, {len(all_jobs) - len(missing)} stored before" if len(missing) < len(all_jobs) else "runs"
             done = 0
-            if executor is None and cluster is None:
+            if executor is None:
                 jobs = min(jobs or cores(), len(missing))
                 jobs = 1 if jobs > 1 and not can_start_processes(request) else jobs
-            with worker_pool(executor, cluster=cluster, jobs=jobs) as workers:
+            with worker_pool(executor, jobs=jobs) as workers:
                 for made in make_runs(request, missing, workers):
                     new = {keys[record.job]: record for record in made}
                     if kept is not None:

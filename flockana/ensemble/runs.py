@@ -24,8 +24,8 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
         raise
     except Exception as error:  # what a run raises is in its record: this comes from who works
         raise SolverError(
-            f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept, so mend it and start "
-            "again"
+            f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept: make the same call with "
+            "a new executor, and only what is missing is computed"
         ) from error
 
 

@@ -4,15 +4,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.recorded.samples import Samples
+
 if TYPE_CHECKING:
     import xarray
-
-    from flockana.recorded.recording import Recording
 
 _NAMES = {"q": "position", "p": "velocity", "u": "acceleration"}
 
 
-def dataset_of(rec: "Recording") -> "xarray.Dataset":
+def dataset_of(rec: Samples) -> "xarray.Dataset":
     """See `Recording.to_xarray`."""
     import xarray
 

@@ -10,8 +10,9 @@ from flockana.base.vectors import lengths
 from flockana.measures.measure import Flock, measures
 from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import link_lengths, links
-from flockana.recorded.recording import Recording, scaled_alpha
-from flockana.recorded.unknown import UnknownLaw
+from flockana.recorded.samples import Samples
+from flockana.recorded.unknown import UnknownLaw, scaled_alpha
+from flockana.recorded.velocities import with_velocities
 
 if TYPE_CHECKING:
     import xarray
@@ -20,12 +21,12 @@ _OF_NETS = {"connectivity": connectivity, "giant_share": giant_share}  # they gr
 _OF_VELOCITIES = ("normalised_velocity_mismatch", "velocity_diameter", "order", "coordination")
 
 
-def measured(rec: Recording, d: float, r: float) -> "xarray.Dataset":
+def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
     """See `Recording.metrics`: agents that are missing at a sample are left out there."""
     import xarray
 
     if rec.p is None:
-        rec = rec.with_velocities()
+        rec = with_velocities(rec)
     assert rec.p is not None
     p, shape = rec.p, rec.present.shape
     law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)

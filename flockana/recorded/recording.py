@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_known, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_flag, ensure_known, normalise
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import atomic_write, ensure_path
 from flockana.base.memory import ResultCache
 from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
 from flockana.recorded.parts import largest_complete_part
-from flockana.recorded.unknown import UnknownLaw
+from flockana.recorded.unknown import UnknownLaw, scaled_alpha
 from flockana.recorded.velocities import filled, with_velocities
 
 if TYPE_CHECKING:
@@ -343,12 +342,6 @@ class Recording(ResultCache):
             Height of its frame in a notebook, in pixels.
         """
         return self.trajectory(d=d, r=r).player(height=height)
-
-
-def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
-    """Return the paper's pair law with scale d and range r; a missing one follows from r = 1.2 d."""
-    d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
-    return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))
 
 
 def ensure_recording(rec: Any) -> Recording:

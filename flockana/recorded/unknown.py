@@ -43,3 +43,9 @@ class UnknownLaw(DiscreteLaw):
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
         raise ArgumentError("the law of this recording is not known: expected a law to step; see flockana.recognise")
+
+
+def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
+    """Return the paper's pair law with scale d and range r; a missing one follows from r = 1.2 d."""
+    d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
+    return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_positive
+from flockana.recorded.samples import Samples
 from flockana.recorded.smoothing import smoothed
 
-if TYPE_CHECKING:
-    from flockana.recorded.recording import Recording
-
+_Recording = TypeVar("_Recording", bound=Samples)
 _FEWEST = 4  # samples of a piece from which velocities are made
 _MISSED = 1.75  # times an agent's usual interval, from which on a sample is missing
 _DEPENDENT = 2.0  # times the deviation of independent errors: what those of a bound or a grid may add up to
@@ -44,12 +43,12 @@ class Motions:
         return ~np.isnan(self.p[:, :, 0])
 
 
-def motions(rec: Recording) -> Motions:
+def motions(rec: Samples) -> Motions:
     """Return the smoothing splines of a recording; its noise is the stated one, else the likeliest."""
     return rec.cached("motions", lambda: _motions(rec))
 
 
-def _motions(rec: Recording) -> Motions:
+def _motions(rec: Samples) -> Motions:
     pieces = pieces_of(rec)
     whole = [np.bincount(x[x >= 0], minlength=1) for x in np.where(rec.present, pieces, -1).T]
     short = np.stack([np.append(count < _FEWEST, True)[x] for count, x in zip(whole, pieces.T, strict=True)], axis=1)
@@ -70,7 +69,7 @@ def _motions(rec: Recording) -> Motions:
     return Motions(q, p, u, q_sd, p_sd, u_sd, fit.noise)
 
 
-def _coordinate_noise(rec: Recording) -> Any:
+def _coordinate_noise(rec: Samples) -> Any:
     """Standard deviation of a coordinate as it is stated: that of an error evenly spread within a bound."""
     if rec.bound is None:
         return rec.sd
@@ -96,7 +95,7 @@ def grid_of(q: FloatArray) -> float:
     return step if (off < np.maximum(_GRID, 1e-12 * size / step)).all() else 0.0
 
 
-def pieces_of(rec: Recording) -> npt.NDArray[np.intp]:
+def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
     """Return the number of the piece between gaps in which each sample of each agent lies, shape (T, n); -1 outside.
 
     A gap is an interval in which an agent has missed a sample, by its own usual interval.
@@ -117,13 +116,13 @@ def pieces_of(rec: Recording) -> npt.NDArray[np.intp]:
     return pieces
 
 
-def with_velocities(rec: Recording) -> Recording:
+def with_velocities(rec: _Recording) -> _Recording:
     """See `Recording.with_velocities`: how smooth a motion is, is an estimate, so such velocities decide nothing."""
     fit = motions(rec)
     unknown = rec.bound is None and rec.sd is None
     change: dict[str, Any] = {"sd": fit.noise, "estimated": True} if unknown else {}
     p_sd = np.where(fit.known, fit.p_sd, 0.0)
-    return replace(rec, p=fit.p, u=fit.u, p_sd=p_sd, p_bound=None, smoothed=True, **change)
+    return replace(rec, p=fit.p, u=fit.u, p_sd=p_sd, p_bound=None, smoothed=True, **change)  # type: ignore[type-var]  # each is a dataclass
 
 
 class _Ends(NamedTuple):
@@ -135,7 +134,7 @@ class _Ends(NamedTuple):
     off_p: FloatArray
 
 
-def filled(rec: Recording, most: float | None, longest: float | None) -> Recording:
+def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recording:
     """See `Recording.filled`."""
     if not rec.gaps or most is None:
         return rec
@@ -158,7 +157,7 @@ def filled(rec: Recording, most: float | None, longest: float | None) -> Recordi
     change: dict[str, Any] = {"q": q, "u": None, name: error}
     if rec.p is not None:
         change |= {"p": p, f"p_{name}": slip}
-    return replace(rec, estimated=rec.estimated or (rec.bound is None and rec.sd is None), **change)
+    return replace(rec, estimated=rec.estimated or (rec.bound is None and rec.sd is None), **change)  # type: ignore[type-var]  # each is a dataclass
 
 
 def _bridge(
@@ -210,7 +209,7 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
     return duration * (area(kernel(0.0)[0], here[0], s) + area(here[1], kernel(1.0)[1], 1.0 - s))
 
 
-def _gaps(rec: Recording) -> Iterator[tuple[int, slice, float]]:
+def _gaps(rec: Samples) -> Iterator[tuple[int, slice, float]]:
     """Yield gaps as agent, missing samples, and time from the sample before to the one after."""
     for i in range(rec.n):
         for a, b in pairwise(np.flatnonzero(rec.present[:, i]).tolist()):

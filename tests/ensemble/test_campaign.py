@@ -192,6 +192,35 @@ def test_an_executor_that_refuses_work_is_told():
 
 
 @pytest.mark.slow
+def test_an_executor_of_dask_gives_the_same_numbers():
+    distributed = pytest.importorskip("distributed")
+    given = {"theorems": ["os-1"]}
+    with distributed.Client(processes=False, n_workers=1, dashboard_address=None, set_as_default=False) as client:
+        runs = ensemble("hexagon", [0, 1], **given, executor=client.get_executor(pure=False), jobs=2)
+    assert same(runs, ensemble("hexagon", [0, 1], **given, jobs=1))
+
+
+def test_finished_runs_of_a_failed_executor_are_kept_and_a_new_one_goes_on(tmp_path):
+    class OneBatch(Serial):
+        left = 1
+
+        def submit(self, function, /, *arguments, **options):
+            if not self.left:
+                raise RuntimeError("the machine is gone")
+            self.left -= 1
+            return super().submit(function, *arguments, **options)
+
+    store = tmp_path / "runs.sqlite"
+    with pytest.raises(
+        SolverError, match=r"the machine is gone; runs in a store are kept: make the same call with a new"
+    ):
+        ensemble(tiny_flocks.trio, range(4), theorems=[], executor=OneBatch(), store=store)
+    with Store(store) as kept:
+        assert 0 < len(kept) < 4
+    whole = ensemble(tiny_flocks.trio, range(4), theorems=[], executor=Serial(), store=store)
+    assert same(whole, ensemble(tiny_flocks.trio, range(4), theorems=[], jobs=1))
+
+
 def test_a_broken_executor_of_the_users_is_told_from_a_bad_run():
     with ProcessPool(1) as executor, pytest.raises(SolverError, match="the executor failed: BrokenProcessPool"):
         ensemble(tiny_flocks.lethal, range(4), theorems=[], executor=executor)
@@ -322,8 +351,6 @@ BAD = [
     ({"tolerances": 0.1}, ArgumentError, "tolerances = 0.1"),
     ({"executor": "pool"}, ArgumentError, "executor = 'pool'"),
     ({"jobs": 0}, ArgumentError, "jobs = 0"),
-    ({"executor": Serial(), "jobs": 2}, ArgumentError, "expected one of them"),
-    ({"cluster": "tcp://127.0.0.1:1", "jobs": 2}, ArgumentError, "has its own size"),
 ]
 
 

@@ -50,3 +50,9 @@ def test_what_does_not_is_named(tmp_path, capsys, fault):
 def test_an_import_for_type_checking_is_none(tmp_path):
     late = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import flockana.theorems\n"
     assert lint(tmp_path, FILES | {"laws/x.py": late}) == 0
+
+
+def test_modules_that_import_each_other_are_named_for_type_checking_too(tmp_path, capsys):
+    late = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from flockana.laws.b import B\n"
+    assert lint(tmp_path, {"laws/a.py": late, "laws/b.py": "from flockana.laws.a import A\n"}) == 1
+    assert "import each other in a circle: flockana.laws." in capsys.readouterr().out
