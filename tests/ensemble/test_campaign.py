@@ -339,7 +339,7 @@ BAD = [
     ({"seeds": [True]}, ArgumentError, "seed True"),
     ({"theorems": ["os-9"]}, UnknownNameError, "unknown theorem 'os-9'"),
     ({"theorems": ["E8"]}, ArgumentError, "E8 is not about a run"),
-    ({"theorems": "os-1"}, ArgumentError, "expected several names"),
+    ({"theorems": "os-1"}, ArgumentError, "expected several, such as"),
     ({"parameters": {"m": 2}}, ArgumentError, "hexagon has no option m"),
     ({"scenario": "phase", "parameters": {"density": [1.0, 0.0]}}, ArgumentError, "density = 0"),
     ({"scenario": "phase", "parameters": {"density": []}}, ArgumentError, "at least one value"),
