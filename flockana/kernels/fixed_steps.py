@@ -46,7 +46,8 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
     """Write (q, p, u) after the steps wanted, numbered from 1; return whether the pairs fit into the list.
 
     `times` are those at which steps begin; `kicks` has a row of changes of the velocities for each step, or none. Pairs
-    are listed anew for each input, not by `system`, so that the order of sums hangs on the positions alone. y is overwritten; once it is
+    are listed anew for each input, not by `system`, so that the order of sums hangs on the positions alone. y is
+    overwritten; once it is
     not finite it stays so.
     """
     (n, m), row, h, reach = (system.order.size, system.frame.shape[1]), 0, method.h, method.reach
