@@ -64,10 +64,7 @@ class ToyMorse(PairInteraction):
 
     @property
     def far_potential(self):
-        return float(self.energy(np.array([self.r]))[0])
-
-    def energy_at(self, lengths):
-        return self.depth * (1.0 - np.exp(-self.width * (np.minimum(lengths, self.r) - self.d))) ** 2
+        return float(self.energy(self.r))
 
     @property
     def par(self):
