@@ -211,5 +211,7 @@ def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]
     if "comparison" in results:
         plain["comparison"] = results["comparison"].to_dict()
     if "fitted" in results:
-        plain["fit"] = {"values": dict(results["fitted"].values), "intervals": results["fitted"].intervals}
+        fitted = results["fitted"]
+        ends = {name: [x if isfinite(x) else None for x in pair] for name, pair in fitted.intervals.items()}
+        plain["fit"] = {"values": dict(fitted.values), "intervals": ends, "doubts": list(fitted.doubts)}
     return plain | {"verdicts": [verdict.to_dict() for verdict in results["verdicts"]]}

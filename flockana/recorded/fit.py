@@ -1,28 +1,33 @@
-"""Parameters of a law fitted to a recording, with standard errors and what the data cannot determine."""
+"""Parameters of a law fitted to a recording, with intervals that count all that is unknown, and what stays open."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import inf, sqrt
-from typing import Any
+from dataclasses import dataclass, replace
+from math import inf, isfinite, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import ensure_law
-from flockana.recorded.clustered import covariance_over_agents
+from flockana.recorded.compare import compare
+from flockana.recorded.contributions import SYMBOLS
 from flockana.recorded.parameters import FreeParameters
+from flockana.recorded.profiles import LowerMinimumError, profile_interval
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.shooting import MatchResult, matched, usual_window, windows
-from flockana.recorded.steps import predicted
+from flockana.recorded.shooting import MatchResult, Problem, matched
+from flockana.recorded.windows import Window, deviations, rescaled, usual_window, windows
 
 _LEVEL = 0.95
-_UNKNOWN = 0.5  # relative standard error beyond which a parameter is not identifiable
-_TIED = 0.99  # correlation of two parameters beyond which only one combination is identifiable
-_FAR = 1e6  # residual of a law that cannot be
+_OPEN = 10.0  # times a parameter's value, from which width of its interval on it is not identifiable
 _SHORT = 0.25  # of the usual windows: these a search begins with
 _NO_WORSE = 5.0  # standard deviations of the residuals' variance, within which two fits are as good
-_LEAST = 1e-6  # of its first value, below which no positive parameter goes
+_CHANCE = 1e-3  # probability of a misfit by chance, below which it is reported
+_ENOUGH = 20.0  # degrees of freedom from which the variance of residuals is an estimate
+_SETTLED = 0.1  # relative change of deviations, below which they are estimated
+_ROUNDS = 3  # in which deviations are estimated, and better minima are sought
+_FACTORS = (1.0, 0.4, 2.5)  # of the first guess, at which searches begin where noise alone does not explain the misfit
+_SHIFTED = 0.1  # of the deviation of an estimate, from which on a constant error counts
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +43,15 @@ class Fit:
     correlation : ndarray, shape (P, P)
         Of the estimates.
     intervals : mapping of str to (float, float)
-        95 % confidence intervals.
+        95 % confidence intervals, by the profile of the likelihood; infinite where it stays open.
     misfit : float
         Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
     freedom : float
         Degrees of freedom of the intervals.
     unidentifiable : tuple of str
-        What the data cannot tell, in words.
+        What the data cannot tell, in words: parameters whose interval is open, or ten times as wide as their value.
+    doubts : tuple of str
+        A misfit beyond chance, or another minimum that fits as well, in words; intervals are widened by both.
     message : str
         How the search ended.
     """
@@ -55,30 +62,39 @@ class Fit:
     correlation: FloatArray
     misfit: float
     freedom: float
-    unidentifiable: tuple[str, ...]
+    intervals: Mapping[str, tuple[float, float]]
+    unidentifiable: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     message: str = ""
 
-    @property
-    def intervals(self) -> dict[str, tuple[float, float]]:
-        """95 % confidence intervals."""
-        from scipy.stats import t
-
-        width = float(t.ppf(0.5 * (1.0 + _LEVEL), max(self.freedom, 1)))
-        return {k: (v - width * self.errors[k], v + width * self.errors[k]) for k, v in self.values.items()}
-
     def __str__(self) -> str:
-        lines = [f"{self.law.title} fitted; residual {self.misfit:.3g} times the accuracy"]
+        size = f"{self.misfit:.3g} times the accuracy" if isfinite(self.misfit) else "as large as the noise, not stated"
+        lines = [f"{self.law.title} fitted; residual {size}"]
         for name, (low, high) in self.intervals.items():
-            lines.append(f"  {name} = {self.values[name]:.5g}, between {low:.5g} and {high:.5g} (95 %)")
-        return "\n".join([*lines, *(f"  {text}" for text in self.unidentifiable)])
+            lines.append(f"  {name} = {self.values[name]:.4g}, {_between(low, high)} (95 %)")
+        return "\n".join([*lines, *(f"  {text}" for text in (*self.unidentifiable, *self.doubts))])
 
 
-def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: float | None = None) -> Fit:
-    """Return the law with the parameters that best predict each sample from the one before.
+def _between(low: float, high: float) -> str:
+    if not isfinite(high):
+        return "open" if not low > 0.0 else f"above {low:.4g}, open"
+    return f"between {low:.4g} and {high:.4g}" if isfinite(low) else f"below {high:.4g}, open"
 
-    Where noise is stated (`sd`), or has to be estimated as only positions are known, solutions of the law are matched
-    to windows of samples, each from a start of its own; standard errors count the starts, too. Where samples have
-    velocities and no noise, the law is integrated from each sample to the next.
+
+def fit(
+    rec: Recording,
+    law: Any,
+    *,
+    free: Sequence[str] | None = None,
+    window: float | None = None,
+    independent: bool = False,
+) -> Fit:
+    """Return the law with the parameters whose solutions match a recording best, with 95 % intervals.
+
+    Solutions of the law are matched to windows of samples, positions and recorded velocities, each from a start of its
+    own, which is unknown, too. Searches begin at several places where the misfit is more than noise. Within a `bound`
+    the variance of errors is estimated, and a constant error of each number is unknown, as far as the residuals leave
+    room for it.
 
     Parameters
     ----------
@@ -91,6 +107,8 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     window : float, optional
         Duration of a window; by default eight times the law's time, and 40 samples at least; a quarter of that
         first, and in the end if longer windows fit worse.
+    independent : bool
+        Whether errors within the `bound` are independent of each other, with variance b²/3 at most.
 
     Raises
     ------
@@ -107,96 +125,194 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     >>> round(fit(recording_of(run), Algorithm1(), free=("c1_alpha",)).values["c1_alpha"], 4)
     20.0
     """
-    ensure_recording(rec)
+    rec = ensure_recording(rec).measured
     own = ensure_law(law)
+    ensure_flag("independent", independent)
     if own.is_map:
         raise ArgumentError(f"{law.title} is a map: expected a continuous law, such as the one that it steps")
     own.check_dimension(rec.m)
     own.check_agents(rec.n)
     parameters = FreeParameters.of(law, free)
-    if rec.p is None or (rec.sd is not None and np.max(rec.sd) > 0.0):
-        return _matched(rec, parameters, window)
-    return _stepped(rec, parameters)
+    if len(rec.t) < (4 if rec.p is None else 2):
+        raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more, or 2 with velocities")
+    search = _Search(rec, parameters, None if window is None else ensure_positive("window", window))
+    problem, best = _with_noise(search, independent)
+    return _result(search, problem, best)
 
 
-def _matched(rec: Recording, parameters: FreeParameters, window: float | None) -> Fit:
-    """Return the fit of solutions to windows of noisy positions."""
-    if len(rec.t) < 4:
-        raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
-    if window is None:
-        found = _lengthened(rec, parameters)
-    else:
-        found = matched(windows(rec, ensure_positive("window", window)), parameters.with_values, parameters.values)
-    variance = found.variance
-    stated = rec.sd is not None and not rec.estimated
-    covariance = found.covariance * (max(variance, 1.0) if stated else variance)
-    return _result(parameters, found._replace(covariance=covariance), sqrt(variance) if stated else np.nan)
+class _Search(NamedTuple):
+    """What is searched: parameters of a law by a recording, in windows of a duration."""
+
+    rec: Recording
+    parameters: FreeParameters
+    window: float | None
+
+    @property
+    def stated(self) -> bool:
+        """Whether the deviation of the noise is stated."""
+        return self.rec.sd is not None and not self.rec.estimated and float(np.max(self.rec.sd)) > 0.0
+
+    def problem(self, parts: list[Window]) -> Problem:
+        """Return the problem of matching windows."""
+        return Problem(parts, self.parameters.with_values, self.parameters.values)
+
+    def is_chance(self, variance: float, freedom: float) -> bool:
+        """Whether a variance of residuals may be that of the noise, as it is stated, bounded or likely."""
+        from scipy.stats import chi2
+
+        return variance <= float(chi2.isf(_CHANCE, freedom)) / freedom
 
 
-def _lengthened(rec: Recording, parameters: FreeParameters) -> MatchResult:
+def _best_of(search: _Search, sd: FloatArray) -> tuple[Problem, MatchResult]:
+    """Return the best match of several searches, the first from the law's own parameters."""
+    found: list[tuple[Problem, MatchResult]] = []
+    for begin in _beginnings(search):
+        try:
+            found.append(_lengthened(search, sd, begin))
+        except FlockanaError:
+            continue
+        if search.is_chance(found[-1][1].variance, found[-1][1].freedom):
+            break
+    if not found:
+        raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
+    return min(found, key=lambda each: each[1].variance)
+
+
+def _beginnings(search: _Search) -> list[FloatArray]:
+    """Return first parameters: the law's, gains by regression on accelerations, and multiples of the law's."""
+    values, names = search.parameters.values, search.parameters.names
+    found = [values * factor for factor in _FACTORS]
+    try:
+        shares = {one.symbol: one.found for one in compare(search.rec, search.parameters.law).shares}
+    except FlockanaError:
+        return found
+    guess = np.array([shares.get(SYMBOLS[x][0], v) if x in SYMBOLS else v for x, v in zip(names, values, strict=True)])
+    usable = np.isfinite(guess) & ((guess > 0.0) | (values <= 0.0))
+    return [found[0], np.where(usable, guess, values), *found[1:]]
+
+
+def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Problem, MatchResult]:
     """Return the solutions matched to the usual windows, from the parameters that short windows give.
 
     Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
     short ones count.
     """
-    usual = usual_window(rec, parameters.law)
-    short, long = windows(rec, _SHORT * usual), windows(rec, usual)
-    found = matched(short, parameters.with_values, parameters.values)
-    if len(long) == len(short):
-        return found
-    longer = matched(long, parameters.with_values, found.values)
-    as_good = longer.variance <= found.variance * (1.0 + _NO_WORSE * sqrt(2.0 / found.freedom))
-    return longer if as_good else found
+    usual = search.window or usual_window(search.rec, search.parameters.law)
+    whole = search.problem(windows(search.rec, usual, sd))
+    if search.window is not None:
+        return whole, matched(whole, values=begin)
+    short = search.problem(windows(search.rec, _SHORT * usual, sd))
+    if len(whole.parts) == len(short.parts):
+        return whole, matched(whole, values=begin)
+    first = matched(short, values=begin)
+    longer = matched(whole, values=first.values)
+    as_good = longer.variance <= first.variance * (1.0 + _NO_WORSE * sqrt(2.0 / first.freedom))
+    return (whole, longer) if as_good else (short, first)
 
 
-def _stepped(rec: Recording, parameters: FreeParameters) -> Fit:
-    """Return the fit of each sample predicted from the one before; standard errors from the spread over agents."""
-    from scipy.optimize import least_squares
+def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResult]:
+    """Return the match with the noise as it is stated, else with deviations of positions and velocities estimated."""
+    rec = search.rec
+    problem, best = _best_of(search, deviations(rec, velocities=True))
+    if search.stated:
+        return problem, best
+    problem, best = _rescaled(problem, best, rec.n * rec.m)
+    if rec.bound is None or independent:
+        return problem, best
+    spread = _spread(problem, best, rec)
+    if not (spread > 0.0).any():
+        return problem, best
+    shifted = Problem(problem.parts, problem.with_values, problem.first, spread)
+    values = np.concatenate([best.values, np.zeros(int(np.count_nonzero(spread)))])
+    return _rescaled(shifted, matched(shifted, starts=best.starts, values=values), rec.n * rec.m)
 
-    rec.ensure_complete("a fit from sample to sample")
-    if len(rec.t) < 2:
-        raise ArgumentError("one sample: expected two or more to step between")
-    assert rec.p is not None
-    p, start = rec.p, parameters.values
-    place, speed = (np.broadcast_to(each, rec.q.shape[:2])[1:] for each in (rec.accuracy.place, rec.accuracy.speed))
-    stated = bool((place > 0.0).all() and np.isfinite(place).all() and (speed > 0.0).all())
-    sizes = (place, speed) if stated else (np.diff(rec.t)[:, None], np.ones(1))
-    unit = np.where(start == 0.0, 1.0, np.abs(start))
 
-    def residual(z: FloatArray) -> FloatArray:
+def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem, MatchResult]:
+    """Return the match with the deviations of positions, and of velocities, that its residuals show."""
+    for _ in range(_ROUNDS):
+        factors = _factors(problem, best, width)
+        if np.abs(np.log(factors)).max() < _SETTLED:
+            break
+        problem = replace(problem, parts=rescaled(problem.parts, factors))
+        best = matched(problem, starts=best.starts, values=best.values)
+    return problem, best
+
+
+def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
+    """Return by how much the residuals of positions, and of velocities, exceed their deviations, by column."""
+    parts = problem.parts
+    factors, share = np.ones(parts[0].y.shape[1]), best.freedom / problem.size
+    for block in (slice(0, width), slice(width, None)):
+        count = sum(int(np.count_nonzero(part.root[:, block])) for part in parts)
+        squares = sum(
+            float(np.sum(r.reshape(part.root.shape)[:, block] ** 2))
+            for part, r in zip(parts, best.residuals, strict=False)
+        )
+        if count * share >= _ENOUGH and squares > 0.0:
+            factors[block] = sqrt(squares / (count * share))
+    return factors
+
+
+def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
+    """Return the deviation of a constant error of each number, within what the residuals leave of its bound.
+
+    Errors of a number range over as much as its residuals; with a constant one all of them stay within the bound.
+    """
+    parts, shape = problem.parts, rec.present.shape
+    limits = [np.broadcast_to(np.asarray(rec.bound, dtype=np.float64), shape).max(axis=0)]
+    if rec.p is not None:
+        speed = rec.bound / rec.interval if rec.p_bound is None else rec.p_bound
+        limits.append(np.broadcast_to(np.asarray(speed, dtype=np.float64), shape).max(axis=0))
+    bound = np.concatenate([np.repeat(x, rec.m) for x in limits])
+    low, high = np.full(len(bound), inf), np.full(len(bound), -inf)
+    for part, residual in zip(parts, best.residuals, strict=False):
+        seen = part.root > 0.0
+        error = np.divide(residual.reshape(seen.shape), part.root, out=np.zeros(seen.shape), where=seen)
+        low = np.minimum(low, np.where(seen, error, inf).min(axis=0))
+        high = np.maximum(high, np.where(seen, error, -inf).max(axis=0))
+    room = np.maximum(2.0 * bound - np.maximum(high - low, 0.0), 0.0) / sqrt(12.0)
+    deviation = np.array([1.0 / max(float(part.root.max()), 1e-300) for part in parts]).min()
+    count = sum(len(part.t) for part in parts)
+    return np.where(room > _SHIFTED * deviation / sqrt(count), room, 0.0)
+
+
+def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
+    """Return the fit with its intervals, and begin anew where a profile leads below the minimum."""
+    from scipy.stats import t as student
+
+    names, count = search.parameters.names, len(problem.first)
+    level, doubts = float(student.ppf(0.5 * (1.0 + _LEVEL), best.freedom)), list[str]()
+    for _ in range(_ROUNDS):
+        unit = max(best.variance, 1.0) if search.stated or best.freedom < _ENOUGH else best.variance
         try:
-            q_next, p_next = predicted(parameters.with_values(z * unit), rec.t, rec.q, p, refine=2)
-        except FlockanaError:
-            return np.full(2 * (len(rec.t) - 1) * rec.n * rec.m, _FAR)
-        off = rec.q[1:] - q_next, p[1:] - p_next
-        return np.concatenate([(x / size[..., None]).ravel() for x, size in zip(off, sizes, strict=True)])
-
-    low = np.where(start > 0.0, _LEAST, -inf)
-    found: Any = least_squares(residual, start / unit, bounds=(low, inf), xtol=1e-10, ftol=1e-10, max_nfev=60)
-    left = found.fun.reshape(2 * (len(rec.t) - 1), rec.n, rec.m)
-    covariance, freedom = covariance_over_agents(found.jac.reshape(*left.shape, -1), left)
-    covariance = covariance * np.outer(unit, unit)
-    misfit = float(np.sqrt(np.mean(left**2))) if stated else np.nan
-    told = np.abs(found.jac).max(axis=0) > 0.0
-    best = MatchResult(found.x * unit, covariance, told, [], [found.fun], freedom, str(found.message))
-    return _result(parameters, best, misfit)
-
-
-def _result(parameters: FreeParameters, found: MatchResult, misfit: float) -> Fit:
-    names, values = parameters.names, found.values
-    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
-    scale = np.where(errors > 0.0, errors, 1.0)
-    errors = np.where(found.identifiable, errors, inf)
-    correlation = found.covariance / np.outer(scale, scale)
-    given, known = (dict(zip(names, x.tolist(), strict=True)) for x in (values, errors))
+            ends = [profile_interval(problem, best, k, level, unit) for k in range(count)]
+            break
+        except LowerMinimumError as lower:
+            best = matched(problem, starts=lower.starts, values=lower.values, finer=best.finer)
+    else:
+        doubts.append("searches end at other minima: intervals are open")
+        ends = [(-inf, inf)] * count
+    if search.stated and not search.is_chance(best.variance, best.freedom):
+        doubts.append(
+            f"residuals are {sqrt(best.variance):.3g} times the stated noise, beyond chance: does the law act?"
+        )
+    values, covariance = best.values[:count], best.covariance[:count, :count] * unit
+    errors = np.where(best.identifiable[:count], np.sqrt(np.maximum(np.diag(covariance), 0.0)), inf)
+    scale = np.where(np.isfinite(errors) & (errors > 0.0), errors, 1.0)
     untold = [
-        f"the data do not tell {name}: {value:.3g} ± {2.0 * error:.2g}"
-        for name, value, error in zip(names, values, errors, strict=True)
-        if error > _UNKNOWN * abs(value)
+        f"the data do not tell {name}: {value:.4g}, {_between(*end)}"
+        for name, value, end in zip(names, values, ends, strict=True)
+        if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * abs(value)
     ]
-    untold += [
-        f"the data tell {names[i]} and {names[j]} only together: correlation {correlation[i, j]:.4f}"
-        for i, j in np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
-    ]
-    law = parameters.with_values(values)
-    return Fit(law, given, known, correlation, misfit, found.freedom, tuple(untold), found.message)
+    return Fit(
+        search.parameters.with_values(values),
+        dict(zip(names, values.tolist(), strict=True)),
+        dict(zip(names, errors.tolist(), strict=True)),
+        covariance / np.outer(scale, scale),
+        sqrt(best.variance) if search.rec.bound is not None or search.stated else np.nan,
+        best.freedom,
+        dict(zip(names, ends, strict=True)),
+        tuple(untold),
+        tuple(doubts),
+        best.message,
+    )

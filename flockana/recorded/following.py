@@ -11,8 +11,9 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.tolerance import rounding_floors
 from flockana.recorded.accuracy import CONFIDENCE
 from flockana.recorded.recording import Recording
-from flockana.recorded.shooting import matched, usual_window, windows
+from flockana.recorded.shooting import Problem, matched
 from flockana.recorded.steps import SHARE, predicted
+from flockana.recorded.windows import usual_window, windows
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
@@ -137,7 +138,7 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     assert smooth.p is not None
     parts, largest = windows(rec, duration), (0.0, 0.0, 0)
     try:
-        found = matched(parts, lambda _: law, np.empty(0))
+        found = matched(Problem(parts, lambda _: law, np.empty(0)))
     except FlockanaError as error:
         raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
     for part, residual in zip(parts, found.residuals, strict=True):

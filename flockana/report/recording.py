@@ -59,7 +59,7 @@ def recording_page(
         ends = {name: f"{low:.5g} to {high:.5g}" for name, (low, high) in fitted.intervals.items()}
         rows = [(name, f"{fitted.values[name]:.5g}", interval) for name, interval in ends.items()]
         parts.append("<h2>Fit</h2>" + html_table(rows, ("parameter", "value", "95 % interval")))
-        parts += [f"<p>{escape(text)}</p>" for text in fitted.unidentifiable]
+        parts += [f"<p>{escape(text)}</p>" for text in (*fitted.unidentifiable, *fitted.doubts)]
     for verdict in verdicts:
         rows_: list[tuple[str, str, str]] = [(f"given: {h.name}", h.status, h.detail) for h in verdict.hypotheses]
         rows_ += [(c.name, c.status, c.detail) for c in verdict.claims]
