@@ -34,6 +34,8 @@ from .norms import h2_norm as h2_norm
 from .norms import hinf_norm as hinf_norm
 from .norms import norms_against_size as norms_against_size
 from .norms import stationary_covariance as stationary_covariance
+from .packet_loss import LossMargin as LossMargin
+from .packet_loss import loss_margin as loss_margin
 from .robustness import RobustnessMargins as RobustnessMargins
 from .robustness import open_loop as open_loop
 from .robustness import robustness_margins as robustness_margins
