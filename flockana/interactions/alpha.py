@@ -165,8 +165,8 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def feature(self) -> float:
-        """Length of the shorter of repulsion, from 0 to d, and attraction, from d to r; the adjacency only falls."""
-        return min(self.d, self.r - self.d)
+        """Length d of repulsion; attraction ends at the range, which a run watches, and the adjacency only falls."""
+        return self.d
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
         """Return bounds of |dF/ds| and |da/ds| on equal parts of the range.

@@ -53,8 +53,8 @@ class Reaching(DistanceFunction):
 
     @property
     def feature(self) -> float:
-        """Length of the shorter of repulsion and attraction; a range at most d leaves repulsion alone."""
-        return min(self.alpha.d, self.r - self.alpha.d if self.r > self.alpha.d else self.r)
+        """Length of repulsion; a run watches the ranges."""
+        return min(self.alpha.d, self.r)
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:  # noqa: D102
         return slopes_within(self.alpha, self.r, parts)
