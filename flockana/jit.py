@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.garbage import relaxed_gc
+from flockana.base.interrupts import origin_of
 
 try:
     import fcntl
@@ -60,9 +61,8 @@ class Kernel:
     def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
         self.__name__, self.__qualname__ = function.__name__, function.__qualname__
-        self.function, self.kept, self.options = function, kept, options
+        self.function, self.kept, self.options, self._thaws = function, kept, options, False
         self._compiled: Callable[..., Any] | None = None
-        self._thaws = False
 
     @cached_property
     def dispatcher(self) -> Any:
@@ -89,14 +89,12 @@ class Kernel:
                     pass
             given = self._thawed(arguments)
             if self._compiled is not None:
-                try:
+                with suppress(TypeError):
                     return self._compiled(*given)
-                except TypeError:
-                    pass
             self._compile(given)
             return self._compiled(*given)  # type: ignore[misc]
         except SystemError as error:  # of an alarm while numba made a tuple of arrays
-            raise _origin(error) from None
+            raise origin_of(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
         """Return the arguments with writable views of read-only arrays; note that this kernel gets such arrays."""
@@ -109,7 +107,7 @@ class Kernel:
     def _compile(self, arguments: list[Any]) -> None:
         numba, made = load_numba(), self.dispatcher
         if hasattr(made, "compile"):  # else NUMBA_DISABLE_JIT is set
-            types = tuple(numba.typeof(each) for each in arguments)
+            types = tuple(map(numba.typeof, arguments))
             with compiling(_mark(self.function, types) if self.kept else None):
                 _opened(made).compile(types)
             _ensure_plain(self.function.__name__, made.overloads[types].signature.return_type)
@@ -118,11 +116,6 @@ class Kernel:
     def __reduce__(self) -> Any:
         """Pickle a module's own function by its name."""
         return self.__qualname__ if _named(self) else (type(self), (self.function, self.kept, self.options))
-
-
-def _origin(error: BaseException) -> BaseException:
-    """Return the exception that the last of a chain of causes was raised for."""
-    return error if error.__cause__ is None else _origin(error.__cause__)
 
 
 def _ensure_plain(name: str, result: Any) -> None:

@@ -51,6 +51,11 @@ def restore_interrupts() -> Iterator[None]:
         raise
 
 
+def origin_of(error: BaseException) -> BaseException:
+    """Return the exception that the last of a chain of causes was raised for."""
+    return error if error.__cause__ is None else origin_of(error.__cause__)
+
+
 def _caused_by_interrupt(error: BaseException | None) -> bool:
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)

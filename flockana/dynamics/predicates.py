@@ -24,7 +24,19 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
 
 
 def ensure_uninterrupted(run: Trajectory) -> Trajectory:
-    """Return the run; raise KeyboardInterrupt if Ctrl-C ended it, for work that needs all of it."""
+    """Return the run; raise KeyboardInterrupt if Ctrl-C ended it, for work that needs all of it.
+
+    Parameters
+    ----------
+    run : Trajectory
+        As `simulate` gives it, with status "interrupted" or another.
+
+    Examples
+    --------
+    >>> import flockana as fl
+    >>> ensure_uninterrupted(fl.simulate(fl.Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 0.1))).status
+    'complete'
+    """
     if run.status == "interrupted":
         raise KeyboardInterrupt
     return run
