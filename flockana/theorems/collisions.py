@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
@@ -103,15 +104,42 @@ def energy_at_start(seen: Observed) -> Enclosure:
     """Return the energy of the start in the moving frame: exact but for rounding."""
     run = seen.run
     energy = run.law.structural_energy(run.q[0], run.p[0])
-    allowed = seen.sensitivity(lambda other: run.law.structural_energy(other.q[0], other.p[0]))
+    allowed = energy_within_accuracy(seen, 0)
     return Enclosure.around(energy, energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0] + allowed)
+
+
+def energy_within_accuracy(seen: Observed, k: int) -> float:
+    """Return how far the energy of sample k may be off over the balls that a recording's accuracy allows; 0 for a run.
+
+    A pair's potential falls to d and rises beyond: it is farthest off at an end of the lengths that the pair may have,
+    or at d. Other potentials are looked at on 33 lengths.
+    """
+    if not seen.allowed:
+        return 0.0
+    law, run, place, speed = seen.law, seen.run, seen.shape_error[k], seen.speed_error[k]
+    if not (np.isfinite(place).all() and np.isfinite(speed).all()):
+        return float("inf")
+    away, drift = (lengths(x - x.mean(axis=0)) for x in (run.q[k], run.p[k]))
+    off = float(np.sum(drift * speed + 0.5 * speed**2))
+    if law.target is not None:
+        off += float(np.max(law.gains.c1_gamma)) * float(np.sum(away * place + 0.5 * place**2))
+    if law.alpha is not None and law.gains.c1_alpha:
+        i, j = np.triu_indices(seen.n, 1)
+        apart, width = lengths(run.q[k][j] - run.q[k][i]), place[i] + place[j]
+        where = np.maximum(apart + width * np.linspace(-1.0, 1.0, 33)[:, None], 0.0)
+        best = law.alpha.energy(apart)
+        least = np.abs(law.alpha.energy(np.full_like(apart, law.alpha.length)) - best)
+        change = np.abs(law.alpha.energy(where.ravel()).reshape(where.shape) - best).max(axis=0)
+        holds_least = np.abs(apart - law.alpha.length) <= width
+        off += float(law.gains.c1_alpha) * float(np.where(holds_least, np.maximum(change, least), change).sum())
+    return off if np.isfinite(off) else float("inf")
 
 
 def energy_at_end(seen: Observed) -> Enclosure:
     """Return the energy of the last state in the moving frame, as far as both runs agree on it."""
     best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
     rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
-    allowed = seen.sensitivity(lambda run: run.law.structural_energy(run.q[-1], run.p[-1]))
+    allowed = energy_within_accuracy(seen, -1)
     known = DOUBT * abs(best - other) + seen.floors.work + rounding + allowed
     return Enclosure.around(best, np.inf if seen.doubt else known)
 

@@ -5,7 +5,10 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.theorems.on_recordings import DEFINITIONS
+from flockana.recorded.following import following
+from flockana.theorems.collisions import energy_within_accuracy
+from flockana.theorems.observed import Observed
+from flockana.theorems.on_recordings import DEFINITIONS, observed_recording
 from tests.recorded.written import LAW, P0, Q0, own_run
 
 T = np.linspace(0.0, 6.0, 151)
@@ -143,3 +146,20 @@ def test_what_is_missing_is_said(own):
     ):
         with pytest.raises(ArgumentError, match=message):
             fl.verify(name, given, **how)
+
+
+def test_the_energy_of_a_start_is_enclosed_over_the_balls_of_its_samples():
+    """Against a thousand states within the accuracy; a pair at its balance is off by what its own potential says."""
+    law, rng = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))), np.random.default_rng(1)
+    q, p = rng.uniform(0.0, 15.0, (5, 2)), rng.normal(size=(5, 2))
+    run = fl.simulate(law, q, p, (0.0, 0.5), t_eval=np.linspace(0.0, 0.5, 11))
+    rec = fl.Recording(run.t, run.q, run.p, bound=0.05)
+    seen = observed_recording(rec, law, following(rec, law))
+    best, allowed = law.structural_energy(seen.run.q[0], seen.run.p[0]), energy_within_accuracy(seen, 0)
+    worst = 0.0
+    for _ in range(1000):
+        ways = (x / np.linalg.norm(x, axis=1)[:, None] for x in rng.normal(size=(2, 5, 2)))
+        x, v = (0.5 * w * e[0][:, None] for w, e in zip(ways, (seen.shape_error, seen.speed_error), strict=True))
+        worst = max(worst, abs(law.structural_energy(seen.run.q[0] + x, seen.run.p[0] + v) - best))
+    assert 0.0 < worst < allowed < 100.0 * worst
+    assert energy_within_accuracy(Observed.of(run), 0) == 0.0
