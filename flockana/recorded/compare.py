@@ -15,6 +15,7 @@ from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.steps import scheme_by_law
 
 _WORST = 5  # places that are named
+_OFF_CLOCK = 0.05  # relative difference of steps from velocities, from which on it is reported
 _ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gains are only rough
 
 
@@ -60,6 +61,11 @@ class Comparison:
     def share(self) -> str:
         """Explained share in words; a residual larger than the accelerations explains nothing."""
         return f"{self.explained:.4%}" if self.explained > 0.0 else "nothing"
+
+    @property
+    def share_of_own(self) -> str:
+        """Explained share to a hundredth of a percent, with the law's own gains; "nothing" below 0."""
+        return f"{self.explained:.2%}" if self.explained > 0.0 else "nothing"
 
     @property
     def caution(self) -> str:
@@ -157,7 +163,28 @@ def compare(rec: Recording, law: Any) -> Comparison:
         scheme = scheme_by_law(rec, continuous)
     steps = () if scheme is None else (f"steps are {scheme} of {rec.interval:.6g}",)
     own, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
-    texts, noise = (*steps, *found.findings), float(np.nanmedian(data.error))
+    clock = _clock_finding(rec)
+    texts, noise = (clock,) if clock else (*steps, *found.findings), float(np.nanmedian(data.error))
     return Comparison(
         law, data.basis, data.t, data.u, found.residual, own, refitted, found.shares, texts, noise, tuple(rec.ids)
+    )
+
+
+def _clock_finding(rec: Recording) -> str:
+    """Return by which factor positions move otherwise than with velocities and clock; empty if they move with them."""
+    if rec.p is None or rec.smoothed or len(rec.t) < 3:
+        return ""
+    moved = np.diff(rec.q, axis=0)
+    led = 0.5 * (rec.p[1:] + rec.p[:-1]) * np.diff(rec.t)[:, None, None]
+    known = ~np.isnan(moved + led)
+    moved, led = moved[known], led[known]
+    if not (moved @ moved > 0.0 and led @ led > 0.0):
+        return ""
+    factor = float(moved @ led / (led @ led))
+    left = float(np.sum((moved - factor * led) ** 2) / (moved @ moved))
+    if abs(factor - 1.0) <= max(_OFF_CLOCK, 3.0 * np.sqrt(left)) * max(1.0, abs(factor)):
+        return ""
+    return (
+        f"positions move by {factor:.4g} times what velocities and times say: expected 1; mend units of times or "
+        "velocities first, then compare terms"
     )

@@ -35,7 +35,7 @@ class Recognition:
 
     def __str__(self) -> str:
         lines = [
-            f"{one.explained_refitted:9.2%} ({one.explained:.2%} with its own gains)  {name}"
+            f"{one.explained_refitted:9.2%} ({one.share_of_own} with its own gains)  {name}"
             for name, one in self.ranked
         ]
         lines += [f"        -  {name}: {reason}" for name, reason in self.refused.items()]

@@ -207,3 +207,17 @@ def test_a_recording_in_another_unit_of_time_is_refused_with_what_it_would_take(
     with pytest.raises(ArgumentError, match=expected):
         fl.verify("os-3", rec, law=law)
     assert fl.verify("os-3", fl.Recording(run.t, run.q, run.p, bound=1e-6), law=law).hypotheses
+
+
+@pytest.mark.parametrize("factor", [10.0, 0.5])
+def test_positions_that_move_otherwise_than_velocities_are_said_first(factor):
+    """Velocities follow the law; positions move by a multiple of them, as with a wrong unit of time."""
+    law, q, p = fl.CuckerSmale(), [Q0], [P0]
+    for _ in T[1:]:
+        q.append(q[-1] + factor * 0.02 * p[-1])
+        p.append(p[-1] + 0.02 * law.acceleration(0.0, q[-2], p[-1]))
+    texts = fl.compare(fl.Recording(T, q, p, bound=1e-9), law).findings
+    assert len(texts) == 1
+    assert float(texts[0].split(" times")[0].split()[-1]) == pytest.approx(factor, rel=0.02)
+    right = fl.simulate(law, Q0, P0, (0.0, 2.0), t_eval=T)
+    assert fl.compare(recording_of(right), law).findings == ()
