@@ -148,12 +148,20 @@ class FormulaInteraction(PairInteraction):
         the force changes sign again at s = 2: beyond, agents attract each other
         the force jumps from -143.4 to 0 at the range, s = 2.5
         """
+        rest, zeros = self.resting_distance, self._parts.zeros
+        moved = () if rest in (None, self.d) else (f"two agents rest at s = {rest:.6g}, not at length = {self.d:g}",)
         signs = (
             f"the force changes sign again at s = {s:.6g}: beyond, agents {'attract' if up else 'repel'} each other"
-            for s, up in self._parts.zeros
-            if (s, up) != (self.d, True)
+            for s, up in zeros
+            if (s, up) != (rest, True)
         )
-        return (*signs, *self._parts.ends)
+        return (*moved, *signs, *self._parts.ends)
+
+    @property
+    def resting_distance(self) -> float | None:
+        """The length d if two agents rest there; else the first distance at which repulsion gives way to attraction."""
+        rising = [s for s, up in self._parts.zeros if up]
+        return self.d if self.d in rising or not rising else rising[0]
 
     def __repr__(self) -> str:
         """Return the call that makes the law, with its remarks."""

@@ -74,8 +74,8 @@ def pair_law(
         parameters=tuple((parameters or {}).items()),
         powers=tuple((name, *both) for name, both in (units or {}).items()),
     )
-    if law.remarks:
-        warnings.warn(f"pair_law: {'; '.join(law.remarks)}", PairLawWarning, stacklevel=2)
+    if serious := [remark for remark in law.remarks if not remark.startswith("two agents rest at")]:
+        warnings.warn(f"pair_law: {'; '.join(serious)}", PairLawWarning, stacklevel=2)
     return law
 
 
