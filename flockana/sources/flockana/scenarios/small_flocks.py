@@ -54,7 +54,7 @@ def _beside_a_sphere(seed: int = 0) -> Scenario:
     )
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     q, p = np.array([[-6.0, 0.0], [10.0, 0.0]]), np.zeros((2, 2))
-    expected = verified("energy", "energy-printed")
+    expected = verified("energy") | inconclusive("energy-printed")
     return Scenario("beside-a-sphere", title, source, law, q, p, (0.0, 1.0), seed, expected, references=OURS)
 
 

@@ -43,7 +43,7 @@ _SOURCE = {
 
 
 # statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3
-_SHIPPED = {2: verified("source"), 3: refuted("source:width")}
+_SHIPPED = {2: verified("source")}
 _REFERENCES = ("isola-2024", "olfati-saber-2006")
 
 
@@ -64,6 +64,8 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     """Return the expected statuses of a case; the theorems are about flows, so maps have reports only."""
     none = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
+    if printed and case >= 3:  # the map's orbits part after some 300 steps
+        return none | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
     if not printed:
         none |= verified("energy")
     of_the_map = verified if printed else refuted  # in place it adds energy, and has outliers; the flow does not

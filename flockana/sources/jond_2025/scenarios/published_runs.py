@@ -18,7 +18,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
-from flockana.scenarios.entry import Builder, Report, Start, Status, entry, refuted, verified
+from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, refuted, verified
 from flockana.scenarios.findings import component_counts, finding, in_source_units, report
 from flockana.scenarios.start import lazy_state
 from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon
@@ -270,12 +270,12 @@ _CASES: dict[str, tuple[str, ZoneFlocking, dict[str, Status]]] = {
     "zone-52-charitable": (
         _AS_PRINTED,
         ZoneFlocking(WATCHFUL, _UNITS, _WORLD),
-        refuted("source", "source:range", "source:distances") | verified("source:bounds") | refuted("source:contained"),
+        inconclusive("source", "source:bounds"),  # orbits part within 70 s
     ),
     "zone-52": (
         "a = 5, s = 6, w^ss = 5; w^ls = w^oa = 20, u^max = 10, gains 0.5 and 4",
         ZoneFlocking(WATCHFUL, STRONG, _WORLD, u_max=10.0),
-        refuted("source", "source:range") | verified("source:bounds"),
+        inconclusive("source", "source:bounds"),
     ),
 }
 SCENARIOS: dict[str, Builder] = {name: _read(name, *case) for name, case in _CASES.items()} | {

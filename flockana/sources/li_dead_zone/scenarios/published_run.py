@@ -149,7 +149,9 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
         f"{_PRINTED} Here the jumps are as printed.",
         _CONTRACTS
         | inconclusive("dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus")
-        | verified("source:together"),
+        # two orbits part at some step: what is said of later ones is not known
+        | inconclusive("dead-zone-1-printed:collision", "dead-zone-1-corrected:rate", "dead-zone-1-corrected:distance")
+        | inconclusive("source:together"),
         own=(50, 40.0, 0.0),
         settings="printed settings: force jumps",
     )
