@@ -75,8 +75,9 @@ slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal l
 # ## Theorem 5
 #
 # > **Theorem 5** (Olfati-Saber 2006, as lecture slides on it print it). Let $q$ be an α-lattice of scale $d > 0$ and
-# > ratio $\kappa > 1$ with distinct nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links,
-# > $m = 2$, $n \ge 3$; (iii) with $n > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
+# > ratio $\kappa > 1$ with distinct nodes. Then (i) its net is planar, $m = 2, 3$;
+# > (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with
+# > $n > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
 #
 # A net is *planar* if it can be drawn in the plane without crossing links, *complete* if all pairs are linked. (The
 # slides print (ii) without $n \ge 3$, and for two agents $3n - 6 = 0$ links is wrong: erratum E6.)

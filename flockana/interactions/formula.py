@@ -144,8 +144,8 @@ class FormulaInteraction(PairInteraction):
         --------
         >>> for remark in FormulaInteraction("(s**2 - 1)*(s**2 - 4)**2", r=2.5, d=1.0).remarks:
         ...     print(remark)
+        two agents rest at s = 2, not at length = 1
         the force changes sign again at s = 1.41421: beyond, agents repel each other
-        the force changes sign again at s = 2: beyond, agents attract each other
         the force jumps from -143.4 to 0 at the range, s = 2.5
         """
         rest, zeros = self.resting_distance, self._parts.zeros

@@ -32,7 +32,7 @@ def test_theorems_are_a_line_each_and_filtered(call, refused):
     assert "L6" not in names
     refused("expected part of", "theorems", "--source", "nobody")
     _, whole, _ = call("theorems")
-    assert len(whole.splitlines()) < 100
+    assert len(whole.splitlines()) < 110
     _, none, _ = call("theorems", "zebra")
     assert none == "0 theorems\n"
     entries = json.loads(call("scenarios", "hexagon", "--json")[1])

@@ -159,6 +159,12 @@ test_bad_input = refused(
         lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0)),
         "dt = None: Disturbed is run in fixed steps",
     ),
-    (lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0), dt=0.1, method="RK4"), "order = 4: noise"),
-    (lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0), dt=0.1, method="RK45"), "unknown method"),
+    (
+        lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0), dt=0.1, method="RK4"),
+        "RK4: Disturbed draws random numbers; expected a solver that takes noise",
+    ),
+    (
+        lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0), dt=0.1, method="RK45"),
+        "RK45 chooses its own steps",
+    ),
 )
