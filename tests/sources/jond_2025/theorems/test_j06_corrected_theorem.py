@@ -36,7 +36,7 @@ def test_one_claim_stands_for_all(monkeypatch, statuses, status, modes):
 
     def noted(*given):
         runs.append(given)
-        return SimpleNamespace(doubt="", unresolved="")
+        return SimpleNamespace(doubt="", unresolved="", is_map=False)
 
     monkeypatch.setattr(j06, "observed", noted)
     monkeypatch.setattr(j06, "zone_1_corrected", SimpleNamespace(theorem=corrected(statuses, modes)))
