@@ -21,7 +21,10 @@ WALL = fl.Wall((0.0, 0.0), (1.0, 0.0))
         (lambda: plots.side_by_side([1]), r"outcomes\[0\] = 1: expected one of what scenarios.one_start.compare"),
         (lambda: plots.velocity_diameters([None]), r"outcomes\[0\] = None: expected one of what"),
         (lambda: plots.save("figure", "it.pdf"), r"drawing = 'figure': expected a figure or Axes of matplotlib"),
-        (lambda: stability.norms_against_size([1], [3]), r"law = \[1\]: expected Algorithm1 or Algorithm2"),
+        (
+            lambda: stability.norms_against_size([1], [3]),
+            r"expected Algorithm1 or Algorithm2, pairs",
+        ),
     ],
 )
 def test_another_kind_of_object_is_named(call, message):

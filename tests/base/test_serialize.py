@@ -11,6 +11,7 @@ import pytest
 
 from flockana import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Tolerances
 from flockana.base.errors import ArgumentError, FileError
+from flockana.base.modules import source_modules
 from flockana.base.serialize import from_data, parameter_classes, to_data, to_data_mapping
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -60,8 +61,10 @@ def test_files_that_name_a_module_are_read_wherever_the_class_lives_now():
 
 
 def test_no_two_parameter_classes_share_a_name():
-    rooms = [import_module(f"flockana.{room}") for room in ("interactions", "environment", "laws")]
-    modules = [import_module(x.name) for r in rooms for x in walk_packages(r.__path__, f"{r.__name__}.")]
+    rooms = "interactions", "environment", "laws", "solvers"
+    parts = [(import_module(f"flockana.{room}"), tuple(source_modules(room))) for room in rooms]
+    modules = [import_module(x.name) for r, _ in parts for x in walk_packages(r.__path__, f"{r.__name__}.")]
+    modules += [module for _, own in parts for module in own]
     names = [x.__name__ for m in modules for x in vars(m).values() if is_dataclass(x) and x.__module__ == m.__name__]
     assert sorted(names) == sorted(parameter_classes())
 

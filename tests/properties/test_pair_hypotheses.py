@@ -86,7 +86,7 @@ def test_a_user_s_weight_is_nonnegative_by_its_proof_only():
     class Unproved(RationalWeight):
         """A weight that names no proof."""
 
-        proof = ""
+        proofs = {}
 
     for weight, status in ((RationalWeight(), "met"), (Unproved(), "assumed")):
         law = compose(pair=law_of().alpha, consensus=weight)
