@@ -69,6 +69,7 @@ def test_crossings_are_counted_up_to_what_the_theorems_check_lists(call, found, 
     assert (counted["crossings"], counted["crossings listed at most"]) == (15911, os_5.LISTED)
     assert "crossings 15911; each decided" in " ".join(call("square:12x12", "--r", 20)[1].split())
     monkeypatch.setattr(os_5, "LISTED", 200)
+    monkeypatch.setattr(importlib.import_module("flockana.lattice.crossings"), "LISTED", 200)
     counted = found("square:6x6", "--r", 20)
     assert (counted["crossings"], counted["crossings listed at most"]) == (200, 200)
     assert "crossings at least 200; each decided" in " ".join(call("square:6x6", "--r", 20)[1].split())

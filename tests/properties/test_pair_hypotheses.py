@@ -5,6 +5,7 @@ Each planted law is the good one with one property broken. The theorem may then 
 
 from dataclasses import replace
 from functools import cache
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -86,7 +87,7 @@ def test_a_user_s_weight_is_nonnegative_by_its_proof_only():
     class Unproved(RationalWeight):
         """A weight that names no proof."""
 
-        proofs = {}
+        proofs: ClassVar[dict[str, str]] = {}
 
     for weight, status in ((RationalWeight(), "met"), (Unproved(), "assumed")):
         law = compose(pair=law_of().alpha, consensus=weight)

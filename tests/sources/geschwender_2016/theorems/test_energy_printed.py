@@ -30,11 +30,11 @@ def test_a_common_velocity_has_no_power(v):
     lost, turned = 2.0 * MATCH * v * v, 2.0 * PULL * abs(v)
     assert claim.margin == pytest.approx(lost / (lost + 2.0 * (lost + turned)), rel=1e-9)
     assert claim.error == pytest.approx((2**2 + 64) * EPS, rel=1e-3, abs=0.0)
-    assert claim.status == "verified"
+    assert claim.status == "inconclusive"  # its samples alone are known
 
 
 @pytest.mark.parametrize(
-    ("w", "status"), [(0.5, "verified"), (0.01, "verified"), (-0.5, "refuted"), (-0.01, "refuted")]
+    ("w", "status"), [(0.5, "inconclusive"), (0.01, "inconclusive"), (-0.5, "refuted"), (-0.01, "refuted")]
 )
 def test_two_that_follow_their_pull_lose_it_twice_and_two_that_part_gain_it(w, status):
     """−2 c2γ w² − c2α a (2w)² − 2 F w, of w towards each other; where the rate is positive the energy rises."""
