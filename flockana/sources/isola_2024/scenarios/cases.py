@@ -43,7 +43,7 @@ _SOURCE = {
 
 
 # statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3
-_SHIPPED = {2: verified("source")}
+_SHIPPED = {2: verified("source"), 3: refuted("source:width")}
 _REFERENCES = ("isola-2024", "olfati-saber-2006")
 
 
@@ -110,7 +110,10 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
     )
     expected = _expected(case, printed=printed) if own else verified("source:circle")
     reports = in_source_units(lambda: continuous.scales, REPORTS[case])
-    more: dict[str, Any] = {"references": _REFERENCES, "shipped": _SHIPPED.get(case, {}) if own else {}}
+    more: dict[str, Any] = {
+        "references": _REFERENCES,
+        "shipped": {} if not own or (printed and case >= 3) else _SHIPPED.get(case, {}),
+    }
     more["instants"] = tuple(i * DT for i in CAPTURES)
     return Scenario(name, title, source, law, q, np.zeros_like(q), (0.0, end), seed, expected, reports, **more)
 
