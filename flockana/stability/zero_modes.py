@@ -56,9 +56,9 @@ def split(stiffness: Any, damping: Any, m: int) -> Split:
 
 
 def agent_scales(stiffness: Any, m: int) -> FloatArray:
-    """Return the largest row sum of K among the coordinates of each agent, by coordinate; 1 where nothing acts."""
+    """Return the largest row sum of K among the coordinates of each agent, by coordinate; of all where none acts."""
     rows = np.asarray(abs(stiffness).sum(axis=1)).reshape(-1, m).max(axis=1)
-    return np.repeat(np.where(rows > 0.0, rows, 1.0), m)
+    return np.repeat(np.where(rows > 0.0, rows, rows.max(initial=0.0) or 1.0), m)
 
 
 def zero_threshold(stiffness: Any, force: FloatArray, length: float) -> float:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import cycle
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from flockana import rescale
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import scenario
+from flockana.sources.jond_2025.scenarios import prose_claims
 from flockana.sources.jond_2025.scenarios.prose_claims import SCENARIOS
 
 
@@ -41,7 +43,7 @@ def test_settings_and_options():
         scenario("zone-box", n=3)
 
 
-def test_own_weights_are_heard():
+def test_own_weights_are_heard(exact):
     """Doctored: equal weights for all give way to nobody, and other distances from the alien."""
     run = ran("zone-individual")
     kept, way = (claim_of("zone-individual", run, name) for name in ("hazards", "gives-way"))
@@ -56,12 +58,15 @@ def test_own_weights_are_heard():
     assert (pairs[:, :, 0] < pairs[:, :, 1]).all(), "they ran through each other"
 
 
-def test_chance_is_told_from_none():
+def test_chance_is_told_from_none(monkeypatch):
     entry, run = scenario("zone-51-noisy"), ran("zone-51-noisy")
     assert claim_of(entry.name, run, "repeats").status == "verified"
     moved = run.q.copy()
     moved[-1, 0, 0] = np.nextafter(moved[-1, 0, 0], np.inf)
-    assert claim_of(entry.name, replace(run, q=moved), "repeats").status == "refuted"
+    with monkeypatch.context() as patch:
+        runs = cycle([run, replace(run, q=moved)])
+        patch.setattr(prose_claims, "rerun", lambda *_: next(runs))
+        assert claim_of(entry.name, run, "repeats").status == "refuted"
     assert claim_of(entry.name, run.window(1.0, 20.0), "repeats").status == "inconclusive"
     quiet = scenario("zone-51-noisy", weights=0.0, velocities=0.0)
     verdict = quiet.verify(quiet.run())[-1]
@@ -76,7 +81,7 @@ def test_in_other_units_it_is_the_same_run():
     assert odd.verify(odd.run())[-1].claim("repeats").status == "verified"
 
 
-def test_finding_together():
+def test_finding_together(exact):
     run = ran("zone-box")
     whole, away = run.q[:1] * 0.05 + 20.0, run.q[:1].copy()
     for pattern, again, at_end in (("awa", True, False), ("aaw", True, True), ("aaa", False, False)):

@@ -104,7 +104,7 @@ def test_moving_one_after_the_other_pushes_the_flock():
     assert speeds["synchronous"] == pytest.approx(3.0, abs=0.01)
 
 
-def test_reports_see_what_is_wrong():
+def test_reports_see_what_is_wrong(exact):
     """Each check is shown a run in which its claim fails, or a doctored one."""
     entry, run = scenario("zone-51"), ran("zone-51")
     near = replace(run, q=0.5 * run.q)
@@ -127,7 +127,7 @@ def test_a_run_that_ended_early_is_not_judged_on_what_it_did_not_reach():
     assert {name for name, status in found.items() if status == "inconclusive"} == {"coordination", "radius", "speed"}
 
 
-def test_breaking_up_and_finding_together():
+def test_breaking_up_and_finding_together(exact):
     entry, run = scenario("zone-52"), ran("zone-52")
     q = np.repeat(run.q[:1], 7, axis=0)
     away = q.copy()
