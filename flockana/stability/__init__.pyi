@@ -6,6 +6,8 @@ from .consensus import consensus_root as consensus_root
 from .consensus import consensus_system as consensus_system
 from .controllability import Controllability as Controllability
 from .controllability import controllability as controllability
+from .damping_gain import DampedGain as DampedGain
+from .damping_gain import gain_for_damping as gain_for_damping
 from .decay import decay_table as decay_table
 from .decay import linear_range as linear_range
 from .delay import DelayMargin as DelayMargin

@@ -15,13 +15,14 @@ from flockana.base.checks import (
     FloatArray,
     ensure_count,
     ensure_kind,
+    ensure_known,
     ensure_nonnegative,
     ensure_positive,
 )
 from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.stability.gain_problems import GainProblem
-from flockana.stability.specifications import Specifications, SpecifiedGains, evaluated
+from flockana.stability.specifications import AT_MOST, Specifications, SpecifiedGains, evaluated
 
 _ROUNDS = 200
 _ACTIVE = 40  # eigenvalues with the largest real parts that a step looks at
@@ -88,6 +89,7 @@ class _Search(TypedDict, total=False):
     bounds: tuple[float, float] | None
     starts: int
     seed: int
+    least: str | None
 
 
 @overload
@@ -101,6 +103,7 @@ def design_gains(
     bounds: tuple[float, float] | None = None,
     starts: int = 6,
     seed: int = 0,
+    least: str | None = None,
 ) -> GainDesign | SpecifiedGains:
     """Choose c1γ and c2γ within bounds: for the fastest decay, or to meet specifications.
 
@@ -110,7 +113,8 @@ def design_gains(
     starts; the abscissa is not smooth where eigenvalues coalesce.
 
     With specifications the gains are alike for all agents, and the specification with the least room gets the most: it
-    is the one that binds. The equilibrium is found anew for each choice. The grid is geometric.
+    is the one that binds. The equilibrium is found anew for each choice. The grid is geometric. With ``least="effort"``
+    (or "h2", "overshoot", "strain") that is made as small as the specifications allow, instead of leaving room.
 
     Either search is local: what it does not find or meet may be found elsewhere.
 
@@ -126,6 +130,8 @@ def design_gains(
         Random starts of gains per agent, half of them near the homogeneous optimum.
     seed : int
         Of the starts.
+    least : {"effort", "strain", "h2", "overshoot"}, optional
+        With specifications, what is to be as small as they allow.
 
     Returns
     -------
@@ -150,7 +156,9 @@ def design_gains(
     """
     ensure_kind("problem", problem, GainProblem, "what gain_problem(...) gives")
     if asked is not None:
-        return _specified(problem, asked, bounds or (0.1, 20.0))
+        return _specified(problem, asked, bounds or (0.1, 20.0), least)
+    if least is not None:
+        raise ArgumentError(f"least = {least!r}: expected with Specifications(...), which it is to meet")
     low, high = _bounds(bounds or (0.0, 5.0), ensure_nonnegative)
     n, rng = problem.agents, np.random.default_rng(seed)
     alike = np.repeat(_minimise2(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
@@ -165,8 +173,8 @@ def design_gains(
     return GainDesign(problem, alike, best, rates[0], rates[1], spectra[0], spectra[1], starts)
 
 
-def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> SpecifiedGains:
-    """Search for the gains that leave the most room in all specifications, over their logarithms."""
+def _specified(problem: GainProblem, asked: Specifications, bounds: Any, least: str | None) -> SpecifiedGains:
+    """Search for the gains that leave the most room in all specifications, or cost least, over their logarithms."""
     if not isinstance(asked, Specifications):
         raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
     law, q = problem.law, problem.q
@@ -174,13 +182,21 @@ def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> Spec
         raise ArgumentError(
             "problem.law = None: expected a problem from gain_problem(...), which has the law and the positions"
         )
+    if least is not None:
+        ensure_known("least", least, AT_MOST)
     low, high = np.log(_bounds(bounds, ensure_positive)).tolist()
 
-    def found(logs: FloatArray) -> SpecifiedGains:
-        return evaluated(law, q, asked, *np.exp(logs).tolist())
+    def flock(logs: FloatArray) -> SpecifiedGains:
+        return evaluated(law, q, asked, *np.exp(logs).tolist(), also=(least,) if least else ())
 
-    best = _minimise2(lambda logs: -min(found(logs).room.values()), low, high, count=6, tries=1, most=60, finest=2e-4)
-    return found(best)
+    def cost(logs: FloatArray) -> float:
+        trial = flock(logs)
+        room = min(trial.room.values())
+        if least is None or room < 0.0:
+            return -room
+        return -1.0 / (1.0 + trial.reached[least])  # below 0, where all is met, and rising with what it costs
+
+    return flock(_minimise2(cost, low, high, count=6, tries=1, most=60, finest=2e-4))
 
 
 def _bounds(bounds: Any, ensure: Callable[[str, Any], float]) -> tuple[float, float]:

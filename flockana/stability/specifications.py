@@ -1,21 +1,29 @@
-"""Specifications of a flock (decay, delay, sampling period, noise, overshoot): how far each is met, which binds."""
+"""Specifications of a flock (decay, delay, period, noise, overshoot, strain, effort): how far met, which binds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from math import exp, pi, sqrt
 from typing import Any
 
+import numpy as np
+
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws import Algorithm2
-from flockana.stability.blocks import law_blocks
+from flockana.measures.nets import links
+from flockana.stability.blocks import Blocks, law_blocks
 from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_norm
 from flockana.stability.sampling import sampling_margin
 from flockana.stability.translational import CentreOfMass
+
+AT_LEAST = ("decay", "delay", "period")  # what is asked to be at least as large; the rest at most
+AT_MOST = ("h2", "overshoot", "strain", "effort")
+MEASURES = AT_LEAST + AT_MOST
 
 
 @dataclass(frozen=True)
@@ -34,6 +42,10 @@ class Specifications:
         Largest H₂ norm from forces on the agents to the shape.
     overshoot : float, optional
         Largest overshoot of the centre after a step of the γ-agent, as a share of the step.
+    strain : float, optional
+        Largest strain of a link at rest, |‖q_ij‖/d − 1|: the pull to the γ-agent squeezes the flock.
+    effort : float, optional
+        Largest H₂ norm from forces on the agents to the γ-feedback −c1γ q − c2γ p, of all agents together.
 
     Examples
     --------
@@ -46,12 +58,14 @@ class Specifications:
     period: float | None = None
     h2: float | None = None
     overshoot: float | None = None
+    strain: float | None = None
+    effort: float | None = None
 
     def __post_init__(self) -> None:
         for name in self.asked:
             object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
         if not self.asked:
-            raise ArgumentError("no specification is given: expected one of decay, delay, period, h2, overshoot")
+            raise ArgumentError(f"no specification is given: expected one of {', '.join(MEASURES)}")
 
     @property
     def asked(self) -> tuple[str, ...]:
@@ -88,15 +102,16 @@ class SpecifiedGains:
         return min(self.room, key=lambda name: self.room[name])
 
 
-def evaluated(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float) -> SpecifiedGains:
+def evaluated(
+    law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float, *, also: tuple[str, ...] = ()
+) -> SpecifiedGains:
     """Return the performance of a flock with these c1γ and c2γ, at the equilibrium near q that they give."""
     gains = replace(law.gains, c1_gamma=c1, c2_gamma=c2)
     trial = replace(law, gains=gains)
     rest = find_equilibrium(trial, q).q if len(q) > 1 else q
-    reached = {name: _reached(name, trial, rest) for name in asked.asked}
-    ratios = {name: reached[name] / float(getattr(asked, name)) for name in reached}
-    least = ("decay", "delay", "period")
-    room = {name: max(-1e3, ratio - 1.0 if name in least else 1.0 - ratio) for name, ratio in ratios.items()}
+    reached = {name: _reached(name, trial, rest) for name in dict.fromkeys((*asked.asked, *also))}
+    ratios = {name: reached[name] / float(getattr(asked, name)) for name in asked.asked}
+    room = {name: max(-1e3, ratio - 1.0 if name in AT_LEAST else 1.0 - ratio) for name, ratio in ratios.items()}
     return SpecifiedGains(gains, reached, room)
 
 
@@ -110,4 +125,17 @@ def _reached(name: str, law: Algorithm2, rest: Any) -> float:
     if name == "overshoot":
         ratio = CentreOfMass(law.gains).damping_ratio
         return exp(-pi * ratio / sqrt(1.0 - ratio * ratio)) if ratio < 1.0 else 0.0
-    return h2_norm(disturbance_system(law_blocks(law, rest, strict=False)))
+    if name == "strain":
+        pairs = links(rest, law.alpha.range)
+        return float(np.abs(lengths(rest[pairs[:, 0]] - rest[pairs[:, 1]]) / law.alpha.length - 1.0).max(initial=0.0))
+    flock = law_blocks(law, rest, strict=False)
+    return h2_norm(_feedback_system(flock, law.gains) if name == "effort" else disturbance_system(flock))
+
+
+def _feedback_system(flock: Blocks, gains: Gains) -> Any:
+    """Return a `control.StateSpace` from a force on each agent to the γ-feedback of all, rigid motions taken out."""
+    import control
+
+    a, b, positions, velocities = flock.quotient()
+    c = -np.hstack([gains.c1_gamma * positions, gains.c2_gamma * velocities])
+    return control.StateSpace(a, b, c, np.zeros((len(c), b.shape[1])), remove_useless_states=False)

@@ -145,6 +145,8 @@ def test_thirty_agents_frozen():
         (lambda: design_gains(ONE, {"decay": 1.0}), "expected Specifications"),
         (lambda: design_gains(ONE, Specifications(decay=1.0), bounds=(2.0, 1.0)), "expected least < gr"),
         (lambda: design_gains(ONE, Specifications(decay=1.0), bounds=(0.0, 1.0)), "bounds = 0"),
+        (lambda: design_gains(ONE, least="effort"), "least = 'effort': expected with Specifications"),
+        (lambda: design_gains(ONE, Specifications(decay=1.0), least="decay"), "unknown least 'decay'"),
         (
             lambda: design_gains(ALONE, Specifications(decay=1.0)),
             "problem.law = None: expected a problem from gain_problem",
@@ -186,6 +188,31 @@ def test_a_flock_does_what_is_said_of_it():
     assert found.reached["delay"] == pytest.approx(delay_margin(delay_system(chosen, rest)).delay, rel=1e-6)
     assert found.reached["h2"] == pytest.approx(h2_norm(disturbance_system(law_blocks(chosen, rest))), rel=1e-6)
     assert found.binding == min(found.room, key=found.room.get)
+
+
+def test_the_least_effort_that_decays_fast_enough():
+    """Of s² + c2 s + c1 white noise asks for (c1 + c2²)/(2 c2) in power; with a rate of 1 that is least at (1, 2)."""
+    least = design_gains(ONE, Specifications(decay=1.0), bounds=(0.2, 20.0), least="effort")
+    c1, c2 = least.gains.c1_gamma, least.gains.c2_gamma
+    assert least.reached["effort"] == pytest.approx(sqrt(0.5 * (c1 + c2**2) / c2), rel=1e-9)
+    assert least.met
+    assert (c1, c2) == pytest.approx((1.0, 2.0), rel=0.05)  # flat there: effort is within 1 %
+    assert least.reached["effort"] == pytest.approx(sqrt(1.25), rel=0.01)
+    rich = design_gains(ONE, Specifications(decay=1.0), bounds=(0.2, 20.0))
+    assert rich.reached["decay"] > least.reached["decay"]
+
+
+def test_the_strain_of_a_squeezed_pair_binds():
+    """c1γ pulls two agents together against one bond: its strain at rest is that of their equilibrium."""
+    pair = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=ALPHA, gains=GAINS)
+    loose = design_gains(pair, Specifications(decay=0.5), bounds=(0.3, 20.0))
+    tight = design_gains(pair, Specifications(decay=0.5, strain=0.005), bounds=(0.3, 20.0))
+    chosen = replace(pair.law, gains=tight.gains)
+    distance = np.linalg.norm(np.subtract(*find_equilibrium(chosen, pair.q).q))
+    assert tight.reached["strain"] == pytest.approx(abs(distance / 7.0 - 1.0), rel=1e-6)
+    assert 0.0 < tight.reached["strain"] <= 0.005
+    assert tight.met
+    assert tight.gains.c1_gamma < loose.gains.c1_gamma
 
 
 def test_a_design_shows_itself_in_one_line():

@@ -1,0 +1,166 @@
+"""Gain at which one mode of a flock has a damping ratio asked for: the mode is followed, its equilibrium too."""
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_points, ensure_positive
+from flockana.base.errors import ArgumentError, SolverError, format_value
+from flockana.equilibria.solve import find_equilibrium
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.linearise import linearise
+from flockana.stability.modes import Mode
+
+_WIDE = 100.0  # up and down from the law's own gain
+_EXACT = 1e-10  # of a gain
+
+
+class DampedGain(NamedTuple):
+    """A gain, the law with it, and the mode that has the damping ratio there."""
+
+    gain: float
+    law: Any
+    mode: Mode
+
+
+class _Here(NamedTuple):
+    """A mode at one value of the gain, and the equilibrium it is of."""
+
+    linear: Linearisation
+    mode: Mode
+
+
+def gain_for_damping(
+    law: Any,
+    q: Any,
+    name: str,
+    ratio: float,
+    *,
+    mode: str | None = None,
+    between: tuple[float, float] | None = None,
+    steps: int = 40,
+) -> DampedGain:
+    """Return the gain nearest to the law's own at which one mode has a damping ratio.
+
+    The mode is followed from the law's own gain, up and down in steps of one ratio: in each it is the one whose
+    eigenvalue and shape change least. The equilibrium is found anew from the last.
+
+    Parameters
+    ----------
+    law : Law
+        With `gains`, the named one positive and one for all agents.
+    q : Equilibrium or array_like, shape (n, m)
+        Equilibrium, or positions near it.
+    name : str
+        Of the gain, as ``"c2_alpha"``.
+    ratio : float
+        ζ = −Re λ/|λ|, between 0 and 1.
+    mode : str, optional
+        Name of the mode at the law's own gain, as `linearise` has it; by default the slowest that swings.
+    between : (float, float), optional
+        Least and greatest gain; by default a hundredth and a hundred times the law's own.
+    steps : int
+        Values between one end and the other.
+
+    Raises
+    ------
+    SolverError
+        If the mode has that ratio at no gain in between; the ratios met are named.
+
+    Examples
+    --------
+    A lone agent held by s² + c2γ s + c1γ is damped by 0.5 at c2γ = √c1γ:
+
+    >>> from flockana import Algorithm2, Gains, StaticTarget
+    >>> law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=4.0, c2_gamma=1.0))
+    >>> round(gain_for_damping(law, [[0.0]], "c2_gamma", 0.5).gain, 9)
+    2.0
+    """
+    known = tuple(key for key in vars(getattr(law, "gains", None) or object) if key.startswith("c"))
+    if not known:
+        raise ArgumentError(f"law = {format_value(law)}: expected a law with gains, such as Algorithm2(...)")
+    ensure_known("gain", name, known)
+    asked = ensure_positive("ratio", ratio)
+    if asked >= 1.0:
+        raise ArgumentError(f"ratio = {ratio:g}: expected a damping ratio below 1; from 1 on a mode does not swing")
+    own = ensure_positive(f"law.gains.{name}", getattr(law.gains, name))
+    low, high = (ensure_positive("between", each) for each in between or (own / _WIDE, own * _WIDE))
+    if not low <= own <= high:
+        raise ArgumentError(f"between = ({low:g}, {high:g}): expected to hold the law's own {name} = {own:g}")
+    start = _begin(law, ensure_points("q", getattr(q, "q", q)), mode)
+    count = ensure_count("steps", steps)
+    crossings, ratios = [], [start.mode.damping_ratio]
+    for end in (low, high):
+        gain, here = own, start
+        share = np.log(end / own) / np.log(high / low)
+        for level in np.geomspace(own, end, 1 + int(np.ceil(count * abs(share))))[1:].tolist():
+            after = _follow(_with(law, name, level), here)
+            ratios.append(after.mode.damping_ratio)
+            if (here.mode.damping_ratio - asked) * (after.mode.damping_ratio - asked) <= 0.0:
+                crossings.append((gain, level, here))
+                break
+            gain, here = level, after
+    if not crossings:
+        raise SolverError(
+            f"mode {start.mode.name} has ζ = {min(ratios):.4g} to {max(ratios):.4g} at {name} = {low:g} to {high:g}: "
+            f"expected {asked:g} among them; ask for another mode, gain or range"
+        )
+    first, second, here = min(crossings, key=lambda each: abs(np.log(each[0] / own)))
+    return _refine(law, name, asked, (first, second), here)
+
+
+def _with(law: Any, name: str, gain: float) -> Any:
+    return replace(law, gains=replace(law.gains, **{name: gain}))
+
+
+def _linearised(law: Any, q: FloatArray) -> Linearisation:
+    """Return the linearisation about the equilibrium near some positions."""
+    rest = find_equilibrium(law, q) if len(q) > 1 else q
+    linear: Linearisation = linearise(law, rest)
+    return linear
+
+
+def _begin(law: Any, q: FloatArray, name: str | None) -> _Here:
+    linear = _linearised(law, q)
+    if name is not None:
+        ensure_known("mode", name, tuple(mode.name for mode in linear.modes))
+        return _Here(linear, next(mode for mode in linear.modes if mode.name == name))
+    swinging = [mode for mode in linear.modes if mode.frequency > mode.error]
+    if not swinging:
+        raise SolverError("no mode swings with the law's own gains: expected mode=, the name of one that creeps")
+    return _Here(linear, swinging[0])
+
+
+def _follow(law: Any, here: _Here) -> _Here:
+    """Return the mode that continues one at another gain: the least change of eigenvalue and shape."""
+    linear = _linearised(law, here.linear.q)
+
+    def change(mode: Mode) -> float:
+        overlap = abs(np.vdot(mode.shape, here.mode.shape)) / np.linalg.norm(mode.shape) / _norm(here.mode)
+        moved = abs(_upper(mode) - _upper(here.mode)) / max(abs(mode.eigenvalue), abs(here.mode.eigenvalue))
+        return float(moved + 1.0 - overlap)
+
+    return _Here(linear, min(linear.modes, key=change))
+
+
+def _norm(mode: Mode) -> float:
+    return float(np.linalg.norm(mode.shape))
+
+
+def _upper(mode: Mode) -> complex:
+    return complex(mode.eigenvalue.real, mode.frequency)
+
+
+def _refine(law: Any, name: str, ratio: float, ends: tuple[float, float], here: _Here) -> DampedGain:
+    """Return the gain within a bracket at which the mode that was followed has the ratio."""
+    from scipy.optimize import brentq
+
+    root: Any = brentq(
+        lambda gain: _follow(_with(law, name, gain), here).mode.damping_ratio - ratio,
+        *ends,
+        xtol=_EXACT * min(ends),
+        rtol=_EXACT,
+    )
+    gain = float(root)
+    return DampedGain(gain, _with(law, name, gain), _follow(_with(law, name, gain), here).mode)
