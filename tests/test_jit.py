@@ -172,9 +172,13 @@ def test_what_is_known_by_name_is_pickled_by_name():
         assert pickle.loads(pickle.dumps(known)) is known
 
 
+SOURCES = "li_dead_zone.kernels.steps", "li_dead_zone.kernels.pair", "jond_2025.kernels.zones", "isola_2024.kernels"
+
+
 def test_kernels_load_numba_when_they_compute():
-    code = "import sys, flockana.kernels.{0}; print('numba' in sys.modules, end=' ')"
-    rooms = "".join(code.format(name) + "\n" for name in ("pair_sums", "dead_zone", "obstacles", "zones", "paths"))
+    code = "import sys, flockana.{0}; print('numba' in sys.modules, end=' ')"
+    names = "kernels.pair_sums", "kernels.obstacles", "kernels.paths", *(f"sources.{name}" for name in SOURCES)
+    rooms = "".join(code.format(name) + "\n" for name in names)
     run = subprocess.run([sys.executable, "-c", rooms], capture_output=True, text=True, check=True, cwd=ROOT)
     assert set(run.stdout.split()) == {"False"}
 

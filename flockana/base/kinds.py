@@ -21,6 +21,7 @@ _EXAMPLES = {
     "DataArray": "an xarray.DataArray, as phases(...) gives it",
     "Dataset": "an xarray.Dataset, as ensemble(...) gives it",
     "DeadZoneInteraction": "the pair interaction of DeadZoneFlocking",
+    "DistanceFunction": "a function of the distance, such as pair_law(...)",
     "Falsification": "what falsify(...) gives",
     "Iterable": "a sequence",
     "Linearisation": "what linearise(...) gives",

@@ -16,6 +16,7 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.stability.bases import complement
 from flockana.stability.rounding import eigenvalues
@@ -156,6 +157,7 @@ def scaled_model(flock: Linearisation) -> ScaledModel:
     return ScaledModel(a, pace, flock.q.shape, np.hstack([still, moving]))
 
 
+@check_kinds
 def controllability(flock: Linearisation, informed: Any, *, horizon: float | None = None) -> Controllability:
     """Return what forces on the informed agents reach of a linearised flock.
 

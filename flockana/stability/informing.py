@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.stability.bases import complement
 from flockana.stability.controllability import (
@@ -59,6 +60,7 @@ class InformedAgents:
     share: float
 
 
+@check_kinds
 def agents_to_inform(
     flock: Linearisation, count: int, *, criterion: str = "log det", horizon: float | None = None, most: int = 20_000
 ) -> InformedAgents:

@@ -64,7 +64,7 @@ def altered(value):
         (np.ndarray, lambda x: x + 1),
         (str, lambda x: x + " "),
         (dict, lambda x: x | {"more": 1}),
-        (tuple, lambda x: x[:-1]),
+        (tuple, lambda x: x[:-1] or ("another",)),
         (fl.Algorithm1, lambda x: fl.Algorithm1(gains=fl.Gains(c1_alpha=1e4))),
     ):
         if isinstance(value, cls):

@@ -23,6 +23,7 @@ RUNS = {name: lambda base=base: run_of(base) for name, _, base, _ in PLANTED} | 
     "any-potential": lambda: fl.simulate(fl.Algorithm1(pair("morse")[0]), NEAR, SLOWLY, (0.0, 2.0)),
     "cucker-smale-steps": lambda: fl.simulate(SemiImplicitEuler(fl.CuckerSmale(), 0.1), NEAR, SLOWLY, (0.0, 2.0)),
     "jlm-headings": lambda: fl.simulate(HEADINGS, NEAR, HEADINGS.velocities([1.0, 2.0]), (0.0, 12.0)),
+    "net-consensus": lambda: fl.simulate(fl.NetConsensus([[0, 1], [1, 0]]), NEAR, SLOWLY, (0.0, 2.0)),
     "os-6": lambda: run_of("algorithm 3"),
     "zone-1-printed": lambda: run_of("tree"),
 }

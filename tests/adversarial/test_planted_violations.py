@@ -118,6 +118,7 @@ EXCEPT = {
     "energy-printed": "it is false of the run as it is; test_planted_energy",
     "jlm-headings": "a map has no second run; headings keep their span to the bit: test_a_heading_that_leaves_its_span",
     "lattice-limit-printed": "about a limit, judged by the equilibrium beside the end; test_planted_limits",
+    "net-consensus": "about the law alone, nothing is measured on the run; test_net_consensus",
     "linearised-decay-terminal": "about the linearisation at the end; test_following",
     "os-5-terminal": "about a configuration, the end of the run; test_planted_nets",
     "zone-1-printed": "false of the run as it is; test_trees",

@@ -29,7 +29,7 @@ def test_no_link_leaps_over_its_pole(how, gap):
     run = fl.simulate(law, [[0.0, 0.0], [length, 0.0]], [[0.0, 0.0], [1e-3, 0.0]], (0.0, 0.02), **how)
     longest = np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1).max()
     assert longest < 1.0
-    reasons = ("where their potential is infinite", "gave up", "left the finite numbers")
+    reasons = ("where their potential is infinite", "gave up", "left the finite numbers", "steps collapse")
     assert run.status == "complete" or any(reason in run.message for reason in reasons)
 
 

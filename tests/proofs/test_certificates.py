@@ -9,20 +9,21 @@ import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
 
-from flockana.base.modules import modules
+from flockana.base.modules import modules, source_modules
 from flockana.theorems.catalogue import theorems_in
 from proofs.proof import load, names
 
 IDS = set(names())
-MODULES = {module.__name__ for module in modules("flockana.theorems")}
+HOLDERS = [*modules("flockana.theorems"), *source_modules("theorems")]
+MODULES = {module.__name__ for module in HOLDERS}
 TABLES = ("RIGOUR", "CITES")  # of all proofs, or followed by themselves
 
 
 @cache
 def parsed(module):
     """Top-level definitions of a module by name, and where its imported names come from."""
-    spec = find_spec(module)
-    body = ast.parse(Path(spec.origin).read_text(encoding="utf-8")).body
+    origin = find_spec(module).origin
+    body = ast.parse(Path(origin).read_text(encoding="utf-8")).body if origin else []  # a folder of modules
     own, imported = {}, {}
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -30,7 +31,7 @@ def parsed(module):
         elif isinstance(node, (ast.Assign, ast.AnnAssign)):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
             own |= {name.id: node for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)}
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("flockana.theorems"):
+        elif isinstance(node, ast.ImportFrom) and ".theorems" in (node.module or ""):
             names = (alias for alias in node.names if alias.name != "check")  # what another theorem finds is its own
             imported |= {alias.asname or alias.name: (node.module, alias.name) for alias in names}
     return own, imported
@@ -69,7 +70,7 @@ def cites():
     """(theorem, proof) for every claim's proof."""
     return {
         (item.id, proof)
-        for module in modules("flockana.theorems")
+        for module in HOLDERS
         for name, item in theorems_in(module).items()
         for proof in cited(module.__name__, name, set())
     }

@@ -35,7 +35,7 @@ def test_where_names_lead(kind, name, file):
     ("kind", "name", "nearest"),
     [
         ("function", "flockana.Algorithm4", "flockana.Algorithm"),
-        ("function", "flockana.laws.notebok", "flockana.sources.notebook_r2.laws"),
+        ("function", "flockana.laws.algorithm4", "flockana.laws.algorithm3"),
         ("function", "numpy.zeros", "flockana."),
         ("plot", "flockana.plots.actions", "flockana.plots.action"),
         ("scenario", "paper-floking", "paper-flocking"),

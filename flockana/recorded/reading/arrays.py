@@ -119,8 +119,8 @@ def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | N
 
 def _order(axes: Any) -> list[int]:
     """Return which of time, agent and axis each axis of an array is."""
-    words = axes.replace(",", " ").split() if isinstance(axes, str) else list(axes)
-    words = list(words[0]) if len(words) == 1 and len(words[0]) in (2, 3) and words[0] not in _AXES else words
+    words = axes.replace(",", " ").split() if isinstance(axes, str) else list(axes) if np.iterable(axes) else []
+    words = list(words[0]) if len(words) == 1 and str(words[0]) not in _AXES and len(str(words[0])) in (2, 3) else words
     order = [_AXES.get(str(word).lower(), -1) for word in words]
     if -1 in order or len(set(order)) < len(order) or 0 not in order or len(order) not in (2, 3):
         raise ArgumentError(
