@@ -1,67 +1,72 @@
-"""Stability at a configuration for every choice of gains in a box, proved at the box's corners.
+"""Stability of an equilibrium for every choice of gains in a box: the equilibrium is followed, its modes are bounded.
 
-At a configuration that is kept as it is, K = c1α ∇²V + diag(c1γ) and D = c2α L̂ + diag(c2γ) are symmetric and linear
-in the gains, those of the γ-agent one per agent. The least eigenvalue of such a matrix is a concave function of the
-gains and rises with those of the γ-agent: over a box it is least where these are least, at one end of c1α or c2α. Where
-K and D are positive definite every mode decays; the proof of that is interval arithmetic. At an equilibrium the
-rotations about the γ-agent are neutral and left out; as an equilibrium moves with the gains, that is proved for the
-nominal gains alone. A corner refutes stability only if the equilibrium that is found from there, with its gains, is
-unstable.
+With y = q − q_r an equilibrium of Algorithm 2 solves c1α ∇V(y) + c1γ_i y_i = 0, which only κ_i = c1γ_i/c1α matter to.
+Krawczyk's test for all κ of the box at once encloses it: y_i = c + z_i, Σ z_i = 0, its turn about the γ-agent fixed. A
+box in which it holds has one equilibrium for each choice of gains, which depends on them continuously. There K and D
+are symmetric and rotations are in the kernel of K; D is positive definite as every c2γ_i > 0, c2α ≥ 0. What is left to
+show is that K is positive but for rotations. V does not feel translations: with δ_i = v_i − v_0 and κ_i ≥ κ,
+vᵀKv/c1α ≥ δᵀ(∇²V + κ (1 − 11ᵀ/n)) δ, agent 0 left out.
 """
 
 from dataclasses import dataclass, replace
 from itertools import product
+from math import isfinite
 from typing import Any, Literal
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError, format_value
-from flockana.certified.krawczyk import least_eigenvalue
-from flockana.equilibria.potential import Potential
+from flockana.certified.balls import AlphaParameters, ball
+from flockana.certified.krawczyk import column, krawczyk_shift, least_eigenvalue
+from flockana.certified.structure import Structure, in_lengths_of_unit, outer
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
 from flockana.equilibria.terminal import generators
+from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.bases import complement
 from flockana.stability.linearise import linearise
 from flockana.stability.sweeps import GAINS
 
 MOST = 7  # agents
 _ON_A_LINE = 1e-9  # relative: a rotation that moves no agent
-_ROUNDING = 1e-12  # relative: error of the entries of ∇²V and L̂
+_FINEST, _GROWTH, _GROWTHS = 1e-9, 1.25, 20  # first radius of the box, and how it grows
 
 
 @dataclass(frozen=True)
 class GainBox:
-    """Stability of a configuration for all gains in a box: proved, refuted by gains, or neither.
+    """Stability of an equilibrium for all gains in a box: proved, refuted by gains, or neither.
 
     Parameters
     ----------
     status : {"verified", "refuted", "inconclusive"}
-        Every mode decays at the configuration for all gains of the box; the equilibrium near it is unstable for the
-        gains `witness`; or neither is certain.
+        For all gains of the box there is one equilibrium near the nominal one, up to rotations, and all its other modes
+        decay; the equilibrium near it is unstable for the gains `witness`; or neither is certain.
     witness : tuple of float
-        c1α, c2α, c1γ, c2γ with which a mode of the equilibrium grows; empty without one.
+        c1α, c2α, c1γ, c2γ of the box with which a mode of the equilibrium grows; empty without one.
+    moved : float
+        By how much a link of the equilibrium may change within the box, proved, in units of length; NaN without proof.
     """
 
     status: Literal["verified", "refuted", "inconclusive"]
     witness: tuple[float, ...] = ()
+    moved: float = float("nan")
 
 
 def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
-    """Decide whether every mode decays at a configuration if each gain is off by up to a share, agent by agent.
+    """Decide whether an equilibrium stays stable if each gain is off by up to a share, those of the agents one by one.
 
-    What is proved holds for the linear system at that configuration, δq'' = −K δq − D δq', for all gains of the box.
-    A flock whose equilibrium moves with its gains is linearised elsewhere: no proof is claimed for it but at spread 0,
-    where rotations about the γ-agent are left out, and it is refuted only by an equilibrium of its own.
+    Proved in ball arithmetic, for the law as it is: for all c1α, c2α and all c1γ, c2γ of the agents in the box, there
+    is exactly one equilibrium near that of the nominal gains but for rotations about the γ-agent, it depends on them
+    continuously, and every mode that is no rotation decays. It is refuted if the equilibrium that is found from there
+    with gains of a corner is unstable.
 
     Parameters
     ----------
     law : Algorithm2
         The law with its nominal gains.
-    q : array_like, shape (n, m)
-        Configuration of at most 7 agents; it is kept as it is, an α-lattice for instance.
+    q : Equilibrium or array_like, shape (n, m)
+        Equilibrium of the nominal gains, or positions near it, of at most 7 agents.
     spread : float
         Share by which each gain may be smaller or larger, 0 <= spread < 1.
 
@@ -69,49 +74,177 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     --------
     >>> from flockana.environment.targets import StaticTarget
     >>> triangle = [[0.0, 0.0], [7.0, 0.0], [3.5, 6.0621778264910706]]
-    >>> gain_box(Algorithm2(target=StaticTarget((0.0, 0.0))), triangle, 0.5).status
+    >>> gain_box(Algorithm2(target=StaticTarget((0.0, 0.0))), triangle, 0.1).status
     'verified'
     """
-    q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
+    q = ensure_points("q", getattr(q, "q", q))
     spread = ensure_nonnegative("spread", spread)
-    if type(law) is not Algorithm2:
-        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm2(...)")
+    if type(law) is not Algorithm2 or not isinstance(law.alpha, AlphaInteraction):
+        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm2(...) with AlphaInteraction(...)")
     law.check_dimension(q.shape[1])
     law.check_agents(len(q))
     if len(q) > MOST:
         raise ArgumentError(f"q has {len(q)} agents: expected at most {MOST}; robustness_margins takes more")
+    target = law.target
+    if target is not None and not (target.consistent and target.constant_velocity):
+        raise ArgumentError(f"target = {format_value(target)}: expected one of constant velocity, which it reports")
     if spread >= 1.0:
         raise ArgumentError(f"spread = {spread:g}: expected a share below 1")
-    gains, low = law.gains, 1.0 - spread
-    hessian, damping = law.alpha.hessian(q).toarray(), law.alpha.laplacian(q).toarray()
-    pull, drag = (np.diag(low * np.broadcast_to(x, q.shape).ravel()) for x in (gains.pull, gains.drag))
-    ends = (low, 1.0 + spread)
-    stiff = [end * gains.c1_alpha * hessian + pull for end in ends]
-    damp = [end * gains.c2_alpha * damping + drag for end in ends]
-    if all(_definite(matrix) for matrix in (*stiff, *damp)):
-        return GainBox("verified")
-    if spread == 0.0 and law.target is not None and Potential(law).residual(q) <= RESIDUAL:
-        rotations = np.array([((q - law.target.position(0.0)) @ turn.T).ravel() for turn in generators(q.shape[1])])
-        basis, sizes, _ = np.linalg.svd(rotations.reshape(-1, q.size).T, full_matrices=False)
-        kept = complement(basis[:, sizes > _ON_A_LINE * sizes.max(initial=0.0)])
-        if all(_definite(matrix) for matrix in (kept.T @ stiff[0] @ kept, *damp)):
-            return GainBox("verified")
-    for a, b in product(ends, ends):
-        own: Any = (
-            a * gains.c1_alpha,
-            b * gains.c2_alpha,
-            low * np.asarray(gains.c1_gamma),
-            low * np.asarray(gains.c2_gamma),
-        )
-        corner = replace(law, gains=replace(gains, **dict(zip(GAINS, own, strict=True))))
-        rest = find_equilibrium(corner, q)
-        if rest.success and any(mode.decay_rate < -mode.error for mode in linearise(corner, rest).modes):
-            return GainBox("refuted", tuple(float(np.min(x)) for x in own))
+    rest = find_equilibrium(law, q)
+    if not (rest.success and rest.residual <= RESIDUAL):
+        return GainBox("inconclusive")
+    moved = _proved(law, np.asarray(rest.q), spread)
+    if isfinite(moved):
+        return GainBox("verified", moved=moved)
+    for share in product((1.0 - spread, 1.0 + spread), repeat=3):
+        gains = dict(zip(GAINS, _corner(law, *share, 1.0 - spread), strict=True))
+        other = replace(law, gains=replace(law.gains, **gains))
+        there = find_equilibrium(other, rest.q)
+        if there.success and any(mode.decay_rate < -mode.error for mode in linearise(other, there).modes):
+            return GainBox("refuted", tuple(float(np.min(x)) for x in gains.values()))
     return GainBox("inconclusive")
 
 
-def _definite(matrix: FloatArray) -> bool:
-    """Return whether a symmetric matrix, known to rounding, is certainly positive definite."""
-    slack = _ROUNDING * len(matrix) * float(np.abs(matrix).max())
-    lowered = 0.5 * (matrix + matrix.T) - slack * np.eye(len(matrix))
-    return least_eigenvalue(arb_mat([[arb(x) for x in row] for row in lowered.tolist()])) is not None
+def _corner(law: Algorithm2, *shares: float) -> list[Any]:
+    return [share * np.asarray(getattr(law.gains, name))[()] for share, name in zip(shares, GAINS, strict=True)]
+
+
+def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
+    """Return by how much a link may change in the box for which stability is proved; NaN if it is not."""
+    gains, (n, m) = law.gains, q.shape
+    nothing = float("nan")
+    pull, drag = (np.broadcast_to(x, q.shape)[:, 0].tolist() for x in (gains.pull, gains.drag))
+    if not (gains.c1_alpha > 0.0 and gains.c2_alpha >= 0.0 and min(pull) > 0.0 and min(drag) > 0.0):
+        return nothing
+    unit = law.alpha.unit
+    own, target = in_lengths_of_unit(law), law.target
+    y = (q - (0.0 if target is None else target.position(0.0))) / unit
+    low, high = (ball(1 - side * fmpq(*spread.as_integer_ratio())) for side in (1, -1))
+    kappa = [(ball(x) * low / high / gains.c1_alpha).union(ball(x) * high / low / gains.c1_alpha) for x in pull]
+    structure = Structure(AlphaParameters.of(own.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
+    box = _enclose(structure, y, kappa)
+    if box is None or not _is_stiff(structure, box, min(float(x.lower()) for x in kappa)):
+        return nothing
+    widest = max(float(x.rad()) for x in box)
+    return float(np.nextafter(2.0 * np.sqrt(m) * widest * unit, np.inf))
+
+
+def _turns(y: FloatArray) -> FloatArray:
+    """Return orthonormal rotations about the γ-agent that move agents, shape (n m, k)."""
+    turns = np.array([(y @ turn.T).ravel() for turn in generators(y.shape[1])]).reshape(-1, y.size)
+    basis, sizes, _ = np.linalg.svd(turns.T, full_matrices=False)
+    return np.asarray(basis[:, sizes > _ON_A_LINE * sizes.max(initial=0.0)])
+
+
+def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb] | None:
+    """Return balls of z = y − c for all κ of the box, or None."""
+    n, m = y.shape
+    centre, turns = y.mean(axis=0), _turns(y)
+    size, k = n * m, turns.shape[1]
+    weights = [kappa[i // m] for i in range(size)]
+    start = (y - centre).ravel().tolist() + (centre).tolist() + [0.0] * k
+
+    def places(x: Any) -> list[arb]:
+        return [x[i] + x[size + i % m] for i in range(size)]
+
+    def equations(x: Any) -> list[arb]:
+        at = places(x)
+        outer = [
+            w * a + sum((turns[i, j] * x[size + m + j] for j in range(k)), arb(0))
+            for i, (w, a) in enumerate(zip(weights, at, strict=True))
+        ]
+        forces = [f + own for f, own in zip(structure.gradient(x[:size]), outer, strict=True)]
+        forces[:m] = [sum(outer[a::m], arb(0)) for a in range(m)]  # of all agents, to which pairs add nothing
+        means = [sum((x[m * i + a] for i in range(n)), arb(0)) for a in range(m)]
+        fixed = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
+        return [*forces, *means, *fixed]
+
+    def slope(x: Any) -> arb_mat:
+        whole = [[arb(0)] * (size + m + k) for _ in range(size + m + k)]
+        for i, row in enumerate(structure.hessian(x[:size]).tolist()):
+            a, into = i % m, {i % m, i}  # the first rows are those of all agents
+            if i >= m:
+                whole[i][:size] = row
+            for r in into:
+                whole[r][i] += weights[i]
+                whole[r][size + a] += weights[i]
+            whole[size + a][i] = arb(1)
+            for j in range(k):
+                for r in into:
+                    whole[r][size + m + j] += float(turns[i, j])
+                whole[size + m + j][i] = arb(float(turns[i, j]))
+                whole[size + m + j][size + a] += float(turns[i, j])
+        return arb_mat(whole)
+
+    found = _grow_box(equations, slope, [arb(x) for x in start])
+    if found is None:
+        return None
+    at = places(found)  # the forces are orthogonal to the turns at the equilibrium: what holds the turn is then 0
+    tangents = structure.rotation_tangents(at)
+    products = arb_mat(
+        [[sum((float(turns[i, j]) * t[i] for i in range(size)), arb(0)) for j in range(k)] for t in tangents]
+    )
+    if k and not _has_full_rank(products):
+        return None
+    return found[:size]
+
+
+def _grow_box(equations: Any, slope: Any, centre: list[arb]) -> list[arb] | None:
+    """Return balls that hold the one zero of equations near a centre: radii grow until Krawczyk's test holds."""
+    radii = [arb(_FINEST)] * len(centre)
+    for _ in range(_GROWTHS):
+        try:
+            shift = krawczyk_shift(equations, slope, centre, radii)
+        except ZeroDivisionError:  # singular to the last bit
+            return None
+        if all(abs(entry) < radius for entry, radius in zip(shift, radii, strict=True)):
+            return [x + entry for x, entry in zip(centre, shift, strict=True)]
+        radii = [arb(max(_FINEST, _GROWTH * float(abs(entry).upper()))) for entry in shift]
+        if not all(radius.is_finite() for radius in radii):
+            return None
+    return None
+
+
+def _has_full_rank(matrix: arb_mat) -> bool:
+    """Return whether a matrix with at least as many rows as columns certainly has independent columns."""
+    return least_eigenvalue(matrix.transpose() * matrix) is not None
+
+
+def _is_stiff(structure: Structure, z: list[arb], least: float) -> bool:
+    """Return whether the form ∇²V + κ (1 − 11ᵀ/n) on δ is certainly positive but along rotations, agent 0 left out."""
+    # A pair's block in the ball is at least its middle less its radius ρ: the form is at least one of numbers. With
+    # s TTᵀ of the middle of a rotation added it exceeds g; across the true one it then exceeds g − s ‖T − middle‖².
+    n, m = structure.n, structure.m
+    if n == 1:
+        return True
+    blocks = []
+    for i, j, gap, s in structure.near(z):
+        tension = structure.tension(s)
+        block = outer(gap, tension, (structure.stiffness(s) - tension) / s)
+        loss = sum((entry.rad() ** 2 for row in block for entry in row), arb(0)).sqrt()
+        loss = arb(loss.upper())
+        blocks.append(
+            (
+                i,
+                j,
+                [[entry.mid() - (loss if a == b else 0) for b, entry in enumerate(row)] for a, row in enumerate(block)],
+            )
+        )
+    whole = structure.assembled(blocks).tolist()
+    form = arb_mat(
+        [
+            [whole[i][j] + least * ((i == j) - ball(fmpq(int(i % m == j % m), n))) for j in range(m, n * m)]
+            for i in range(m, n * m)
+        ]
+    )
+    turns = [[x - t[k % m] for k, x in enumerate(t)][m:] for t in structure.rotation_tangents(z)]
+    tie, lost = arb(max(float(abs(entry).upper()) for entry in form.entries())), arb(0)
+    for turn in turns:
+        size = arb(sum((x.mid() ** 2 for x in turn), arb(0)).mid())
+        if not size > 0:
+            continue
+        middle = column([x.mid() for x in turn])
+        form = form + tie / size * middle * middle.transpose()
+        lost += tie / size * sum((x.rad() ** 2 for x in turn), arb(0))
+    bound = least_eigenvalue(form)
+    return bound is not None and bool(bound > lost)

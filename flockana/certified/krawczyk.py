@@ -26,15 +26,25 @@ def enclose_zero(
     radius: arb,
 ) -> list[arb] | None:
     """Return balls that hold the unique zero of f in a box; None if Krawczyk's test fails."""
-    # Krawczyk: with an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K
-    # lies inside B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
-    box = [x + arb(0, radius) for x in centre]
-    enclosure = slope(box)
-    y = enclosure.mid().inv().mid()
-    shift = (identity(len(box)) - y * enclosure) * column([arb(0, radius)] * len(box)) - y * column(f(centre))
-    if not all(abs(entry) < radius for entry in shift.entries()):
+    shift = krawczyk_shift(f, slope, centre, [radius] * len(centre))
+    if not all(abs(entry) < radius for entry in shift):
         return None
-    return [x + entry for x, entry in zip(centre, shift.entries(), strict=True)]
+    return [x + entry for x, entry in zip(centre, shift, strict=True)]
+
+
+def krawczyk_shift(
+    f: Callable[[Sequence[arb]], Sequence[arb]],
+    slope: Callable[[Sequence[arb]], arb_mat],
+    centre: Sequence[arb],
+    radii: Sequence[arb],
+) -> list[arb]:
+    """Return K − c of Krawczyk's test on a box about c: where each entry is below its radius, the box has one zero."""
+    # With an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K lies inside
+    # B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
+    offsets = [arb(0, radius) for radius in radii]
+    enclosure = slope([x + offset for x, offset in zip(centre, offsets, strict=True)])
+    y = enclosure.mid().inv().mid()
+    return ((identity(len(offsets)) - y * enclosure) * column(offsets) - y * column(f(centre))).entries()
 
 
 def least_eigenvalue(matrix: arb_mat) -> arb | None:
