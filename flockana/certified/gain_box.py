@@ -111,19 +111,18 @@ def _corner(law: Algorithm2, *shares: float) -> list[Any]:
 
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
     """Return by how much a link may change in the box for which stability is proved; NaN if it is not."""
-    gains, (n, m) = law.gains, q.shape
-    nothing = float("nan")
+    unit: float = getattr(law.alpha, "unit", 1.0)
+    own, nothing = in_lengths_of_unit(law), float("nan")
+    gains, (n, m) = own.gains, q.shape
     pull, drag = (np.broadcast_to(x, q.shape)[:, 0].tolist() for x in (gains.pull, gains.drag))
     if not (gains.c1_alpha > 0.0 and gains.c2_alpha >= 0.0 and min(pull) > 0.0 and min(drag) > 0.0):
         return nothing
-    unit = law.alpha.unit
-    own, target = in_lengths_of_unit(law), law.target
-    y = (q - (0.0 if target is None else target.position(0.0))) / unit
+    y = (q - (0.0 if law.target is None else law.target.position(0.0))) / unit
     low, high = (ball(1 - side * fmpq(*spread.as_integer_ratio())) for side in (1, -1))
     kappa = [(ball(x) * low / high / gains.c1_alpha).union(ball(x) * high / low / gains.c1_alpha) for x in pull]
     structure = Structure(AlphaParameters.of(own.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
     box = _enclose(structure, y, kappa)
-    if box is None or not _is_stiff(structure, box, min(float(x.lower()) for x in kappa)):
+    if box is None or not _is_stiff(structure, box, min((x.lower() for x in kappa), key=float)):
         return nothing
     widest = max(float(x.rad()) for x in box)
     return float(np.nextafter(2.0 * np.sqrt(m) * widest * unit, np.inf))
@@ -210,7 +209,7 @@ def _has_full_rank(matrix: arb_mat) -> bool:
     return least_eigenvalue(matrix.transpose() * matrix) is not None
 
 
-def _is_stiff(structure: Structure, z: list[arb], least: float) -> bool:
+def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
     """Return whether the form ∇²V + κ (1 − 11ᵀ/n) on δ is certainly positive but along rotations, agent 0 left out."""
     # A pair's block in the ball is at least its middle less its radius ρ: the form is at least one of numbers. With
     # s TTᵀ of the middle of a rotation added it exceeds g; across the true one it then exceeds g − s ‖T − middle‖².

@@ -70,9 +70,11 @@ def test_the_verdict_does_not_depend_on_units_or_place():
     """An exact scaling by powers of two, and a shift of the γ-agent: the same proof."""
     moved = Algorithm2(target=StaticTarget((100.0, -30.0)))
     for spread, status in ((0.1, "verified"), (0.5, "inconclusive")):
-        assert gain_box(moved, np.array(TRIANGLE) + (100.0, -30.0), spread).status == status
+        assert gain_box(moved, np.add(TRIANGLE, (100.0, -30.0)), spread).status == status
         law = rescale(LAW, length=2.0**-10, time=2.0**6)
-        assert gain_box(law, 2.0**-10 * np.array(TRIANGLE), spread).status == status
+        scaled = gain_box(law, 2.0**-10 * np.array(TRIANGLE), spread)
+        assert scaled.status == status
+        assert scaled.moved == pytest.approx(2.0**-10 * gain_box(LAW, TRIANGLE, spread).moved, rel=1e-6, nan_ok=True)
 
 
 def test_without_any_pull_nothing_is_certain():
