@@ -21,6 +21,7 @@ from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
+_ENDLESS = 1e9  # and so do steps of which so many more would be needed: hours of the fastest flocks
 
 
 def integrated(law: Law, start: Start, plan: Plan, keep: FloatArray | None, tally: Tally) -> Iterator[Sample | Samples]:
@@ -61,7 +62,7 @@ def _driven(
             passed = len(stepper.plan.stops) - int((stepper.stops > at).sum())
             failure = failure or stepper.plan.describe_cuts(tally.steps, passed)
         elif tally.steps >= before + _MANY:
-            failure = failure or _collapse(stepper, law, good, (at - since) / (tally.steps - before))
+            failure = failure or _describe_short_steps(stepper, law, good, (at - since) / (tally.steps - before))
             since, before = at, tally.steps
         if failure:
             tally.fail(failure)
@@ -69,11 +70,17 @@ def _driven(
         stepper.continue_from(good)
 
 
-def _collapse(stepper: Stepper, law: Law, good: int, mean: float) -> str:
-    """Return in words that the last steps are far too short for the law's own time, '' if their mean length is not."""
+def _describe_short_steps(stepper: Stepper, law: Law, good: int, mean: float) -> str:
+    """Return in words that the last steps are far too short for the law's own time or the span, '' if they are not."""
+    at, end = float(stepper.block.t[good]), float(stepper.stops[-1]) if stepper.stops.size else -np.inf
+    if end - at > _ENDLESS * mean:
+        return (
+            f"it would take {(end - at) / mean:.1e} more steps to t = {end:g}: the last {_MANY} are {mean:.2g} long on "
+            "average; expected a shorter span or slower gains"
+        )
     if law.scales is None or mean >= _SHORT * law.scales.time:
         return ""
-    text = f"steps collapse at t = {stepper.block.t[good]:g}: the last {_MANY} are {mean:.2g} long on average"
+    text = f"steps collapse at t = {at:g}: the last {_MANY} are {mean:.2g} long on average"
     q = stepper.states(good)[0][-1, 0]
     if len(q) == 1:
         return text

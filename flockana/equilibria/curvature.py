@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.errors import SolverError
 
 EPS = float(np.finfo(np.float64).eps)
 _ROUNDING = 8.0  # of eps √N ‖H‖: eigenvalues of a symmetric matrix come out to a few eps ‖H‖
@@ -53,6 +54,11 @@ class Landscape:
         self.stiffness, self.q, self.rigid, self.length = stiffness, q, rigid, length
         self.here = stiffness(q)
         self.size = _row_sum(self.here)
+        if not np.isfinite(self.size):
+            raise SolverError(
+                "the potential's curvature is infinite here: expected a configuration without pairs at a kink of the "
+                "force, and units in which forces and lengths are far from 1e±100 (fl.rescale)"
+            )
         self.rounding = _ROUNDING * EPS * float(np.sqrt(q.size)) * max(self.size, unit / length)
         self.force = force + self.rounding * length  # what a few eps of a length or of a force amount to
 

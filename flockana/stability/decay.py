@@ -26,6 +26,7 @@ _FALL = 1e8  # by which K̃ has fallen when the run ends
 _LATE = 0.6  # of a random start's run that is left out: what is fast has decayed
 _SAMPLES = 24  # per half period
 _FEWEST, _MOST = 6, 4000  # half periods
+_FLOOR = 1e-12  # of the largest K̃: below that, velocities are lost in the errors of the run
 _SEEN = 0.1  # share of a mode that is no translation, from which on K̃ sees it
 _RTOL = 1e-11  # and 1e-13 of the law's speed, of which 1e-8 is left at the end; tighter, rounding of forces stalls it
 _SMALL = 3e-3  # deviation up to which the exponent is fitted
@@ -106,15 +107,19 @@ def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     t = np.linspace(0.0, count * half, count * _SAMPLES + 1)
     start = mode_motion(flock, mode, amplitude=size, samples=2)
     mismatch = velocity_mismatch(_run(flock, start.q[0] - flock.q, start.p[0], t)[1])
-    slopes = logarithmic_slopes(mismatch, half)
+    slopes = logarithmic_slopes(mismatch, half)[: _count_above_floor(mismatch)]
     rng = np.random.default_rng(seed)
     dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
-    late = int(_LATE * t.size)
-    late_linear, late_measured = (
-        float(-0.5 * logarithmic_slopes(velocity_mismatch(p)[late:], half).mean())
-        for p in (linear_motion(flock, dq, 0.0 * dq, t)[1], _run(flock, dq, 0.0 * dq, t)[1])
-    )
+    both = [velocity_mismatch(each(flock, dq, 0.0 * dq, t)[1]) for each in (linear_motion, _run)]
+    known = _count_above_floor(both[0])
+    late = slice(int(_LATE * known), known)
+    if not slopes.size or late.start == late.stop:
+        raise ArgumentError(
+            f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a run "
+            "within half a swing: expected less damping"
+        )
+    late_linear, late_measured = (float(-0.5 * logarithmic_slopes(x, half)[late].mean()) for x in both)
     measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
     law, rate, (n, m) = type(flock.law).__name__, mode.decay_rate, flock.q.shape
     return Decay(name or law, law, n, m, mode, rate, measured, error, late_linear, late_measured, t, mismatch)
@@ -285,6 +290,12 @@ def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
     with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope
         slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
     return slopes
+
+
+def _count_above_floor(mismatch: FloatArray) -> int:
+    """Return the number of slopes before K̃ is lost in the errors of a run."""
+    sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")[_SAMPLES:]
+    return int(np.argmin(np.append(sums > _FLOOR * _SAMPLES * mismatch.max(), False)))
 
 
 def _margin(flock: Linearisation, mode: Mode, reach: float) -> float:

@@ -159,7 +159,8 @@ class SecondOrder:
         stiffness = self.stiffness.toarray()
         if self.split.exact:
             unit = translations(*self.q.shape)
-            away = self.scale - self.split.stiffness  # translations are dealt with by themselves
+            beyond = max(1.0, 2.0 * self.zero) * self.scale  # than what counts as zero, for they are dealt with alone
+            away = beyond - self.split.stiffness
             stiffness = stiffness + unit * away @ unit.T
         return kernel_of(stiffness, self.scales, self.zero, symmetric=self.symmetric)
 

@@ -4,12 +4,14 @@ from collections.abc import Iterable
 from math import sqrt
 from typing import Any
 
+from flockana.base.errors import SolverError
 from flockana.base.scales import Scales
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.attraction import final_basin
 from flockana.theorems.basin import Basin
+from flockana.theorems.claims import undecided
 from flockana.theorems.limits import decays_to_zero
 from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
@@ -31,7 +33,10 @@ def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name:
     """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum."""
     # There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
     # link, so that a small strain verifies nothing.
-    end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
+    try:
+        end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
+    except SolverError as why:
+        return undecided(name, str(why), about="limit")
     caught = final_basin(seen)
     pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0
     room, known = tolerances.lattice - limit_strain(seen, end, caught), caught.certificate.certain

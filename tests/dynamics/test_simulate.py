@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, StaticTarget
+from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, LinkKeeping, StaticTarget
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.simulate import simulate
 from flockana.solvers.named import ADAPTIVE, METHODS
@@ -367,6 +367,15 @@ def test_rk4_that_blows_up_fails_at_once_and_says_why():
     assert run.status == "failed"
     assert "reduce dt" in run.message
     assert (run.t[-1] < 0.2, run.stats["steps"] < 5000) == (True, True)
+
+
+def test_a_run_that_would_take_a_thousand_million_steps_fails_in_seconds_and_says_how_many():
+    """Forces of 1 on lengths of 1e-40: the law's own time is 1e-20."""
+    law = LinkKeeping(((0, 1),), r=2e-40, k=1.0, c=1.0)
+    run = simulate(law, [[0.0, 0.0], [1.1e-40, 0.0]], [[0.0, 0.0], [0.0, 1e-41]], (0.0, 1.0))
+    assert run.status == "failed"
+    assert re.fullmatch(r"it would take \S+e\+2\d more steps to t = 1: the last 10000 are \S+ long .*", run.message)
+    assert run.stats["steps"] < 30_000
 
 
 def test_steps_that_collapse_at_a_collision_end_a_run_and_name_the_pair():

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
+import flockana as fl
 from flockana import Algorithm3, DeadZoneFlocking, DeadZoneInteraction, StaticTarget, Wall, rescale
+from flockana.base.errors import SolverError
 from flockana.equilibria.classify import falling, landscape, spectrum
 from flockana.equilibria.curvature import Landscape, descent_direction, least_curvature
 from flockana.equilibria.potential import Potential
@@ -161,3 +163,18 @@ def test_a_minimum_holds_what_has_not_the_energy_to_leave():
     assert 1e-5 < held < 1.0
     assert not around.holds(2.0 * breaks)
     assert not surroundings(LAW, np.array([[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]])).holds(0.0)  # a hinge holds nothing
+
+
+def test_a_pair_at_a_kink_of_the_force_has_no_curvature_and_no_limit():
+    """|s − d|^1.5 has the curvature ¾ |s − d|^−½, infinite at d: one line, and nothing said of the limit."""
+    pair = fl.pair_law("abs(s - d)**1.5", adjacency="(1 - s/r)**2", range=2.0, length=1.0)
+    law = fl.Algorithm1(pair)
+    with pytest.raises(
+        SolverError, match="curvature is infinite here: expected a configuration without pairs at a kink"
+    ):
+        surroundings(law, np.array([[0.0, 0.0], [1.0, 0.0]]))
+    run = fl.simulate(law, [[0.0, 0.0], [1.1, 0.0]], [[0.0, 0.01], [0.0, 0.1]], (0.0, 1.0))
+    assert {c.status for v in fl.verify(law=law, q0=run.q[0], p0=run.p[0], t_span=(0.0, 1.0)) for c in v.claims} <= {
+        "vacuous",
+        "inconclusive",
+    }

@@ -3,6 +3,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
+import flockana as fl
 from flockana import DeadZoneFlocking, Gains, Trajectory, find_equilibrium, linearise, rescale, simulate
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import sealed
@@ -189,3 +190,17 @@ def test_what_cannot_be_linearised_is_vacuous():
     assert [v.status for v in (apart, other, large)] == ["vacuous"] * 3
     assert "DeadZoneFlocking has no equilibria" in other.hypotheses[0].detail
     assert "n = 201: more than 200" in large.hypotheses[0].detail
+
+
+def test_a_pair_that_is_damped_much_is_measured_while_it_is_above_the_errors_of_the_run():
+    """s² + 2 a s + 2 k with ζ = 0.82: within six half swings K̃ falls by 10²³, of which a run shows 10¹²."""
+    pair = fl.pair_law("(1 - exp(1 - s))**2*(1 - s/3)**3", adjacency="(1 - s/3)**2", range=3.0, length=1.0)
+    law = Algorithm1(pair)
+    rest = find_equilibrium(law, [[0.0, 0.0], [1.01, 0.0]])
+    flock = linearise(law, rest)
+    rates = decay(flock)
+    assert flock.modes[0].damping_ratio == pytest.approx(0.8165, abs=1e-3)
+    assert rates.difference < 1e-4
+    assert rates.random_difference < 1e-4
+    run = simulate(law, [[0.0, 0.0], [1.1, 0.0]], [[0.0, 0.01], [0.0, 0.1]], (0.0, 1.0))
+    assert {c.status for c in verify("linearised-decay-terminal", run).claims} == {"verified"}
