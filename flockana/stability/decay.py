@@ -116,8 +116,8 @@ def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     late = slice(int(_LATE * known), known)
     if not slopes.size or late.start == late.stop:
         raise ArgumentError(
-            f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a run "
-            "within half a swing: expected less damping"
+            f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a "
+            "run within half a swing: expected less damping"
         )
     late_linear, late_measured = (float(-0.5 * logarithmic_slopes(x, half)[late].mean()) for x in both)
     measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())

@@ -169,12 +169,8 @@ def test_a_pair_at_a_kink_of_the_force_has_no_curvature_and_no_limit():
     """|s − d|^1.5 has the curvature ¾ |s − d|^−½, infinite at d: one line, and nothing said of the limit."""
     pair = fl.pair_law("abs(s - d)**1.5", adjacency="(1 - s/r)**2", range=2.0, length=1.0)
     law = fl.Algorithm1(pair)
-    with pytest.raises(
-        SolverError, match="curvature is infinite here: expected a configuration without pairs at a kink"
-    ):
+    with pytest.raises(SolverError, match="curvature is infinite here: expected a configuration without pairs at a"):
         surroundings(law, np.array([[0.0, 0.0], [1.0, 0.0]]))
     run = fl.simulate(law, [[0.0, 0.0], [1.1, 0.0]], [[0.0, 0.01], [0.0, 0.1]], (0.0, 1.0))
-    assert {c.status for v in fl.verify(law=law, q0=run.q[0], p0=run.p[0], t_span=(0.0, 1.0)) for c in v.claims} <= {
-        "vacuous",
-        "inconclusive",
-    }
+    for name in ("os-1", "lattice-limit-printed", "linearised-decay-terminal"):
+        assert {c.status for c in fl.verify(name, run).claims} <= {"vacuous", "inconclusive"}
