@@ -93,6 +93,7 @@
 # how often it changes its sign.
 
 # %%
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -101,6 +102,8 @@ import sympy as sp
 import flockana as fl
 from flockana import plots
 from flockana.course import grade
+
+warnings.simplefilter("ignore", fl.PairLawWarning)  # we look at faults ourselves here: law.faults
 
 # %%
 s, d, r, k = sp.symbols("s d r k")
