@@ -6,24 +6,27 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 
+ALARMS = tuple(getattr(signal, name) for name in ("SIGALRM",) if hasattr(signal, name))  # of timeouts; not on Windows
+
 
 @contextmanager
-def defer_sigint() -> Iterator[list[int]]:
-    """Defer Ctrl-C to the end of the block; yields a list that fills when it arrives."""
+def defer_sigint(*others: int) -> Iterator[list[int]]:
+    """Defer Ctrl-C, and other signals, to the end of the block; yields a list that fills when one arrives."""
     # A blocked signal would not do: any other thread, such as linear algebra's, takes it for the main one. And where
     # Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
     came: list[int] = []
-    before = signal.getsignal(signal.SIGINT)
-    ours = callable(before) and threading.current_thread() is threading.main_thread()
-    if ours:
-        signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    ours = threading.current_thread() is threading.main_thread()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *others)} if ours else {}
+    handlers = {number: handler for number, handler in handlers.items() if callable(handler)}
+    for number in handlers:
+        signal.signal(number, lambda number, frame: came.append(number))
     try:
         yield came
     finally:
-        if ours:
-            signal.signal(signal.SIGINT, before)
-        if came:
-            signal.raise_signal(signal.SIGINT)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for number in dict.fromkeys(came):
+            signal.raise_signal(number)
 
 
 @contextmanager

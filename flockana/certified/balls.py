@@ -12,7 +12,9 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any, Self
 
-from flint import arb, arb_series, ctx, fmpq
+from flint import acb, arb, arb_series, ctx, fmpq
+
+from flockana.base.interrupts import ALARMS, defer_sigint
 
 
 class Piece(Enum):
@@ -46,6 +48,12 @@ def hull(*balls: arb) -> arb:
 def square(x: Any) -> Any:
     """Return x² of a ball, never below 0, or of a series."""
     return (x * x).nonnegative_part() if isinstance(x, arb) else x * x
+
+
+def integrate(function: Callable[[Any, bool], Any], start: arb, end: arb) -> arb:
+    """Return the integral of an analytic function in Arb, which forgets what is raised in it: signals wait."""
+    with defer_sigint(*ALARMS):
+        return acb.integral(function, start, end).real
 
 
 def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 
 from flint import acb, arb, ctx
 
-from flockana.certified.balls import AlphaParameters, BetaParameters, ball, clamp, hull, monotone, square
+from flockana.certified.balls import AlphaParameters, BetaParameters, ball, clamp, hull, integrate, monotone, square
 
 
 def sigma_of_square(s: arb, eps: Any) -> arb:
@@ -126,7 +126,7 @@ class _Action:
         """Return the integral from h times the cutoff: closed form before it, enclosed by Arb after it."""
         knee = self.h * self.cutoff
         before = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
-        after = arb(0) if z <= knee else acb.integral(self._on_taper, knee, z.max(knee).min(self.cutoff)).real
+        after = arb(0) if z <= knee else integrate(self._on_taper, knee, z.max(knee).min(self.cutoff))
         return before + after
 
     def _closed(self, z: arb) -> arb:

@@ -13,11 +13,11 @@ from functools import cached_property
 from math import sqrt
 from typing import Any
 
-from flint import acb, arb, fmpq
+from flint import arb, fmpq
 
 from flockana.certified import formulas
 from flockana.certified.balls import Piece as Piece
-from flockana.certified.balls import exact, hull, monotone
+from flockana.certified.balls import exact, hull, integrate, monotone
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class PairNumbers:
         if z <= knee:
             return before
         end = z.max(knee).min(self.cutoff)
-        return before + acb.integral(lambda x, analytic: formulas.tapered(x, self, analytic), knee, end).real
+        return before + integrate(lambda x, analytic: formulas.tapered(x, self, analytic), knee, end)
 
 
 def _nonnegative(s2: Any) -> Any:
