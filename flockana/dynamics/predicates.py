@@ -4,7 +4,7 @@ A run is known at its samples; between them only distances are bounded (`Traject
 and go between samples, so predicates about nets speak of the sampled times.
 """
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.trajectory import Trajectory
 
+Ended = TypeVar("Ended", bound=Any)  # a run, or a tube, with its status
 BoolArray = npt.NDArray[np.bool_]
 
 
@@ -23,13 +24,13 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
     return trajectory
 
 
-def ensure_uninterrupted(run: Trajectory) -> Trajectory:
+def ensure_uninterrupted(run: Ended) -> Ended:
     """Return the run; raise KeyboardInterrupt if Ctrl-C ended it, for work that needs all of it.
 
     Parameters
     ----------
-    run : Trajectory
-        As `simulate` gives it, with status "interrupted" or another.
+    run : Trajectory or Tube
+        As `simulate` or `enclose` gives it, with status "interrupted" or another.
 
     Examples
     --------

@@ -6,6 +6,7 @@ from typing import Any
 
 from flockana.base.errors import SolverError
 from flockana.base.seals import replace_sealed
+from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems import Tolerances, Verdict, verify
 
@@ -34,7 +35,7 @@ class Enclosure:
         unit = run.law.alpha.unit
         law = in_lengths_of_unit(run.law)
         span = (float(run.t[0]), float(run.t[-1]))
-        tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
+        tube = ensure_uninterrupted(enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options))
         if unit != 1.0:
             tube = replace_sealed(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
         if not self.limit:

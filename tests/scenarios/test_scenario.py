@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -153,3 +154,12 @@ def test_a_report_judges_a_run_in_other_units_in_those_of_its_source():
     assert report.text == "it was seen"
     np.testing.assert_allclose(seen[1].q, run.q, rtol=1e-12)
     np.testing.assert_allclose(seen[1].t, run.t, rtol=1e-12)
+
+
+def test_a_tube_that_was_interrupted_ends_its_verdict(monkeypatch):
+    """Ctrl-C during the enclosure of proved-flock once left verdicts that differ from the expected."""
+    entry = scenario("proved-flock")
+    run = entry.run()
+    monkeypatch.setattr("flockana.certified.enclose.enclose", lambda *_, **__: SimpleNamespace(status="interrupted"))
+    with pytest.raises(KeyboardInterrupt):
+        entry.verdict(next(iter(entry.enclosed.theorems)), run)
