@@ -101,6 +101,7 @@ from .recorded.fit import fit as fit
 from .recorded.read import read_recording as read_recording
 from .recorded.recognise import recognise as recognise
 from .recorded.recording import Recording as Recording
+from .report.own import write_report as write_report
 from .scenarios.flock import Flock as Flock
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
@@ -142,6 +143,7 @@ from .stability.linearisation import Linearisation as Linearisation
 from .stability.linearise import linearise as linearise
 from .stability.modes import Mode as Mode
 from .stability.slowest import slowest_modes as slowest_modes
+from .theorems.applicable import applicable as applicable
 from .theorems.catalogue import theorem as theorem
 from .theorems.catalogue import theorems as theorems
 from .theorems.errata import errata as errata

@@ -16,6 +16,10 @@ Words = Annotated[list[str] | None, typer.Argument(metavar="[WORD]...", help="On
 Source = Annotated[str, typer.Option(help="Only this source, or part of its name.", show_default=False)]
 Statuses = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Status = Annotated[Statuses | None, typer.Option(help="Only entries with this expected status.")]
+For = Annotated[
+    str | None,
+    typer.Option("--for", metavar="FLOCK", help="Which claims hold of FILE.py:NAME, or a scenario, by law and start."),
+]
 Long = Annotated[bool, typer.Option("--long", help="Print all details of each.")]
 
 
@@ -32,13 +36,45 @@ def scenarios_command(
 
 @one_thread_for_matrices()
 def theorems_command(
-    words: Words = None, source: Source = "", status: Status = None, long: Long = False, as_json: AsJson = False
+    words: Words = None,
+    source: Source = "",
+    status: Status = None,
+    long: Long = False,
+    flock: For = None,
+    as_json: AsJson = False,
 ) -> None:
-    """List the theorems and errata that can be checked, by source."""
+    """List the theorems and errata that can be checked, by source; or, with --for, which hold of a flock."""
+    if flock is not None:
+        _show_applicable(flock, words, source=source, status=status, long=long, as_json=as_json)
+        return
     from flockana.report.catalogues import select, theorem_entries, theorem_table
 
     found = select(theorem_entries(), words or (), source=source, status=status or "")
     _show(found, theorem_table, "theorems", long=long, as_json=as_json)
+
+
+def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) -> None:
+    """Print which claims hold of a flock by its law and its start."""
+    from flockana.base.errors import ArgumentError
+    from flockana.cli.own import is_own, read_own
+    from flockana.cli.show import show, show_json
+    from flockana.report.tables import column, headed_table
+    from flockana.scenarios import scenario
+    from flockana.theorems.applicable import applicable_to
+    from flockana.theorems.headline import plain
+
+    if words or any(others.values()):
+        raise ArgumentError(f"--for {flock}: expected no words and no other option but --json beside it")
+    table = applicable_to(read_own(flock) if is_own(flock) else scenario(flock))
+    if as_json:
+        show_json(plain(table.to_dict("records")))
+        return
+    rows = headed_table("claim", "status", column("need, and what would meet it", wraps=True))
+    for row in table.itertuples():
+        rows.add_row(f"{row.theorem}:{row.claim}", row.status, "; ".join(filter(None, (row.need, row.remedy))))
+    show(flock, rows)
+    counts = table["status"].value_counts()
+    typer.echo(f"{len(table)} claims: " + ", ".join(f"{count} {status}" for status, count in counts.items()))
 
 
 def _show(

@@ -11,6 +11,7 @@ import typer
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AnySeed, AsJson, Jobs
+from flockana.cli.own import is_own
 from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.streams import in_output_encoding
 from flockana.cli.threads import one_thread_for_matrices
@@ -28,7 +29,10 @@ if TYPE_CHECKING:
 def verify_command(
     name: Annotated[
         str | None,
-        typer.Argument(help="A scenario, a theorem, or 'errata'; by default the whole catalogue.", metavar="[NAME]"),
+        typer.Argument(
+            help="A scenario, a theorem, 'errata', or FILE.py:NAME, a flock of yours; by default the whole catalogue.",
+            metavar="[NAME]",
+        ),
     ] = None,
     seed: AnySeed = None,
     on: Annotated[
@@ -58,6 +62,8 @@ def verify_command(
     from flockana.report.surveys import SurveyResult
 
     started, name = time.perf_counter(), _id_of(name)
+    if is_own(name):
+        return _verify_own(str(name), seed, on, None if no_report else report or Path("report"), seeds, as_json=as_json)
     if no_report and report is not None:
         raise ArgumentError(f"--report {report}: --no-report writes none; leave out one of them")
     if on is not None:
@@ -86,6 +92,27 @@ def verify_command(
     if failure is not None:
         raise failure
     return code
+
+
+def _verify_own(
+    name: str, seed: int | None, on: Path | None, folder: Path | None, seeds: int | None, *, as_json: bool
+) -> int:
+    """Check every theorem about the law of a flock that a Python file defines."""
+    from flockana.cli.own import read_own
+    from flockana.report.build import verdicts_json, write_report
+    from flockana.report.own import own_page
+
+    if on is not None or seeds:
+        raise ArgumentError(f"{name}: a flock in a file is run once; leave out {'--on' if on else '--seeds'}")
+    started = time.perf_counter()
+    page = own_page(read_own(name), seed=seed or 0, figures=folder is not None)
+    facts: Any = {"seed": seed or 0, "seconds": time.perf_counter() - started}
+    written = None if folder is None else write_report([page], folder, of=page.name, **facts)
+    if as_json:
+        typer.echo(in_output_encoding(verdicts_json([page], **facts)), nl=False)
+    else:
+        _print_verdicts([page], None, facts["seconds"], written, name)
+    return OK
 
 
 def _id_of(name: str | None) -> str | None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from flockana.base.errors import ArgumentError
@@ -105,16 +106,24 @@ def fixed_page(verdict: Verdict) -> FixedPage:
 
 
 def scenario_page(
-    scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...], *, figures: bool = True
+    scenario: Scenario,
+    run: Trajectory,
+    verdicts: tuple[Verdict, ...],
+    *,
+    figures: bool = True,
+    own: Mapping[str, Theorem] = MappingProxyType({}),
 ) -> ScenarioPage:
-    """Return a scenario's run with the verdicts of `Scenario.verify` as plain data, with its figures drawn."""
+    """Return a scenario's run with the verdicts of `Scenario.verify` as plain data, with its figures drawn.
+
+    `own` has the theorems that are no catalogue's, by their ids.
+    """
     early_end = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
     return ScenarioPage(
         scenario.name,
         scenario.title,
         scenario.source,
         _facts(scenario, run),
-        tuple(_scenario_finding(scenario, verdict) for verdict in verdicts),
+        tuple(_scenario_finding(scenario, verdict, own) for verdict in verdicts),
         pictures(run, scenario.instants) if figures else (),
         early_end,
         tuple(scenario.references),
@@ -136,10 +145,10 @@ def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) ->
         return ""
 
 
-def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
+def _scenario_finding(scenario: Scenario, verdict: Verdict, own: Mapping[str, Theorem]) -> Finding:
     expected = {k: v for k, v in scenario.expected.items() if k.split(":")[0] == verdict.theorem}
     if verdict.theorem != SOURCE:
-        return _finding(verdict, theorem(verdict.theorem), expected)
+        return _finding(verdict, own.get(verdict.theorem) or theorem(verdict.theorem), expected)
     reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
     said = "What the source reports", reports, scenario.source, expected
     return Finding(verdict, *said, differences(verdict, expected), scenario.references)

@@ -38,6 +38,10 @@ class Hypothesis:
     decided : {"exact", "proved", "enclosed", "assumed"}
         By which means: from parameters or a closed form; by a proof; by an enclosure of this run, recording or tube; or
         not at all, as its user states it or nobody knows. What has the status ``"assumed"`` is always the last.
+    on_motion : bool
+        Whether it was looked for in the motion: then a start alone does not decide it.
+    remedy : str
+        What would meet it, in words; empty if nothing is known that would.
     """
 
     name: str
@@ -46,6 +50,8 @@ class Hypothesis:
     detail: str = ""
     error: float | None = None
     decided: Decided = "exact"
+    on_motion: bool = False
+    remedy: str = ""
 
     def __post_init__(self) -> None:
         if self.status == "assumed":

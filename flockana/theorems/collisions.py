@@ -25,6 +25,7 @@ from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition
 
 Pair = tuple[int, int]
 IndexArray = npt.NDArray[np.intp]
+LESS_ENERGY = "start slower, with fewer agents, or with distances nearer to rest"
 
 
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
@@ -161,7 +162,13 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
     bound = high if status == "unmet" else low
     margin = float(bound - energy.mid)
     return Hypothesis(
-        "H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width), decided="enclosed"
+        "H(0) < min{V : two agents coincide}",
+        status,
+        margin,
+        detail,
+        float(energy.half_width),
+        decided="enclosed",
+        remedy=LESS_ENERGY,
     )
 
 
@@ -169,7 +176,7 @@ def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothes
     """Return the hypothesis H(0) < k c*, the energy of k coincident pairs."""
     text = "c*" if times == 1 else f"{times} c*"
     detail = f"H(0) = {energy.mid:.5g}, {text} = {times * c_star:.5g}"
-    return positive_room(f"H(0) < {text}", times * c_star - energy, detail)
+    return positive_room(f"H(0) < {text}", times * c_star - energy, detail, remedy=LESS_ENERGY)
 
 
 def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None) -> Claim:

@@ -140,6 +140,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     title="The linearisation is accurate where a run ends",
     source="ours; the statement is textbook knowledge",
     claims=_NAMES,
+    on_motion=True,
     reason="no stable equilibrium to return to",
     author="flockana",
 )

@@ -27,6 +27,7 @@ def condition(
     *,
     error: float | None = None,
     decided: Decided = "exact",
+    remedy: str = "",
 ) -> Hypothesis:
     """Return a hypothesis that is met or unmet, never assumed.
 
@@ -42,13 +43,15 @@ def condition(
         Of the margin.
     decided : {"exact", "proved", "enclosed"}
         By which means; exact means from parameters, a start, or a closed form.
+    remedy : str
+        What would meet it.
 
     Examples
     --------
     >>> condition("c1α > 0", False, 0.0).status
     'unmet'
     """
-    return Hypothesis(name, "met" if holds else "unmet", margin, detail, error, decided)
+    return Hypothesis(name, "met" if holds else "unmet", margin, detail, error, decided, remedy=remedy)
 
 
 def law_is(
@@ -166,7 +169,8 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
     values = {text: float(getattr(run.law.gains, name)) for name, text in gains.items()}
     least = min(values.values())
     detail = ", ".join(f"{text} = {value:g}" for text, value in values.items())
-    return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail)
+    remedy = "raise " + " and ".join(text for text, value in values.items() if not value > 0.0)
+    return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail, remedy=remedy)
 
 
 def common_gains(run: Observed | Tube) -> Hypothesis:
@@ -179,7 +183,8 @@ def common_gains(run: Observed | Tube) -> Hypothesis:
     """
     several = run.law.gains.per_agent
     detail = "gains are given per agent" if several else ""
-    return condition("one c1γ and one c2γ for all agents", not several, detail=detail)
+    remedy = "give all agents one c1γ and one c2γ"
+    return condition("one c1γ and one c2γ for all agents", not several, detail=detail, remedy=remedy)
 
 
 def has_lattice(run: Observed) -> Hypothesis:
@@ -205,7 +210,7 @@ def alpha_gain(run: Observed) -> list[Hypothesis]:
     return [*([common_gains(run)] if run.law.target is not None else []), positive(run, c1_alpha="c1α")]
 
 
-def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
+def positive_room(name: str, room: Enclosure, detail: str, *, remedy: str = "") -> Hypothesis:
     """Return the hypothesis that a number is positive: assumed where its enclosure holds 0.
 
     Parameters
@@ -214,6 +219,8 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
         The number, such as a bound less what lies below it.
     detail : str
         In words.
+    remedy : str
+        What would make it positive.
 
     Examples
     --------
@@ -222,5 +229,5 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
     """
     margin, error = float(room.mid), float(room.half_width)
     if room.lo > 0.0 or room.hi <= 0.0:
-        return condition(name, bool(room.lo > 0.0), margin, detail, error=error, decided="enclosed")
-    return Hypothesis(name, "assumed", margin, f"{detail}; equal within the error", error)
+        return condition(name, bool(room.lo > 0.0), margin, detail, error=error, decided="enclosed", remedy=remedy)
+    return Hypothesis(name, "assumed", margin, f"{detail}; equal within the error", error, remedy=remedy)

@@ -27,7 +27,7 @@ class RunEvidence(Evidence):
     def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
         ensure_sealed("trajectory", self.run, _RUN, _REMEDY)
         if wrappers_of(self.law) and not (item.wrapped and self.law is self.law.continuous):
-            return _of_another_law(item, self.law)
+            return claims_on_another_law(item, self.law)
         ensure_fits(self.run)
         return examine_observed(item, Observed.of(self.run), tolerances)
 
@@ -46,7 +46,7 @@ def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> K
     return hypotheses, tuple(in_balls(claim) for claim in claims) if seen.enclosed else claims
 
 
-def _of_another_law(item: Theorem, law: Any) -> Known:
+def claims_on_another_law(item: Theorem, law: Any) -> Known:
     """Return the vacuous claims on a run of a wrapped law, which a theorem about the bare law does not cover."""
     around = ", ".join(type(one).__name__ for one in wrappers_of(law))
     detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"

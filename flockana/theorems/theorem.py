@@ -63,6 +63,8 @@ class Theorem:
         Whose theorem it is; the claims are the author's unless named below.
     corrected, ours : tuple of str
         Names of the claims that correct the source, and of the library's own.
+    on_motion : bool
+        Whether it is about the motion as it is seen, or its end: then law and start decide none of its claims.
     wrapped : bool
         Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
@@ -83,6 +85,7 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+    on_motion: bool = False
     wrapped: bool = False
 
     def __repr__(self) -> str:

@@ -26,13 +26,15 @@ from flockana.theorems.toolkit import (
 )
 
 _PROOF = "net-consensus"
+_MORE = "raise β or lower α"
 _MOST = 30  # agents of which equality is decided with rationals
 
 
 def gains_positive(law: NetConsensus) -> Hypothesis:
     """Return the hypothesis α, β > 0."""
     least = min(law.position, law.velocity)
-    return condition("α > 0 and β > 0", least > 0.0, least, f"α = {law.position:g}, β = {law.velocity:g}")
+    text = f"α = {law.position:g}, β = {law.velocity:g}"
+    return condition("α > 0 and β > 0", least > 0.0, least, text, remedy="raise both above 0")
 
 
 def rooted(law: NetConsensus) -> Hypothesis:
@@ -43,7 +45,9 @@ def rooted(law: NetConsensus) -> Hypothesis:
     groups = [sorted(group) for group in networkx.attracting_components(hears)]
     listed = " and ".join(", ".join(map(str, group[:4])) + (" ..." if len(group) > 4 else "") for group in groups[:2])
     text = f"root {groups[0][0]}" if len(groups) == 1 else f"{len(groups)} groups hear nobody outside: {listed}"
-    return condition("one agent is heard by all, directly or through others", len(groups) == 1, detail=text)
+    name = "one agent is heard by all, directly or through others"
+    remedy = "let all but one of these groups hear another"
+    return condition(name, len(groups) == 1, detail=text, remedy=remedy)
 
 
 def threshold_exceeded(law: NetConsensus) -> Hypothesis:
@@ -56,12 +60,11 @@ def threshold_exceeded(law: NetConsensus) -> Hypothesis:
         f"β²/α = {float(ratio.p) / float(ratio.q):.6g}, the bound {bound.str(6, radius=False)}",
     )
     if ratio > bound or ratio < bound:
-        return condition(name, bool(ratio > bound), margin, text)
+        return condition(name, bool(ratio > bound), margin, text, remedy=_MORE)
     if len(law.weights) > _MOST:
         return Hypothesis(name, "assumed", margin, f"{text}; equal to 30 digits")
-    return condition(
-        name, stable_off_agreement(laplacian, law.position, law.velocity), margin, f"{text}, decided exactly"
-    )
+    met = stable_off_agreement(laplacian, law.position, law.velocity)
+    return condition(name, met, margin, f"{text}, decided exactly", remedy=_MORE)
 
 
 def _consensus(seen: Observed, needs: Needs) -> Claim:

@@ -118,7 +118,8 @@ class Guarantee:
         if self.integral_to_infinity.lo == inf:
             return Hypothesis(name, "met", 1.0, f"β = {self.phi.weight.decay:g}: the integral is infinite")
         detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
-        return positive_room(name, self.integral_to_infinity - v0, detail)
+        remedy = "start with velocities that differ less, or nearer together"
+        return positive_room(name, self.integral_to_infinity - v0, detail, remedy=remedy)
 
     def claims(self, needs: list[Hypothesis], limit: str = "velocities") -> Checked:
         """Return the claims that positions spread at most to x_M and velocities match, at a rate and in the limit."""

@@ -40,6 +40,7 @@ def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Cla
     "dead-zone-1-corrected",
     title="Dead-zone flocking corrected: saturated energy, matching within components, explicit distances",
     source="ours; repairs Li, Yuan and Liu, Theorem 1",
+    law=case.applied,
     claims=("rate", "balance", "components", "distance"),
     references=("li-dead-zone",),
     author="corrected",

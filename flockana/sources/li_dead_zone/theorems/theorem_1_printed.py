@@ -67,6 +67,7 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
     "dead-zone-1-printed",
     title="Dead-zone flocking as printed: cohesion, falling energy, one velocity, no collision",
     source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
+    law=case.applied,
     claims=("cohesion", "energy", "velocity", "collision"),
     references=("li-dead-zone",),
 )

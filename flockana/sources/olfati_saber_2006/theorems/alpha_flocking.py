@@ -123,7 +123,7 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
 
 def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked:
     window, part = _window(seen, tolerances)
-    if unmet(needs := [has_lattice(seen), window]):
+    if unmet(needs := [window]):
         return needs, []
     own = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
     return needs, [*own, *_common(part, tolerances)]
@@ -133,6 +133,8 @@ def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked
     "alpha-flocking",
     title="The run is α-flocking (Definition 5)",
     source="Olfati-Saber 2006, Definition 5",
+    law=has_lattice,
+    on_motion=True,
     enclosed=enclosed_by("alpha_flocking", f"{__package__}.alpha_flocking_enclosed"),
     claims=("giant", "cohesive", "deviation", "mismatch"),
     leads={"giant": bridge},
@@ -148,6 +150,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     "alpha-flocking-strict",
     title="The run is strictly α-flocking (Definition 5)",
     source="Olfati-Saber 2006, Definition 5, strict form",
+    law=has_lattice,
+    on_motion=True,
     enclosed=enclosed_by("alpha_flocking_strict", f"{__package__}.alpha_flocking_enclosed"),
     claims=("flock", "deviation", "mismatch"),
     leads={"flock": bridge},

@@ -107,7 +107,8 @@ def stays_together(seen: Observed) -> Hypothesis:
     energy, apart = collisions.energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
     if energy.lo >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
-        return Hypothesis(name, "unmet", apart - float(energy.mid), detail, decided="enclosed")
+        room = apart - float(energy.mid)
+        return Hypothesis(name, "unmet", room, detail, decided="enclosed", remedy=collisions.LESS_ENERGY)
     parted, of = parting_energy(seen), "ψ_α(r_α)" if is_paper(seen) else "(ψ(r) - L)"
     what = "H" if is_paper(seen) else "E"
     for t, height in ((seen.t[0], energy), (seen.t[-1], collisions.energy_at_end(seen))):

@@ -228,8 +228,6 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: flo
 
 
 def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
-    if seen.law.lattice is None:
-        return [has_lattice(seen)], []
     d, r = seen.law.lattice
     return check(np.asarray(seen.given.q[-1]), d, r, tolerances, off=seen.accuracy_of_end)
 
@@ -256,5 +254,7 @@ on_last_state = run_theorem(
     title="Theorem 5 on the last state of a run",
     statement=f"Checked on the last state of a run. {_STATEMENT}",
     claims=CLAIMS,
+    law=has_lattice,
+    on_motion=True,
     **_SAME,
 )(_check_terminal)

@@ -58,7 +58,7 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:
         worst = float(slack[min(since, len(run.t)) - 1])
         detail = f"it fails until t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, by {-worst:.3g}"
-        return Hypothesis(name, "unmet", worst, detail, decided="enclosed"), len(run.t) - 1
+        return Hypothesis(name, "unmet", worst, detail, decided="enclosed", on_motion=True), len(run.t) - 1
     between = _least_slack(seen)
     doubtful = np.flatnonzero(between[since:] < 0.0)
     later = since if not doubtful.size else since + int(doubtful[-1]) + 1

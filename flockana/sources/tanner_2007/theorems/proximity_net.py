@@ -22,7 +22,8 @@ def _connected(seen: Observed) -> Hypothesis:
     if start and pairs.hi < run.n - 1:
         text = f"the energy of the start can put {pairs.mid:.3g} pairs out of range; to part takes {run.n - 1}"
         return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text, decided="enclosed")
-    return Hypothesis(name, "assumed", None, "connected at every sample; its energy does not guarantee more")
+    detail = "connected at every sample; its energy does not guarantee more"
+    return Hypothesis(name, "assumed", None, detail, on_motion=True)
 
 
 @run_theorem(

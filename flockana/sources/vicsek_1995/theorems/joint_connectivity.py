@@ -1,5 +1,6 @@
 """Jadbabaie, Lin and Morse: headings agree if the nets are jointly connected over window after window of time."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,7 @@ def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
     name = f"n - 1 = {n - 1} jointly connected windows in a row"
-    enough = condition(name, bool(found), detail=f"{len(found)} times in the run")
+    enough = replace(condition(name, bool(found), detail=f"{len(found)} times in the run"), on_motion=True)
     slowest = max((b.factor for b in found), default=float("nan"))
     first = (missed[0].start, missed[0].stop) if missed else None
     text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
