@@ -19,7 +19,7 @@ PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
 
 
-def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
+def dead_zone_law(run: Trajectory | Observed) -> DeadZoneFlocking | None:
     """Return the dead-zone law of a run, also of its semi-implicit Euler map; None under any other law."""
     law: Any = run.law.law if type(getattr(run.law, "solver", None)) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
@@ -28,7 +28,7 @@ def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
 
 def applied(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the dead-zone law is applied."""
-    return condition("the dead-zone law is applied", dead_zone_law(seen.run) is not None, detail=seen.law.title)
+    return condition("the dead-zone law is applied", dead_zone_law(seen) is not None, detail=seen.law.title)
 
 
 def hypotheses(seen: Observed) -> list[Hypothesis]:

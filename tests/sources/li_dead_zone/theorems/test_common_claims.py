@@ -108,9 +108,9 @@ def test_the_law_is_that_of_its_steps_and_no_other():
     assert case.dead_zone_law(made_up(STEPS, q)) is LAW
     assert case.dead_zone_law(made_up(DeadZoneFlocking(Other()), q)) is None
     assert case.dead_zone_law(made_up(Algorithm1(), q)) is None
-    assert [h.status for h in case.hypotheses(made_up(LAW, q))] == ["met", "met"]
-    assert case.hypotheses(made_up(LAW, q))[1].margin == 5.0
-    assert [h.status for h in case.hypotheses(made_up(Algorithm1(), 0.0 * q))] == ["unmet", "unmet"]
+    assert [case.applied(made_up(law, q)).status for law in (LAW, STEPS, Algorithm1())] == ["met", "met", "unmet"]
+    apart, together = (case.hypotheses(made_up(LAW, x))[0] for x in (q, 0.0 * q))
+    assert (apart.status, apart.margin, together.status) == ("met", 5.0, "unmet")
 
 
 @pytest.mark.parametrize("speed", [0.25, 3.0])
