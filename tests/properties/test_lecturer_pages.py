@@ -9,11 +9,13 @@ import flockana as fl
 from flockana.course import build, pages
 
 PAGES = {name.partition("/")[2]: content.decode() for name, content in build.lecturer_pages().items()}
+PATH, RING = ((0, 1), (1, 2)), ((0, 1), (1, 2), (2, 3), (3, 0))
 MAP = pages.course_map(build.lectures())
 
 
 def test_all_pages_are_delivered_with_solutions_and_to_graders_only(tmp_path):
-    assert set(PAGES) == {"syllabus.md", "notes.md", "exam.md", "exam_solutions.md"}
+    bank = {"exam_bank.md", "exam_bank_solutions.md", "project.md"}
+    assert set(PAGES) == {"syllabus.md", "notes.md", "exam.md", "exam_solutions.md"} | bank
     build.write(tmp_path / "solutions", "solutions")
     build.write(tmp_path / "student", "student")
     assert (tmp_path / "solutions" / "lecturer" / "exam_solutions.md").is_file()
@@ -51,6 +53,43 @@ def test_the_exam_has_60_points_and_its_parts_add_up():
     for part, points in zip(parts, stated, strict=True):
         given = [int(each) for each in re.findall(r"\((\d)\)(?=\n|$|\Z)", part)]
         assert not given or sum(given) == points
+
+
+def test_the_bank_has_forty_questions_over_all_lectures_each_with_its_answer():
+    posed, answered = (
+        re.findall(r"(?m)^\*\*(\d\d[a-z]?-\d)\.\*\*", PAGES[name])
+        for name in ("exam_bank.md", "exam_bank_solutions.md")
+    )
+    assert posed == answered
+    assert len(posed) == 40
+    assert {each.partition("-")[0] for each in posed} == {
+        each.number for each in MAP if not each.number.startswith("A")
+    }
+
+
+def test_the_banks_numbers():
+    """Those that a pocket calculator does not give at once, by the library or by closed forms of their own."""
+    said = PAGES["exam_bank_solutions.md"]
+    path, ring = (fl.laplacian(n, np.array(net)).toarray() for n, net in ((3, PATH), (4, RING)))
+    assert np.allclose(np.linalg.eigvalsh(path), [0.0, 1.0, 3.0], atol=1e-12)
+    assert np.linalg.eigvalsh(ring)[-1] == pytest.approx(4.0)
+    for number in (
+        np.pi / 8,
+        np.sqrt(8 / 3),
+        0.025 ** (1 / 30),
+        0.05 ** (1 / 30),
+        np.log(20),
+        1 / np.sqrt(10),
+        np.pi / 4,
+    ):
+        assert f"{number:.4g}" in said or f"{number:.3f}" in said
+    assert 0.99**299 < 0.05 < 0.99**298
+    assert len(fl.links(fl.lattice.hexagonal_patch(1, 1.0), 1.2)) == 12
+
+
+def test_the_rubric_has_twenty_points():
+    points = re.findall(r"(?m)^\|.*\| (\d) \|$", PAGES["project.md"])
+    assert sum(map(int, points)) == 20
 
 
 def test_the_exams_numbers():
