@@ -121,7 +121,7 @@ _ = figures.crossing_links(ax=ax)
 #    $\langle z_i, z_j\rangle = \tfrac12d^2$ for $i \ne j$.
 # 2. So the matrix of scalar products is $\tfrac12d^2(I + \mathbf 1\mathbf 1^\top)$. Its eigenvalues are
 #    $\tfrac12d^2$ and $\tfrac12d^2n$: it is regular.
-# 3. Vectors with a regular matrix of scalar products are linearly independent. But there are $n - 1 \ge m + 1$ of
+# 3. Vectors with an invertible matrix of scalar products are linearly independent. But there are $n - 1 \ge m + 1$ of
 #    them in $\mathbb R^m$. Contradiction. $\square$
 #
 # **The sharp count.** $3n - 6$ is never reached by an α-lattice: the outer face is large. Harborth (1974) proved the
