@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from flockana.base.checks import ensure_seed
 from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
@@ -53,7 +54,7 @@ def write_report(
     >>> write_report(flock, tempfile.mkdtemp(), theorems=["energy"]).name
     'index.html'
     """
-    started = time.perf_counter()
+    started, seed = time.perf_counter(), ensure_seed(seed)
     page = own_page(subject, theorems=theorems, seed=seed)
     return build.write_report([page], directory, seed=seed, seconds=time.perf_counter() - started, of=page.name)
 
@@ -62,6 +63,7 @@ def own_page(
     subject: Any, *, theorems: Sequence[str | Theorem] = (), seed: int = 0, figures: bool = True
 ) -> ScenarioPage:
     """Return the page of a flock, a scenario or a run."""
+    theorems = _ensure_theorems(theorems)
     if isinstance(subject, Trajectory):
         span, run = (float(subject.t[0]), float(subject.t[-1])), subject
         item = Scenario("run", "A run", "A run of the user's own.", run.law, run.q[0], run.p[0], span)
@@ -77,6 +79,17 @@ def own_page(
     verdicts = item.verify(run) if catalogued else _judge(item.name, run, theorems)
     own = {each.id: each for each in theorems if isinstance(each, Theorem)}
     return scenario_page(item, run, verdicts, figures=figures, own=own)
+
+
+def _ensure_theorems(theorems: Any) -> tuple[str | Theorem, ...]:
+    """Return theorems as a tuple; raise unless they are names or theorems."""
+    given = (theorems,) if isinstance(theorems, (str, Theorem)) else theorems
+    if not isinstance(given, Sequence) or not all(isinstance(each, (str, Theorem)) for each in given):
+        got = format_value(theorems)
+        raise ArgumentError(
+            f"theorems = {got}: expected a list of names or own claims, such as ['os-1', fl.claim(...)]"
+        )
+    return tuple(given)
 
 
 def _judge(name: str, run: Trajectory, theorems: Sequence[str | Theorem]) -> tuple[Verdict, ...]:

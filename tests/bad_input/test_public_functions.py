@@ -27,6 +27,7 @@ def usual(tmp_path_factory):
     folder = tmp_path_factory.mktemp("out")
     run = fl.simulate(law, q, p, (0.0, 0.1))
     shared = {"law": law, "t_span": (0.0, 0.1), "path": folder / "it", "folder": folder / "them", "name": "hexagon"}
+    shared |= {"directory": folder / "page"}
     rest = fl.find_equilibrium(law, q)
     shared |= {"d": 7.0, "r": 8.4, "n": 2, "pairs": [[0, 1]], "nets": [[[0, 1]]], "x": q, "successes": 1, "trials": 2}
     shared |= {"item": law, "equilibrium": rest, "linearisation": fl.linearise(law, rest)}
