@@ -32,3 +32,5 @@ def test_a_run_is_judged_as_it_is(tmp_path):
 def test_what_is_no_flock_is_refused(tmp_path):
     with pytest.raises(ArgumentError, match="subject = 'flock': expected a Flock, a Scenario or a run"):
         fl.write_report("flock", tmp_path)
+    with pytest.raises(ArgumentError, match="theorems = 3: expected a list of names or own claims"):
+        fl.write_report(FLOCK, tmp_path, theorems=3)
