@@ -3,14 +3,14 @@
 from math import sqrt
 
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
-from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
+from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem
 
 _NAMES = ("bounded", "rate", "flock")
 
 
 def _checked(seen: Observed, stretch: float) -> Checked:
-    guarantee = Guarantee(seen, stretch)
+    guarantee = guarantee_of(seen, stretch)
     return guarantee.claims([guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")], limit="flock")
 
 

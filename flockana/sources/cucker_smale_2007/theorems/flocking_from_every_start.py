@@ -3,7 +3,7 @@
 from math import sqrt
 
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
-from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
+from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem
 
 
@@ -23,4 +23,4 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     it (ha-liu).
     """
     beta = seen.law.weight.decay
-    return Guarantee(seen, sqrt(2.0)).claims([condition("β <= ½", beta <= 0.5, 0.5 - beta, f"β = {beta:g}")])
+    return guarantee_of(seen, sqrt(2.0)).claims([condition("β <= ½", beta <= 0.5, 0.5 - beta, f"β = {beta:g}")])

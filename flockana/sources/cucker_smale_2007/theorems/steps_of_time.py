@@ -4,7 +4,7 @@ from math import sqrt
 
 from flockana.solvers.fixed_steps import FixedSteps
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
-from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import Guarantee
+from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
 from flockana.theorems.hypotheses import condition, positive_room
 from flockana.theorems.toolkit import Checked, Enclosure, Hypothesis, Observed, Tolerances, run_theorem
 
@@ -34,7 +34,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     at all steps and ‖v‖ <= ‖v(0)‖ (1 - hφ(x_M))^k <= ‖v(0)‖ exp(-φ(x_M) t). In our words, after the discrete-time
     theorem of Cucker and Smale, who bound the step too.
     """
-    guarantee = Guarantee(seen, sqrt(2.0))
+    guarantee = guarantee_of(seen, sqrt(2.0))
     most = seen.law.dt * guarantee.phi.strength  # at most 1, no step reverses a relative velocity
     room = 1.0 + 2.0 * _ROUNDING - Enclosure.around(most, _ROUNDING * most)
     short = positive_room("h λ <= 1", room, f"h λ = {most:.6g}")

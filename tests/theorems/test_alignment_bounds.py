@@ -9,7 +9,8 @@ import pytest
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.measures.metrics import spreads
-from flockana.sources.cucker_smale_2007.theorems.alignment_bounds import QUADRATURE, AlignmentRate, Guarantee
+from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
+from flockana.theorems.alignment_bounds import QUADRATURE, AlignmentRate
 from flockana.theorems.observed import Observed
 
 
@@ -87,7 +88,7 @@ def test_how_exactly_a_fall_is_known_far_from_rest():
     phi, x0 = AlignmentRate(law.weight, 2.0, sqrt(2.0)), np.sqrt(2.0 * spreads(run.q)[0])
     x_m = phi.reached(x0, v0)
     rate = phi(x_m)
-    claim = Guarantee(Observed.alone(run), sqrt(2.0)).claims([])[1][1]
+    claim = guarantee_of(Observed.alone(run), sqrt(2.0)).claims([])[1][1]
     assert claim.computed == pytest.approx(np.log(v0 / v) / 2.0, rel=1e-9)
     assert claim.margin == pytest.approx(np.log(v0 / v) / (2.0 * rate) - 1.0, rel=1e-6)
     x_blur, v_blur = (sqrt(2.0) * (2 + 4) * np.finfo(float).eps * np.abs(z).max() for z in (run.q, run.p))

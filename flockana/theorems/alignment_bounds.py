@@ -1,4 +1,4 @@
-"""What the Lyapunov functional ‖v‖ + ∫φ of Ha and Liu bounds: integrals of the weight, and claims on a run.
+"""What a functional |v| + ∫φ of the spreads x and v bounds: integrals of the weight, and claims on a run.
 
 With y = c s/ℓ and y = sinh w the integral of φ(s) = λ (1 + (c s/ℓ)²)^−β is λℓ/c times that of (cosh w)^(1 − 2β), which
 is as smooth at all distances.
@@ -12,10 +12,8 @@ import numpy as np
 
 from flockana.interactions.weights import RationalWeight
 from flockana.theorems.claims import judged, undecided
-from flockana.theorems.sampling import spread_over
 from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Observed, limit_claim, positive_room, unmet
 
-_PROOF = "cucker-smale"
 QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
 _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
@@ -91,33 +89,32 @@ class AlignmentRate:
 
 @dataclass(frozen=True, eq=False)
 class Guarantee:
-    """What the functional guarantees of a run of the law: ‖x‖ <= x_M and ‖v‖ <= ‖v(0)‖ e^(−φ(x_M) t)."""
+    """What the functional guarantees of a run of a law of alignment: x <= x_M and v <= v(0) e^(−φ(x_M) t)."""
 
-    seen: Observed  # A run of `CuckerSmale`, or of steps of it
-    stretch: float  # c of φ
-
-    @cached_property
-    def phi(self) -> AlignmentRate:
-        """φ, with λ = K where sums are divided by n and λ = nK where they are not."""
-        law = self.seen.law.continuous
-        return AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
+    seen: Observed
+    phi: AlignmentRate
+    x: Enclosure  # Spread of the positions at the samples
+    over: Enclosure  # The largest x of the run, between samples too
+    v: Enclosure  # Spread of the velocities at the samples
+    proof: str
+    names: tuple[str, str] = ("‖x{}‖", "‖v{}‖")  # with room for a time
 
     @cached_property
     def integral_to_infinity(self) -> Enclosure:
-        """∫φ from ‖x(0)‖ to infinity."""
-        return self.phi.beyond_enclosed(self.seen.spread[0])
+        """∫φ from x(0) to infinity."""
+        return self.phi.beyond_enclosed(self.x[0])
 
     @cached_property
     def bound(self) -> Enclosure:
         """Bound x_M of the position spread."""
-        return self.phi.reached_by(self.seen.spread[0], self.seen.velocity_spread[0])
+        return self.phi.reached_by(self.x[0], self.v[0])
 
     def hypothesis(self, name: str) -> Hypothesis:
-        """Hypothesis ‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
-        v0 = self.seen.velocity_spread[0]
+        """Hypothesis v(0) < ∫φ from x(0) on, which always holds for β <= ½."""
+        v0 = self.v[0]
         if self.integral_to_infinity.lo == inf:
             return Hypothesis(name, "met", 1.0, f"β = {self.phi.weight.decay:g}: the integral is infinite")
-        detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
+        detail = f"{self.names[1].format('(0)')} = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
         remedy = "start with velocities that differ less, or nearer together"
         return positive_room(name, self.integral_to_infinity - v0, detail, remedy=remedy)
 
@@ -128,40 +125,46 @@ class Guarantee:
         return needs, [self._bounded(needs), self._falls(needs), self._limit(limit, needs)]
 
     def _bounded(self, needs: list[Hypothesis]) -> Claim:
-        x, x_m = spread_over(self.seen).max(), self.bound
+        x, x_m, name = self.over, self.bound, self.names[0].format("")
         known = x_m.mid > 0.0 and x_m.mid < inf
-        k = int(self.seen.spread.mid.argmax())
-        return judged("bounded", 1.0 - x / x_m if known else Enclosure.around(0.0, inf), needs, proof=_PROOF).described(
+        k = int(self.x.mid.argmax())
+        margin = 1.0 - x / x_m if known else Enclosure.around(0.0, inf)
+        return judged("bounded", margin, needs, proof=self.proof).described(
             computed=float(x.mid),
-            stated=f"‖x(t)‖ <= x_M = {x_m.mid:.6g}",
+            stated=f"{self.names[0].format('(t)')} <= x_M = {x_m.mid:.6g}",
             witness={"time": float(self.seen.t[k])},
-            detail=f"‖x‖ is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
+            detail=f"{name} is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
         )
 
     def _falls(self, needs: list[Hypothesis]) -> Claim:
-        """Return the claim that ‖v‖ falls at the guaranteed rate up to each sample at which it exceeds its error."""
-        seen, v, rate = self.seen, self.seen.velocity_spread, self.bound.falling(np.vectorize(self.phi))
+        """Return the claim that v falls at the guaranteed rate up to each sample at which it exceeds its error."""
+        seen, v, name, rate = self.seen, self.v, self.names[1], self.bound.falling(np.vectorize(self.phi))
         count = seen.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:
-            return undecided("rate", "no fall above the error of the run", needs, proof=_PROOF)
+            return undecided("rate", "no fall above the error of the run", needs, proof=self.proof)
         t = seen.t[1:count] - seen.t[0]
         fall = (v[0] / v[1:count]).log() / t
         margin = fall / rate - 1.0
         k = margin.worst_index
-        return judged("rate", margin, needs, proof=_PROOF).described(
+        return judged("rate", margin, needs, proof=self.proof).described(
             computed=float(fall.mid[k]),
-            stated=f"‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
+            stated=f"{name.format('(t)')} <= {name.format('(0)')} exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
             witness={"time": float(t[k] + seen.t[0])},
-            detail=f"from the start to any sample ‖v‖ falls at a mean rate of {fall.mid[k]:.6g} at least, "
+            detail=f"from the start to any sample {name.format('')} falls at a mean rate of {fall.mid[k]:.6g} at least, "
             f"{seen.until(count)}",
         )
 
-    def _limit(self, name: str, needs: list[Hypothesis]) -> Claim:
-        v, x_m = self.seen.velocity_spread.mid, float(self.bound.mid)
-        text = f"‖x‖ never exceeds {x_m:.6g}, so ‖v‖ falls exponentially" if x_m < inf else "x_M cannot be computed"
-        return limit_claim(name, needs, proof=_PROOF).described(
+    def _limit(self, what: str, needs: list[Hypothesis]) -> Claim:
+        v, x_m = self.v.mid, float(self.bound.mid)
+        x_name, name = (each.format("") for each in self.names)
+        text = (
+            f"{x_name} never exceeds {x_m:.6g}, so {name} falls exponentially"
+            if x_m < inf
+            else "x_M cannot be computed"
+        )
+        return limit_claim(what, needs, proof=self.proof).described(
             computed=float(v[-1]),
-            stated="‖v(t)‖ -> 0, and every q_j - q_i has a limit",
+            stated=f"{self.names[1].format('(t)')} -> 0, and every q_j - q_i has a limit",
             witness={"time": float(self.seen.t[-1])},
-            detail=f"‖v‖ goes from {v[0]:.4g} to {v[-1]:.4g} at t = {self.seen.t[-1]:g}; {text}",
+            detail=f"{name} goes from {v[0]:.4g} to {v[-1]:.4g} at t = {self.seen.t[-1]:g}; {text}",
         )

@@ -1,0 +1,14 @@
+"""The functional ‖v‖ + ∫φ of Ha and Liu on a run of the Cucker-Smale law, or of steps of it."""
+
+from flockana.theorems.alignment_bounds import AlignmentRate, Guarantee
+from flockana.theorems.sampling import spread_over
+from flockana.theorems.toolkit import Observed
+
+PROOF = "cucker-smale"
+
+
+def guarantee_of(seen: Observed, stretch: float) -> Guarantee:
+    """Return what the functional guarantees: λ = K in φ where sums are divided by n, and nK where they are not."""
+    law = seen.law.continuous
+    phi = AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else seen.n), stretch)
+    return Guarantee(seen, phi, seen.spread, spread_over(seen).max(), seen.velocity_spread, PROOF)
