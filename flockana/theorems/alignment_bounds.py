@@ -150,8 +150,8 @@ class Guarantee:
             computed=float(fall.mid[k]),
             stated=f"{name.format('(t)')} <= {name.format('(0)')} exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
             witness={"time": float(t[k] + seen.t[0])},
-            detail=f"from the start to any sample {name.format('')} falls at a mean rate of {fall.mid[k]:.6g} at least, "
-            f"{seen.until(count)}",
+            detail=f"from the start to any sample {self.names[1].format('')} falls at a mean rate of {fall.mid[k]:.6g} "
+            f"at least, {seen.until(count)}",
         )
 
     def _limit(self, what: str, needs: list[Hypothesis]) -> Claim:

@@ -11,7 +11,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import Algorithm3, CuckerSmale, MinimalFlocking, RationalWeight, Sphere, compose, simulate, verify
+from flockana import (
+    Algorithm3,
+    CuckerSmale,
+    MinimalFlocking,
+    MotschTadmor,
+    RationalWeight,
+    Sphere,
+    compose,
+    simulate,
+    verify,
+)
 from flockana.environment.targets import CircleTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -38,6 +48,7 @@ RUNS = {
     "three": lambda: (Algorithm2(target=HERE), [*APART, [15.0, 0.0]], [*ALONG, [0.0, 0.0]]),
     "alignment": lambda: (CuckerSmale(RationalWeight(decay=0.4)), NEAR, SLOW),
     "alignment of two": lambda: (CuckerSmale(), [[0.0], [1.0]], [[0.0], [0.1]]),
+    "own sums": lambda: (MotschTadmor(RationalWeight(decay=0.4)), NEAR, SLOW),
     "links": lambda: (LinkKeeping(((0, 1),), r=2.0), NEAR, SLOW),
     "tree": lambda: (MinimalFlocking(edges=((0, 1),), normalised=True), NEAR, SLOW),
 }
@@ -102,7 +113,9 @@ PLANTED = [
     ("energy", "balance", "algorithm 1", lifted), ("energy", "balance", "algorithm 2", lifted),
     ("energy", "balance", "algorithm 3", lifted), ("ha-liu", "bounded", "alignment", away),
     ("ha-liu", "rate", "alignment", hurried), ("ha-liu-sharp", "bounded", "alignment", away),
-    ("ha-liu-sharp", "rate", "alignment", hurried), ("links-kept", "balance", "links", lifted),
+    ("ha-liu-sharp", "rate", "alignment", hurried), ("motsch-tadmor", "bounded", "own sums", away),
+    ("motsch-tadmor", "rate", "own sums", hurried), ("motsch-tadmor-sharp", "bounded", "own sums", away),
+    ("motsch-tadmor-sharp", "rate", "own sums", hurried), ("links-kept", "balance", "links", lifted),
     ("links-kept", "links", "links", stretched), ("os-1", "iii", "algorithm 1", crossed),
     ("os-1", "iii-barrier", "algorithm 1", crossed), ("os-3", "i", "algorithm 2", away),
     ("os-3", "iv-none", "algorithm 2", crossed), ("su-informed", "distance", "informed", away),
