@@ -18,6 +18,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.stability.components import strong_components
 
 _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
+_APART = 1e-3  # from which share on the two parts of a complex eigenvector span a plane
 
 
 def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, FloatArray]:
@@ -72,7 +73,18 @@ def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Co
     with np.errstate(divide="ignore"):
         alone = tight * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
     elsner = (2.0 * size) ** (1.0 - 1.0 / len(values)) * (tight * size) ** (1.0 / len(values))
+    _take_apart(values, right, _ROUNDINGS * EPS * size)
     return values, units[:, None] * right, np.minimum(np.minimum(alone, elsner), _together(values, size, tight))
+
+
+def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) -> None:
+    """Write conjugate pairs that only rounding lifts off the real axis as the two real eigenvalues that they are."""
+    # The two of a defective pair (critical damping) come out further apart, or share one direction: these stay a pair.
+    for k in np.flatnonzero((values.imag > 0.0) & (values.imag <= rounding)).tolist():
+        turned = vectors[:, k] * np.exp(-0.5j * np.angle(np.sum(vectors[:, k] ** 2)))  # real part across the imaginary
+        if np.linalg.norm(turned.imag) > _APART * np.linalg.norm(turned.real):
+            for j, part in ((k, turned.real), (k + 1, turned.imag)):
+                values[j], vectors[:, j] = values[k].real, part / np.linalg.norm(part)
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:

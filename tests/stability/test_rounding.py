@@ -48,6 +48,17 @@ def test_undamped_swings_have_no_rate_beyond_their_error(seed, stretch):
     assert errors.max() < 1e-6 * omega.max()  # and yet a damping of a millionth is seen
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_eigenvalues_that_are_equal_and_real_come_out_real_one_by_one(seed):
+    """As a conjugate pair, which rounding makes of them on some processors, two modes would be one."""
+    matrix = similar(np.diag([1.0, 1.0, 1.0, 1.0, -3.0, -3.0]), seed)
+    values, vectors, errors = eigen(matrix)
+    assert not values.imag.any()
+    assert np.sort(values.real) == pytest.approx([-3.0, -3.0, 1.0, 1.0, 1.0, 1.0], abs=1e-13)
+    assert np.linalg.norm(matrix @ vectors - vectors * values, axis=0).max() < 1e-12
+    assert np.linalg.matrix_rank(vectors, tol=1e-3) == 6
+
+
 @pytest.mark.parametrize("size", [2, 3, 4, 5])
 def test_coalesced_roots_move_as_roots_and_the_error_says_so(size):
     """A Jordan block of −1: computed values lie on a circle of radius (rounding)^(1/size)."""
