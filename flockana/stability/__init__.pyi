@@ -30,6 +30,7 @@ from .modes import Mode as Mode
 from .motion import mode_motion as mode_motion
 from .nets import passivity as passivity
 from .nets import string_gains as string_gains
+from .nets import string_stability as string_stability
 from .nets import transient_growth as transient_growth
 from .norms import disturbance_system as disturbance_system
 from .norms import h2_norm as h2_norm

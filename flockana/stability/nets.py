@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import log
+from itertools import pairwise
+from math import log, nan
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from flockana.stability.norms import Balanced, largest_gain
 
 _TOLERANCE = 1e-9  # relative, of a norm
 _TIMES = 400  # at which growth is looked at
+_ALIKE = 1e-9  # relative, of the K and D of followers
 _SETTLED = 20.0  # time constants of the slowest mode, and two for each state of a chain: the last time
 
 
@@ -94,6 +97,106 @@ def string_gains(flock: Linearisation, first: int = 0) -> StringGains:
         seen = system._replace(c=np.eye(2 * size)[place * m : (place + 1) * m])
         gains[agent], peaks[agent] = largest_gain(seen, _TOLERANCE)
     return StringGains(first, gains, peaks * unit)
+
+
+@dataclass(frozen=True, eq=False)
+class StringStability:
+    """How a disturbance of the first agent of a chain arrives at the last, over chains of growing length.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Numbers of agents.
+    gains, peaks : ndarray, shape (len(sizes),)
+        Largest |q_last/q_first| of each chain, and at which angular frequency.
+    link : float
+        Largest gain from each agent to the next, where all hear only the one before and answer alike; else NaN.
+    """
+
+    sizes: tuple[int, ...]
+    gains: FloatArray
+    peaks: FloatArray
+    link: float
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether no disturbance grows along a chain of any length; None where sizes alone do not decide it."""
+        return None if np.isnan(self.link) else bool(self.link <= 1.0 + 10.0 * _TOLERANCE)
+
+    @property
+    def why(self) -> str:
+        """What decides, in a sentence with its numbers."""
+        gains = ", ".join(f"{gain:.4g}" for gain in self.gains.tolist())
+        if self.stable is None:
+            trend = "grow" if (np.diff(self.gains) > _TOLERANCE).all() else "do not all grow"
+            why = "measured only, as agents do not all hear the one before alone and alike"
+            return f"{why}: gains {gains} of n = {self.sizes} {trend}"
+        follows = "so no chain amplifies" if self.stable else f"so n agents by its power n − 1: {gains}"
+        return f"each agent answers the one before with at most {self.link:.4g} times its motion, {follows}"
+
+
+@check_kinds
+def string_stability(chain: Callable[[int], Linearisation], sizes: Sequence[int] = (3, 5, 9, 17)) -> StringStability:
+    """Return whether what disturbs the first agent of a chain grows along it, from chains of several lengths.
+
+    Where each agent hears the one before alone, with equal K and D, the gain over k links is at most the k-th power of
+    that over one, and reaches it where K and D have common axes: one link decides chains of every length. Other chains
+    (both neighbours, the leader) are measured.
+
+    Parameters
+    ----------
+    chain : callable
+        The linearised chain of n agents, n at its argument, the first at index 0.
+    sizes : sequence of int
+        Numbers of agents, each at least 2, rising.
+
+    Raises
+    ------
+    ArgumentError
+        On other sizes, a chain with another number of agents, or one that is not stable while its first is held.
+
+    Examples
+    --------
+    >>> from flockana import MinimalFlocking, linearise
+    >>> def row(n):
+    ...     edges = tuple((k, k + 1) for k in range(n - 1))
+    ...     return linearise(MinimalFlocking(edges=edges, spacing=1.0, radius=2.0 * n), [[float(k)] for k in range(n)])
+    >>> result = string_stability(row, (2, 3, 4))
+    >>> result.stable, result.gains.round(4).tolist()
+    (False, [1.4679, 2.1547, 3.1629])
+    """
+    counts = tuple(ensure_count("a number of agents", n) for n in sizes)
+    if not counts or any(b <= a for a, b in pairwise((1, *counts))):
+        raise ArgumentError(f"sizes = {tuple(sizes)}: expected rising numbers of agents, from 2 on")
+    flocks = [chain(n) for n in counts]
+    for n, flock in zip(counts, flocks, strict=True):
+        if len(flock.q) != n:
+            raise ArgumentError(f"chain({n}) has {len(flock.q)} agents: expected {n}")
+    found = [string_gains(flock) for flock in flocks]
+    link = _link_gain(flocks[-1], float(found[-1].gains[1]))
+    return StringStability(
+        counts, np.array([one.gains[-1] for one in found]), np.array([one.peaks[-1] for one in found]), link
+    )
+
+
+def _link_gain(flock: Linearisation, gain: float) -> float:
+    """Return the gain that decides chains of every length, or NaN where the chain is of another form."""
+    n, m = flock.q.shape
+    parts = []
+    for matrix in (flock.stiffness.toarray(), flock.damping.toarray()):
+        blocks = matrix.reshape(n, m, n, m).transpose(0, 2, 1, 3)
+        expected = np.zeros_like(blocks)
+        expected[0] = blocks[0]  # it is moved, whatever it hears
+        expected[np.arange(1, n), np.arange(1, n)] = blocks[1, 1]
+        expected[np.arange(1, n), np.arange(n - 1)] = blocks[1, 0]
+        if np.abs(blocks - expected).max() > _ALIKE * np.abs(blocks).max():
+            return nan
+        parts += [blocks[1, 1], blocks[1, 0]]
+    if gain <= 1.0 + 10.0 * _TOLERANCE:
+        return gain  # no product of such answers is larger
+    # in one common eigenbasis the largest gain is that of one direction, and of its powers too
+    apart = max(float(np.abs(a @ b.T - b.T @ a).max()) for a in parts for b in parts)
+    return gain if apart <= _ALIKE * max(float(np.abs(a).max()) for a in parts) ** 2 else nan
 
 
 @dataclass(frozen=True)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_known, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from flockana.stability.delay import late_part
 from flockana.stability.linearisation import Linearisation
 
-LOST, ON_LOSS = ("all", "agent"), ("zero", "hold")
+LOST, ON_LOSS = ("all", "agent", "link"), ("zero", "hold")
 MOST = 40  # states: E[A ⊗ A] has as many rows as their square
 _DENSE = 12  # states up to which it is formed
 _LEVELS = 40  # losses at which growth is looked for
+_UNHELD = 1e-6  # relative: what a link's force may do along motions that cost nothing
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class _Step(NamedTuple):
 def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
     """Return the largest packet loss that a flock bears in mean square, sampled with a period.
 
-    Losses are independent from sample to sample, and from agent to agent if these lose their inputs one by one.
+    Losses are independent from sample to sample, and from agent to agent or link to link where these are lost singly.
 
     Parameters
     ----------
@@ -71,15 +73,16 @@ def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_
         From `linearise`, of at most 40 states.
     period : float
         Sampling period.
-    lost : {"agent", "all"}
-        What is lost at once: one agent's input, or those of all.
+    lost : {"agent", "all", "link"}
+        What is lost at once: one agent's input, those of all, or what one agent hears of one other (its place and
+        velocity relative to its own).
     on_loss : {"zero", "hold"}
         What acts instead: nothing, or the last input that was received.
 
     Raises
     ------
     ArgumentError
-        On a flock with more states, or what is no such choice.
+        On a flock with more states, a link that carries a force at the equilibrium, or what is no such choice.
 
     Examples
     --------
@@ -111,20 +114,46 @@ def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_
 
 
 def _step(flock: Linearisation, period: float, lost: str, on_loss: str) -> _Step:
-    """Return the steps of the flock off its neutral motions; with held inputs these are states too."""
+    """Return the steps of the flock off its neutral motions; inputs that are held are states too."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     size, basis, pace = n * m, off.basis, off.pace
-    states = basis.shape[1] + (size if on_loss == "hold" else 0)
-    if states > MOST:
-        raise ArgumentError(f"the flock has {states} states: expected at most {MOST}; take fewer agents")
     one = np.eye(size)
     free = basis.T @ np.block([[one, pace * period * one], [0.0 * one, one]]) @ basis
     push = basis.T @ np.vstack([0.5 * pace * period**2 * one, period * one])
-    groups = [range(size)] if lost == "all" else [range(k * m, (k + 1) * m) for k in range(n)]
-    picks = [np.diag([float(k in group) for k in range(size)]) for group in groups]
+    if lost == "link":
+        channels = _links(flock)
+        free = free + push @ (off.force - sum((force for _, force in channels), np.zeros_like(off.force)))
+    else:
+        groups = np.arange(size).reshape(1 if lost == "all" else n, -1)
+        channels = [(rows, one[:, rows] @ off.force[rows]) for rows in groups]
+    states = len(free) + (sum(rows.size for rows, _ in channels) if on_loss == "hold" else 0)
+    if states > MOST:
+        raise ArgumentError(f"the flock has {states} states: expected at most {MOST}; take fewer agents")
     if on_loss == "zero":
-        return _Step(free, tuple(push @ pick @ off.force for pick in picks))
-    zero = np.zeros((size, len(free)))
-    kept = np.block([[free, push], [zero, one]])
-    new = (np.vstack([push, one]) @ pick @ np.hstack([off.force, -one]) for pick in picks)
+        return _Step(free, tuple(push @ force for _, force in channels))
+    acts = np.hstack([push[:, rows] for rows, _ in channels] or [np.zeros((len(free), 0))])
+    held = np.eye(acts.shape[1])
+    kept, new, first = np.block([[free, acts], [np.zeros((len(held), len(free))), held]]), [], 0
+    for rows, force in channels:
+        own = held[:, first : first + rows.size]
+        new.append(np.vstack([push[:, rows], own]) @ np.hstack([force[rows], -own.T]))
+        first += rows.size
     return _Step(kept, tuple(new))
+
+
+def _links(flock: Linearisation) -> list[tuple[Any, FloatArray]]:
+    """Return for each directed link the rows of the agent that hears, and what it is pushed by off neutral motions."""
+    off, (n, m) = flock.second_order.quotient, flock.q.shape
+    k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []
+    heard = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)
+    for i, j in np.argwhere(heard).tolist():
+        parts = (late_part(matrix, m, "pairs", [(i, j)]) for matrix in (k, d))
+        whole = -np.hstack(list(parts)) / np.repeat([off.pace, 1.0], n * m)
+        force = whole @ off.basis
+        if np.abs(whole - force @ off.basis.T).max() > _UNHELD * np.abs(whole).max():
+            raise ArgumentError(
+                f"the link from agent {j} to {i} carries a force at this equilibrium: without it the flock moves away, "
+                'which no linear step tells; expected links at rest, or lost="agent" or "all"'
+            )
+        channels.append((np.arange(i * m, (i + 1) * m), force))
+    return channels

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from flockana.stability.controllability import Controllability
     from flockana.stability.delay import DelayMargin
+    from flockana.stability.nets import Passivity, StringGains, TransientGrowth
+    from flockana.stability.packet_loss import LossMargin
     from flockana.stability.robustness import RobustnessMargins
     from flockana.stability.sampling import SamplingMargin
 
@@ -105,6 +107,44 @@ class Studies:
         from flockana.stability.robustness import robustness_margins
 
         return robustness_margins(self.law, self)
+
+    def loss_margin(self: Any, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
+        """Return the largest packet loss borne in mean square: see `flockana.stability.loss_margin`.
+
+        Parameters
+        ----------
+        period : float
+            Sampling period.
+        lost, on_loss : str
+            What is lost at once, and what acts instead.
+        """
+        from flockana.stability.packet_loss import loss_margin
+
+        return loss_margin(self, period, lost=lost, on_loss=on_loss)
+
+    def string_gains(self: Any, first: int = 0) -> StringGains:
+        """Return the H∞ norms from the motion of one agent to the others': see `flockana.stability.string_gains`.
+
+        Parameters
+        ----------
+        first : int
+            The agent that is moved.
+        """
+        from flockana.stability.nets import string_gains
+
+        return string_gains(self, first)
+
+    def transient_growth(self: Any) -> TransientGrowth:
+        """Return how much a perturbation may grow before it decays: see `flockana.stability.transient_growth`."""
+        from flockana.stability.nets import transient_growth
+
+        return transient_growth(self)
+
+    def passivity(self: Any) -> Passivity:
+        """Return whether forces on all agents only put energy in: see `flockana.stability.passivity`."""
+        from flockana.stability.nets import passivity
+
+        return passivity(self)
 
     def norms(self: Any) -> ShapeNorms:
         """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out."""

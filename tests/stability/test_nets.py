@@ -1,5 +1,7 @@
 """Disturbances along chains, growth before decay and passivity: closed forms of equal followers, and a fine grid."""
 
+from math import sqrt
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -9,7 +11,7 @@ from flockana import Algorithm1, Algorithm2, MinimalFlocking, StaticTarget, find
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.nets import passivity, string_gains, transient_growth
+from flockana.stability.nets import passivity, string_gains, string_stability, transient_growth
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))
 
@@ -42,6 +44,51 @@ def test_followers_with_a_drag_of_their_own_pass_on_less():
     np.testing.assert_allclose(found.gains, 1.0, rtol=1e-8)
     assert not found.amplifies
     np.testing.assert_array_equal(found.peaks, 0.0)
+
+
+def chain_of(k, d, drag=0.0, back=0.0):
+    """Chains of n agents on a line: each hears the one before, and the one behind with a share of the weight."""
+
+    def build(n):
+        heard = np.eye(n) - np.eye(n, k=-1) + back * (np.diag([1.0] * (n - 1) + [0.0]) - np.eye(n, k=1))
+        heard[0, 0] -= 1.0
+        return net(k * heard, d * heard + drag * np.eye(n))
+
+    return build
+
+
+def test_one_link_decides_chains_of_every_length():
+    """k/(s² + drag s + k) exceeds 1 iff drag² < 2 k: its peak is k/(drag √(k − drag²/4))."""
+    for drag in (1.0, 1.4, 1.5):
+        found = string_stability(chain_of(1.0, 0.0, drag), (2, 4, 7))
+        peak = 1.0 / (drag * sqrt(1.0 - drag**2 / 4.0)) if drag**2 < 2.0 else 1.0
+        assert found.link == pytest.approx(peak, rel=1e-8)
+        assert found.stable is (drag**2 > 2.0)
+        np.testing.assert_allclose(found.gains, peak ** np.array([1, 3, 6]), rtol=1e-6)
+    assert "no chain amplifies" in found.why
+
+
+def test_chains_of_other_forms_are_measured_and_say_so():
+    both = string_stability(chain_of(1.0, 1.0, back=0.5), (3, 6))
+    assert both.stable is None
+    assert both.why.startswith("measured only")
+    twisted = np.array([[2.0, 6.0], [0.0, 2.0]])  # two axes: an answer above 1 whose powers fall
+
+    def plane(n):
+        k = np.kron(np.eye(n), 4.0 * np.eye(2)) - np.kron(np.eye(n, k=-1), twisted)
+        a = np.block([[np.zeros((2 * n, 2 * n)), np.eye(2 * n)], [-k, -8.0 * np.eye(2 * n)]])
+        places = np.arange(2.0 * n).reshape(n, 2)
+        return Linearisation(LAW, places, 0.0 * places, 0.0, 0.0, np.zeros((0, 2), dtype=np.int32), csr_array(a), 1e-12)
+
+    found = string_stability(plane, (2, 12))
+    assert found.gains[0] == pytest.approx(np.linalg.norm(twisted / 4.0, 2), rel=1e-6)
+    assert found.gains[0] > 1.0 > found.gains[1]
+    assert found.stable is None
+    assert string_stability(chain_of(1.0, 1.0), (2, 3)).stable is False
+    with pytest.raises(ArgumentError, match=r"sizes = \(1, 3\): expected rising numbers of agents, from 2 on"):
+        string_stability(chain_of(1.0, 1.0), (1, 3))
+    with pytest.raises(ArgumentError, match=r"chain\(3\) has 4 agents: expected 3"):
+        string_stability(lambda n: net(np.eye(4), np.eye(4)), (3,))
 
 
 def test_a_follower_that_nothing_holds_is_refused():

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from flockana import Algorithm2, StaticTarget
+from flockana import Algorithm2, StaticTarget, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
+from flockana.lattice import hexagonal_patch
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.packet_loss import _step, loss_margin
 
@@ -40,13 +41,14 @@ def test_the_margin_is_where_the_mean_of_both_patterns_has_radius_one():
     assert found.loss == 1.0 or radius(1.001 * found.loss) > 1.0
 
 
-@pytest.mark.parametrize("lost", ["all", "agent"])
+@pytest.mark.parametrize("lost", ["all", "agent", "link"])
 @pytest.mark.parametrize("on_loss", ["zero", "hold"])
 def test_the_expectation_is_that_of_all_patterns_of_losses(lost, on_loss):
     """Of two agents: the mean of A ⊗ A over the patterns, with their probabilities."""
     flock, p = net([[2.0, -1.0], [-0.5, 1.0]], [[1.5, -0.5], [0.0, 1.0]]), 0.3
     step = _step(flock, 0.4, lost, on_loss)
     patterns = [(0,), (1,)] if lost == "all" else [(a, b) for a in (0, 1) for b in (0, 1)]
+    assert len(step.heard) == len(patterns[0])
     total = 0.0
     for pattern in patterns:
         a = step.lost + sum(theta * x for theta, x in zip(pattern, step.heard, strict=True))
@@ -59,6 +61,37 @@ def test_the_expectation_is_that_of_all_patterns_of_losses(lost, on_loss):
     assert step.radius(0.0) == pytest.approx(np.abs(np.linalg.eigvals(whole)).max() ** 2, rel=1e-9)
 
 
+def test_links_between_velocities_that_are_lost_one_by_one():
+    """v_i⁺ = v_i + θ_i g (v_j − v_i): w = v_1 − v_2 gets 1 − g (θ_1 + θ_2), and its mean square is below 1 iff
+
+    p² + 2 p (1 − p) (1 − g)² + (1 − p)² (1 − 2 g)² < 1."""
+    g = 1.05
+    flock = net(np.zeros((2, 2)), [[g, -g], [-g, g]])
+    p = loss_margin(flock, 1.0, lost="link").loss
+    at_zero = (1.0 - 2.0 * g) ** 2
+    assert loss_margin(flock, 1.0, lost="link").radius == pytest.approx(at_zero)
+    assert p == 0.0  # without any loss it overshoots
+    step = _step(flock, 1.0, "link", "zero")
+    for loss in (0.1, 0.5, 0.9):
+        mean = loss**2 + 2 * loss * (1 - loss) * (1 - g) ** 2 + (1 - loss) ** 2 * at_zero
+        assert step.radius(loss) == pytest.approx(mean, rel=1e-12)
+
+
+def test_what_an_agent_does_by_itself_is_not_lost_with_a_link():
+    """The pull to its own place stays; a link that is pressed together is refused."""
+    flock = net([[3.0, -1.0], [0.0, 2.0]], [[3.0, -1.0], [0.0, 2.0]])
+    step = _step(flock, 0.2, "link", "zero")
+    assert len(step.heard) == 1  # agent 1 hears no one
+    alone = _step(net(np.diag([2.0, 2.0]), np.diag([2.0, 2.0])), 0.2, "all", "zero")
+    assert np.sort(np.abs(np.linalg.eigvals(step.lost))) == pytest.approx(
+        np.sort(np.abs(np.linalg.eigvals(alone.lost + alone.heard[0])))
+    )
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    pressed = find_equilibrium(law, hexagonal_patch(1, 7.0))
+    with pytest.raises(ArgumentError, match=r"the link from agent \d to \d carries a force at this equilibrium"):
+        loss_margin(linearise(law, pressed), 0.01, lost="link")
+
+
 def test_held_inputs_harm_where_zeroed_ones_do_not():
     zeroed, held = (loss_margin(net([[1.0]], [[1.0]]), 1.0, on_loss=way).loss for way in ("zero", "hold"))
     assert 0.0 < held < zeroed
@@ -68,7 +101,7 @@ def test_many_states_are_refused_and_an_iteration_agrees_with_the_whole():
     with pytest.raises(ArgumentError, match="the flock has 42 states: expected at most 40"):
         loss_margin(net(np.eye(21), np.eye(21)), 0.1)
     with pytest.raises(ArgumentError, match="what is lost"):
-        loss_margin(net([[1.0]], [[1.0]]), 0.1, lost="link")
+        loss_margin(net([[1.0]], [[1.0]]), 0.1, lost="pair")
     rng = np.random.default_rng(0)
     k = np.diag(rng.uniform(2.0, 3.0, 7)) - rng.uniform(0.0, 0.2, (7, 7))
     step = _step(net(k, k), 0.1, "agent", "zero")

@@ -52,7 +52,7 @@ def test_undamped_swings_have_no_rate_beyond_their_error(seed, stretch):
 def test_eigenvalues_that_are_equal_and_real_come_out_real_one_by_one(seed):
     """As a conjugate pair, which rounding makes of them on some processors, two modes would be one."""
     matrix = similar(np.diag([1.0, 1.0, 1.0, 1.0, -3.0, -3.0]), seed)
-    values, vectors, errors = eigen(matrix)
+    values, vectors, _ = eigen(matrix)
     assert not values.imag.any()
     assert np.sort(values.real) == pytest.approx([-3.0, -3.0, 1.0, 1.0, 1.0, 1.0], abs=1e-13)
     assert np.linalg.norm(matrix @ vectors - vectors * values, axis=0).max() < 1e-12

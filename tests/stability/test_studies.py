@@ -18,7 +18,15 @@ from flockana import (
     TaylorStep,
     linearise,
 )
-from flockana.stability import delay_margin, delay_system, rightmost_roots, scalar_margin, scalar_period
+from flockana.stability import (
+    delay_margin,
+    delay_system,
+    loss_margin,
+    rightmost_roots,
+    scalar_margin,
+    scalar_period,
+    transient_growth,
+)
 from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelaySystem, late_part
 from tests.refused import refused
@@ -141,6 +149,14 @@ def test_the_plant_is_closed_again_by_the_law():
     assert CHAIN.plant(["u2_x", "u0_x"]).B[3:].tolist() == [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]]
     gain = control.lqr(ONE.plant(), np.eye(2), np.eye(1))[0]  # Riccati: k² + 2 · 0 … of a double integrator: (1, √3)
     np.testing.assert_allclose(np.asarray(gain), [[1.0, sqrt(3.0)]], rtol=1e-9)
+
+
+def test_studies_of_nets_are_those_of_the_functions():
+    heard = CHAIN.string_gains()
+    assert heard.gains[2] == pytest.approx(heard.gains[1] ** 2, rel=1e-8)
+    assert (CHAIN.passivity().passive, ONE.passivity().passive) == (False, True)
+    assert ONE.transient_growth().growth == transient_growth(ONE).growth
+    assert ONE.loss_margin(0.1, on_loss="hold") == loss_margin(ONE, 0.1, on_loss="hold")
 
 
 def test_a_matlab_file(tmp_path):
