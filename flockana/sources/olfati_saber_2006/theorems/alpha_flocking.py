@@ -36,7 +36,7 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
     part = seen.cached(f"window from {begin!r}", lambda: seen.window(begin, float(t[-1])))
     count = len(part.t) - int(lead)
     detail = f"from t = {part.t[-count]:.4g} to {part.t[-1]:.4g}, at {count} samples"
-    return condition("judged over a window", count > 1, detail=detail), _Window(part, int(lead), start)
+    return condition("judged over a window", count > int(not lead), detail=detail), _Window(part, int(lead), start)
 
 
 def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: Real) -> Claim:

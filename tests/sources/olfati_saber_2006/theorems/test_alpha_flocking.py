@@ -73,12 +73,15 @@ def test_what_lies_nearer_to_its_bound_than_the_run_is_known_is_open(claim, boun
     assert found.margin == pytest.approx(off * first.computed, rel=1e-2)
 
 
-def test_one_sample_is_no_window():
+def test_a_window_is_judged_between_its_samples_too():
+    """One sample lies in the second half of the second run; the first has no time at all."""
     q = hexagonal_patch(1, 7.0)
-    for times in ([2.0], [0.0, 2.0]):  # the second has one sample in its second half
+    for times, status in (([2.0], "vacuous"), ([0.0, 2.0], "verified")):
         run = simulate(LAW, q, 0 * q, (0.0, 2.0), t_eval=times)
         for name in BOTH:
-            assert judged(name, run).status == "vacuous"
+            assert judged(name, run).status == status
+    apart = simulate(LAW, [[0.0, 0.0], [20.0, 0.0]], np.zeros((2, 2)), (0.0, 2.0), t_eval=[0.0, 2.0])
+    assert judged("alpha-flocking-strict", apart).claim("flock").status == "refuted"
 
 
 def test_a_share_that_is_reached_exactly_is_not_exceeded():
