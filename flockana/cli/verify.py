@@ -100,12 +100,12 @@ def _verify_own(
     """Check every theorem about the law of a flock that a Python file defines."""
     from flockana.cli.own import read_own
     from flockana.report.build import verdicts_json, write_report
-    from flockana.report.own import own_page
+    from flockana.report.own import own_pages
 
     if on is not None or seeds:
         raise ArgumentError(f"{name}: a flock in a file is run once; leave out {'--on' if on else '--seeds'}")
     started = time.perf_counter()
-    page = own_page(read_own(name), seed=seed or 0, figures=folder is not None)
+    (page,) = own_pages(read_own(name), seed=seed or 0, figures=folder is not None)
     facts: Any = {"seed": seed or 0, "seconds": time.perf_counter() - started}
     written = None if folder is None else write_report([page], folder, of=page.name, **facts)
     if as_json:

@@ -1,35 +1,48 @@
-"""Report on a flock, a scenario or a run of the user's own: the page that the catalogue's have."""
+"""Report on what is the user's own: flock, run, recording, verdicts or ensemble, on the page that the catalogue has."""
 
 from __future__ import annotations
 
 import os
 import time
 from collections.abc import Sequence
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
+
+import xarray
 
 from flockana.base.checks import ensure_seed
 from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
+from flockana.recorded.recording import Recording
 from flockana.report import build
-from flockana.report.pages import ScenarioPage, scenario_page
+from flockana.report.pages import ScenarioPage, scenario_page, verdicts_page
+from flockana.report.statistics import section_of
 from flockana.scenarios import Scenario
 from flockana.scenarios.flock import Flock
 from flockana.theorems import Theorem, Verdict, verify
 
 
 def write_report(
-    subject: Any, directory: str | os.PathLike[str], *, theorems: Sequence[str | Theorem] = (), seed: int = 0
+    subject: Any,
+    directory: str | os.PathLike[str],
+    *,
+    law: Any = None,
+    theorems: Sequence[str | Theorem] = (),
+    seed: int = 0,
 ) -> Path:
     """Write a page with the player, hypotheses, claims with margins, figures and energies of a flock or a run.
 
     Parameters
     ----------
-    subject : Flock, Scenario or Trajectory
-        What is run and judged; a run is judged as it is.
+    subject : Flock, Scenario, Trajectory, Recording, Verdict, sequence of Verdict, or xarray.Dataset
+        What is run and judged; a run or a recording is judged as it is. Of verdicts the page has hypotheses and claims,
+        of an ensemble's dataset the shares of its runs, without a player.
     directory : path
         Folder for ``index.html`` and ``verdicts.json``; made if it is not there.
+    law : Law, optional
+        Of a recording: the law that it is held against.
     theorems : sequence of str or Theorem
         What is checked, own claims too (`flockana.claim`); by default all theorems about the law, or those that a
         scenario names.
@@ -44,7 +57,7 @@ def write_report(
     Raises
     ------
     ArgumentError
-        If the subject is none of these.
+        If the subject is none of these, or a recording has no law.
 
     Examples
     --------
@@ -55,30 +68,64 @@ def write_report(
     'index.html'
     """
     started, seed = time.perf_counter(), ensure_seed(seed)
-    page = own_page(subject, theorems=theorems, seed=seed)
-    return build.write_report([page], directory, seed=seed, seconds=time.perf_counter() - started, of=page.name)
+    if isinstance(subject, xarray.Dataset):
+        _ensure_unused("runs of an ensemble have", law=law, theorems=theorems)
+        section = section_of(subject)
+        return build.write_report([], directory, seed=seed, statistics=section, of=section.entries[0].scenario)
+    pages = own_pages(subject, law=law, theorems=theorems, seed=seed)
+    return build.write_report(pages, directory, seed=seed, seconds=time.perf_counter() - started, of=pages[0].name)
 
 
-def own_page(
-    subject: Any, *, theorems: Sequence[str | Theorem] = (), seed: int = 0, figures: bool = True
-) -> ScenarioPage:
-    """Return the page of a flock, a scenario or a run."""
+def own_pages(
+    subject: Any, *, law: Any = None, theorems: Sequence[str | Theorem] = (), seed: int = 0, figures: bool = True
+) -> list[ScenarioPage]:
+    """Return the page of a flock, a scenario, a run or a recording, or those of verdicts by their subjects."""
+    verdicts: tuple[Verdict, ...] = (subject,) if isinstance(subject, Verdict) else subject
+    if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(each, Verdict) for each in verdicts):
+        _ensure_unused("verdicts have", law=law, theorems=theorems)
+        return [verdicts_page(name, each) for name, each in _by_subject(verdicts).items()]
     theorems = _ensure_theorems(theorems)
-    if isinstance(subject, Trajectory):
-        span, run = (float(subject.t[0]), float(subject.t[-1])), subject
-        item = Scenario("run", "A run", "A run of the user's own.", run.law, run.q[0], run.p[0], span)
+    if isinstance(subject, Recording):
+        if law is None:
+            raise ArgumentError("a recording without a law: expected law=..., the law that it is held against")
+        subject.ensure_complete("a report")
+        run, evidence = subject.trajectory(law), subject
+    else:
+        _ensure_unused("flocks and runs have", law=law)
+        run = evidence = subject
+    if isinstance(run, Trajectory):
+        name = "run" if run is subject else "recording"
+        span = (float(run.t[0]), float(run.t[-1]))
+        item = Scenario(name, f"A {name}", f"A {name} of the user's own.", run.law, run.q[0], run.p[0], span)
     elif isinstance(subject, (Flock, Scenario)):
         item = subject.scenario(seed) if isinstance(subject, Flock) else subject
-        run = ensure_uninterrupted(item.run())
+        run = evidence = ensure_uninterrupted(item.run())
     else:
         raise ArgumentError(
-            f"subject = {format_value(subject)}: expected a Flock, a Scenario or a run; a recording's verdicts are in "
-            "verify(None, recording, law=law).to_dataframe(), those of many runs in the Dataset of ensemble(...)"
+            f"subject = {format_value(subject)}: expected a Flock, a Scenario, a run, a recording with law=..., "
+            "verdicts, or what ensemble(...) returned"
         )
     catalogued = isinstance(subject, Scenario) and not theorems
-    verdicts = item.verify(run) if catalogued else _judge(item.name, run, theorems)
+    verdicts = item.verify(run) if catalogued else _judge(item.name, evidence, law, theorems)
     own = {each.id: each for each in theorems if isinstance(each, Theorem)}
-    return scenario_page(item, run, verdicts, figures=figures, own=own)
+    return [scenario_page(item, run, verdicts, figures=figures, own=own)]
+
+
+def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
+    """Return verdicts by subject; a second one of the same theorem on a subject gets a page of its own."""
+    pages: dict[str, dict[str, Verdict]] = {}
+    for each in verdicts:
+        name = each.subject or "verdicts"
+        names = chain([name], (f"{name} ({k})" for k in count(2)))
+        free = next(key for key in names if each.theorem not in pages.get(key, {}))
+        pages.setdefault(free, {})[each.theorem] = each
+    return {name: tuple(page.values()) for name, page in pages.items()}
+
+
+def _ensure_unused(what: str, **given: Any) -> None:
+    """Raise if something is given that a report on this takes no account of."""
+    for name in (name for name, value in given.items() if value is not None and value != ()):
+        raise ArgumentError(f"{name} = {format_value(given[name])}: {what} their own; leave {name} out")
 
 
 def _ensure_theorems(theorems: Any) -> tuple[str | Theorem, ...]:
@@ -92,7 +139,7 @@ def _ensure_theorems(theorems: Any) -> tuple[str | Theorem, ...]:
     return tuple(given)
 
 
-def _judge(name: str, run: Trajectory, theorems: Sequence[str | Theorem]) -> tuple[Verdict, ...]:
+def _judge(name: str, seen: Any, law: Any, theorems: Sequence[str | Theorem]) -> tuple[Verdict, ...]:
     if theorems:
-        return tuple(verify(each, run, subject=name) for each in theorems)
-    return tuple(verify(None, run, subject=name))
+        return tuple(verify(each, seen, law=law, subject=name) for each in theorems)
+    return tuple(verify(None, seen, law=law, subject=name))

@@ -13,10 +13,11 @@ from flockana.player.scene import scene
 from flockana.report.figures import Picture, pictures
 from flockana.report.stills import still
 from flockana.report.text import parameters
-from flockana.scenarios import Scenario
+from flockana.scenarios import Scenario, scenarios
 from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Status, Theorem, Verdict, theorem
+from flockana.theorems.catalogue import catalogue
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight lines; so many it gets then
@@ -60,6 +61,11 @@ class ScenarioPage:
     references: tuple[str, ...] = ()  # keys of the bibliography
     play: str = ""  # the run for the player, as text (`flockana.player`); empty if there are no figures
     thumbnail: str = ""  # the flock at the end, as SVG; empty if there are no figures
+
+    @property
+    def command(self) -> str:
+        """Return what runs it again; empty if it is no scenario of the catalogue."""
+        return f"flockana verify {self.name}" if self.name in scenarios() else ""
 
     @property
     def subject(self) -> str:
@@ -132,6 +138,18 @@ def scenario_page(
     )
 
 
+def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
+    """Return verdicts of the user's own as plain data, without a run."""
+    known = catalogue()
+    findings = (
+        _finding(each, known[each.theorem], {})
+        if each.theorem in known
+        else Finding(each, each.theorem, "", "own claim")
+        for each in verdicts
+    )
+    return ScenarioPage(name, "Verdicts", "Verdicts of the user's own.", (), tuple(findings))
+
+
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """Return the player's data of a run, with instants of the source and of the claims marked."""
     marks, title, played = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
@@ -163,10 +181,11 @@ def _facts(scenario: Scenario, run: Trajectory) -> tuple[tuple[str, str], ...]:
     stats = run.stats
     knobs = [(key, stats[key]) for key in ("rtol", "atol", "dt", "max_step") if stats.get(key) is not None]
     tolerances = ", ".join(f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}" for key, value in knobs)
+    steps = f"{stats.get('method', '—')} ({tolerances}): {stats.get('steps', '—')} steps"
     return (
         ("agents", f"{run.n} in {run.m} dimension{'s' if run.m > 1 else ''}"),
         ("time", f"{run.t[0]:g} to {run.t[-1]:g}, {len(run.t)} samples"),
-        ("start", f"seed {scenario.seed}"),
+        ("start", f"seed {scenario.seed}" if stats else run.message),
         *parameters(run.law),
-        ("integrated by", f"{stats.get('method', '—')} ({tolerances}): {stats.get('steps', '—')} steps"),
+        *([("integrated by", steps)] if stats else []),
     )

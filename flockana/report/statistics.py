@@ -1,23 +1,25 @@
 """Report section on many seeds: shares of seeds in which claims hold, with intervals."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import product
 from math import nan
 from typing import Any
 
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
+from flockana.ensemble.shares import STATUSES, shares
 from flockana.ensemble.work import COMPLETE, Record
 from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.surveys import Survey, SurveyResult
 from flockana.scenarios import Scenario, scenario
-from flockana.scenarios.checks import SOURCE
-from flockana.theorems import theorem
+from flockana.theorems.catalogue import catalogue
 
 _LEVEL = 0.95  # confidence of each interval
+_DRAWN = 12  # combinations of parameters whose shares fit one picture
 TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
 
 
@@ -101,35 +103,60 @@ def entry_of(name: str, records: Sequence[Record], level: float) -> ScenarioShar
     options = dict(records[0].job.options)
     item = scenario(name, records[0].job.seed, **options)
     labels = dict.fromkeys(label for record in records for label in record.claims)
+    statuses = {label: Counter(r.claims[label][0] for r in records if label in r.claims) for label in labels}
     return ScenarioShares(
         name,
         item.title,
         item.settings,
-        ", ".join(f"{key} = {value}" for key, value in options.items()),
+        _in_words(options),
         len(records),
         sum(record.status != COMPLETE for record in records),
         float(np.mean([record.seconds for record in records])),
-        tuple(_row(item, label, records, level) for label in labels),
+        tuple(_row(label, counts, level, item) for label, counts in statuses.items()),
     )
 
 
-def _row(item: Scenario, label: str, records: Sequence[Record], level: float) -> Row:
+def section_of(dataset: Any) -> StatisticsSection:
+    """Return the section on an ensemble's dataset, with an entry for each combination of its parameters."""
+    table = shares(dataset, level=_LEVEL)
+    axes = [str(name) for name in dataset.run.dims if name != "seed"]
+    entries = []
+    for values in product(*(dataset[name].values.tolist() for name in axes)):
+        point = dict(zip(axes, values, strict=True))
+        runs, counts = dataset.sel(point), table.sel(point)
+        statuses = {
+            label: Counter({of: int(counts[of].sel(claim=label)) for of in STATUSES}) for label in runs.claim.values
+        }
+        rows = tuple(_row(label, each, _LEVEL) for label, each in statuses.items() if each.total())
+        size, lost, seconds = runs.run.size, int(counts.incomplete), float(runs.seconds.mean())
+        title = f"{size} runs"
+        entries.append(
+            ScenarioShares(dataset.attrs["scenario"], title, "", _in_words(point), size, lost, seconds, rows)
+        )
+    return StatisticsSection(_LEVEL, tuple(entries), _picture(entries) if len(entries) <= _DRAWN else None)
+
+
+def _in_words(options: Mapping[str, Any]) -> str:
+    return ", ".join(f"{key} = {value}" for key, value in options.items())
+
+
+def _row(label: str, statuses: Counter[str], level: float, item: Scenario | None = None) -> Row:
     """Return the shares of one claim over the runs on which it was checked."""
     name, _, claim = label.partition(":")
-    statuses = Counter(record.claims[label][0] for record in records if label in record.claims)
     runs = statuses.total()
     ends = {of: clopper_pearson(statuses[of], runs, level=level) for of in ("verified", "refuted")}
     verified, refuted = (Share(statuses[of], runs, *map(float, both)) for of, both in ends.items())
     others = statuses["vacuous"], statuses["inconclusive"]
-    reported = {report.name: report.text for report in item.reports}
-    text = theorem(name).title if name != SOURCE else reported.get(claim, claim)
-    return Row(name, claim, text, verified, refuted, *others, item.expected.get(label, ""))
+    reported = {} if item is None else {report.name: report.text for report in item.reports}
+    known = catalogue().get(name)
+    text = reported.get(claim, claim) if known is None else known.title
+    return Row(name, claim, text, verified, refuted, *others, "" if item is None else item.expected.get(label, ""))
 
 
 def _picture(entries: Sequence[ScenarioShares]) -> Picture | None:
     from flockana.plots.ensemble import draw_bars
 
-    rows = {f"{entry.scenario}: {row.claim}": row for entry in entries for row in entry.rows}
+    rows = {f"{entry.options or entry.scenario}: {row.claim}": row for entry in entries for row in entry.rows}
     if not rows:
         return None
 

@@ -106,6 +106,8 @@ def test_the_page_is_whole_self_contained_and_escaped(shown, tmp_path):
     inner = {link for link in found.links if not link.startswith(("data:application/json;base64,", "data:,"))}
     assert {link for link in inner if link[1:] not in found.ids} == set()
     assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
+    assert "flockana verify pair" not in text  # no scenario of the catalogue
+    assert replace(shown, name="hexagon").command == "flockana verify hexagon"
     assert "src=" not in text
     assert "@import" not in text
     assert found.unnamed == []
@@ -115,7 +117,6 @@ def test_the_page_is_whole_self_contained_and_escaped(shown, tmp_path):
         "rank(A)/n",
         "c1_alpha = 30",
         '<a class="differs" href="#scenario-pair--os-1">os-1 is inconclusive, expected refuted</a>',
-        "flockana verify pair --seed 5",
         "± 1e-09",
         "± 0.125",
         "seed 5",

@@ -27,12 +27,12 @@ def verdict_id(subject: str, theorem: str) -> str:
     """Return the id of a verdict in the report."""
     if subject == "fixed":
         return f"fixed-{theorem}".replace(" ", "-")
-    return f"{scenario_id(subject)}--{theorem}".replace(" ", "-")  # another's name may be this one's with a theorem's
+    return f"{scenario_id(subject)}--{theorem.replace(' ', '-')}"  # another's name may be this one's with a theorem's
 
 
 def scenario_id(name: str) -> str:
     """Return the id of a scenario's section in the report."""
-    return f"scenario-{name}"
+    return f"scenario-{name}".replace(" ", "-")
 
 
 def is_erratum(name: str) -> bool:
