@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, format_value
 
 FloatArray = npt.NDArray[np.float64]
+TimeSpan = Sequence[float] | npt.NDArray[Any]  # two times, as a user gives them
 ComplexArray = npt.NDArray[np.complex128]
 PerAgent = float | tuple[float, ...]
 

@@ -12,7 +12,14 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
+from flockana.base.checks import (
+    TimeSpan,
+    ensure_count,
+    ensure_nonnegative,
+    ensure_positive,
+    ensure_state,
+    ensure_time_span,
+)
 from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
@@ -36,7 +43,7 @@ def enclose(
     law: Any,
     q0: Any,
     p0: Any,
-    t_span: Any,
+    t_span: TimeSpan,
     *,
     radius: float | tuple[float, float] = 0.0,
     order: int = 16,

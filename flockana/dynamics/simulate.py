@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import (
     FloatArray,
+    TimeSpan,
     ensure_fits,
     ensure_positive,
     ensure_state,
@@ -43,7 +44,7 @@ def simulate(
     law: Law | DiscreteLaw,
     q0: Any,
     p0: Any,
-    t_span: Any,
+    t_span: TimeSpan,
     *,
     method: str | Solver = "DOP853",
     rtol: float = 1e-8,

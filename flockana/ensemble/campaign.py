@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_kind, ensure_known
+from flockana.base.checks import TimeSpan, ensure_kind, ensure_known
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
 from flockana.base.seals import digest
@@ -49,7 +49,7 @@ def ensemble(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     theorems: Iterable[str | Theorem] | None = None,
     parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
     metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,

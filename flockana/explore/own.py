@@ -7,7 +7,7 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from flockana.base.checks import ensure_flag, ensure_known, ensure_seed
+from flockana.base.checks import TimeSpan, ensure_flag, ensure_known, ensure_seed
 from flockana.base.errors import ArgumentError, format_value
 from flockana.scenarios.flock import as_scenario, chosen
 from flockana.scenarios.scenario import scenarios
@@ -21,7 +21,7 @@ def explore(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     seed: int = 0,
     port: int = 0,
     browser: bool = True,

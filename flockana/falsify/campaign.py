@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_seed
+from flockana.base.checks import FloatArray, TimeSpan, ensure_count, ensure_kind, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
@@ -34,7 +34,7 @@ def falsify(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     budget: int,
     seed: int = 0,
     claim: str | None = None,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from math import sqrt
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -85,6 +85,17 @@ class Gains:
             gain = getattr(self, name)
             if isinstance(gain, tuple) and len(gain) != n:
                 raise ArgumentError(f"{name} has {len(gain)} gains but there are {n} agents: expected one per agent")
+
+
+if TYPE_CHECKING:
+
+    class GainsField:
+        """Field of a law that is given as `Gains` or as a dictionary, and read as `Gains`."""
+
+        def __get__(self, law: object, kind: type | None = None) -> Gains: ...
+        def __set__(self, law: object, value: Gains | Mapping[str, Any]) -> None: ...
+else:
+    GainsField = Gains
 
 
 def gains_of(values: Mapping[str, Any]) -> Gains:

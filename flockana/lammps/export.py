@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import (
     FloatArray,
+    TimeSpan,
     draw_start,
     ensure_finite_scalar,
     ensure_known,
@@ -57,7 +58,7 @@ def export_lammps(
     law: Any,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     folder: str | os.PathLike[str] = "",
     *,
     points: int = 20_000,

@@ -11,6 +11,7 @@ from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
+from flockana.interactions.gains import GainsField
 from flockana.laws.gained import GainedLaw
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
@@ -36,7 +37,7 @@ class Algorithm3(GainedLaw):
 
     Parameters
     ----------
-    gains : Gains
+    gains : Gains or mapping of str to float
         All six are used.
     beta : BetaInteraction
         The law between an agent and its β-agents.
@@ -61,7 +62,7 @@ class Algorithm3(GainedLaw):
     """
 
     alpha: PairInteraction = field(default_factory=AlphaInteraction)
-    gains: Gains = field(default_factory=Gains)
+    gains: GainsField = field(default_factory=Gains)  # type: ignore[assignment]
     target: Target = None  # type: ignore[assignment]  # no default makes sense: checked below
     beta: BetaInteraction = field(default_factory=BetaInteraction)
     obstacles: tuple[Obstacle, ...] = ()

@@ -17,6 +17,7 @@ from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
+from flockana.interactions.gains import GainsField
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
 from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains
@@ -45,7 +46,7 @@ class Composition(GainedLaw):
     ----------
     alpha : PairInteraction, optional
         Whose gradient acts between agents.
-    gains : Gains
+    gains : Gains or mapping of str to float
         Gains of all terms but the last.
     net : PairInteraction or Weight, optional
         Range and adjacency of the consensus, if they are not those of `alpha`, or any weight of the distance.
@@ -73,7 +74,7 @@ class Composition(GainedLaw):
     """
 
     alpha: PairInteraction | None = None
-    gains: Gains = _NO_GAIN
+    gains: GainsField = _NO_GAIN  # type: ignore[assignment]
     _: KW_ONLY
     net: PairInteraction | Weight | None = None
     target: Target | None = None

@@ -11,7 +11,7 @@ from flockana.base.scales import Scales
 from flockana.base.units import scaled_fields
 from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction
-from flockana.interactions.gains import gains_of
+from flockana.interactions.gains import GainsField, gains_of
 from flockana.interactions.weights import Weight
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.pairs import PairTerm
@@ -43,7 +43,7 @@ class GainedLaw(SumOfTerms):
     """A sum of terms with `gains`: c1α is 1/time², c2α 1/time, unless pair law or weight carry a time of their own."""
 
     alpha: Any  # the pair law; a composition may lack one
-    gains: Gains
+    gains: GainsField
 
     def __post_init__(self) -> None:
         ensure_kind("alpha", self.alpha, PairInteraction, PAIR)

@@ -9,6 +9,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
+from flockana.interactions.gains import GainsField
 from flockana.laws.gained import GAINS, GainedLaw, alpha_scales
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.term import Term
@@ -37,7 +38,7 @@ class Algorithm1(GainedLaw):
 
     Parameters
     ----------
-    gains : Gains
+    gains : Gains or mapping of str to float
         Only c1_alpha and c2_alpha are used.
 
     Examples
@@ -51,7 +52,7 @@ class Algorithm1(GainedLaw):
     """
 
     alpha: PairInteraction = field(default_factory=AlphaInteraction)
-    gains: Gains = field(default_factory=Gains)
+    gains: GainsField = field(default_factory=Gains)  # type: ignore[assignment]
 
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 
@@ -82,7 +83,7 @@ class Algorithm2(GainedLaw):
 
     Parameters
     ----------
-    gains : Gains
+    gains : Gains or mapping of str to float
         c1 and c2 of α and γ are used.
 
     Examples
@@ -94,7 +95,7 @@ class Algorithm2(GainedLaw):
     """
 
     alpha: PairInteraction = field(default_factory=AlphaInteraction)
-    gains: Gains = field(default_factory=Gains)
+    gains: GainsField = field(default_factory=Gains)  # type: ignore[assignment]
     target: Target = None  # type: ignore[assignment]  # no default makes sense: checked below
 
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)

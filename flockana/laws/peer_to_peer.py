@@ -11,6 +11,7 @@ from flockana.base.checks import FloatArray, ensure_kind
 from flockana.base.vectors import lengths
 from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
+from flockana.interactions.gains import GainsField
 from flockana.laws.gained import GainedLaw
 from flockana.laws.law import Arrays
 from flockana.laws.terms.copies import CopiesTerm
@@ -28,7 +29,7 @@ class PeerToPeer(GainedLaw):
     ----------
     copies : Copies
         The γ-agents, one for each agent.
-    gains : Gains
+    gains : Gains or mapping of str to float
         c1 and c2 of α and γ are used.
 
     Examples
@@ -41,7 +42,7 @@ class PeerToPeer(GainedLaw):
 
     copies: Copies
     alpha: PairInteraction = field(default_factory=AlphaInteraction)
-    gains: Gains = field(default_factory=Gains)
+    gains: GainsField = field(default_factory=Gains)  # type: ignore[assignment]
 
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from flockana.base.checks import TimeSpan
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player import Player
 from flockana.scenarios import Flock, Scenario
@@ -16,7 +17,7 @@ def player(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     seed: int = 0,
     height: int = 760,
     verdicts: Sequence[Verdict] = (),

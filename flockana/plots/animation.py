@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, TimeSpan, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import atomic_write, ensure_folder_of, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
@@ -93,7 +93,7 @@ def animate(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     seed: int = 0,
     seconds: float = 10.0,
     fps: float = 15.0,

@@ -7,6 +7,7 @@ from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
+from flockana.base.checks import TimeSpan
 from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
@@ -28,7 +29,7 @@ class _Case(TypedDict, total=False):
     law: Any
     q0: Any
     p0: Any
-    t_span: Any
+    t_span: TimeSpan | None
     q: Any
     d: float | None
     r: float | None
@@ -48,7 +49,7 @@ def verify(
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
-    t_span: Any = None,
+    t_span: TimeSpan | None = None,
     q: Any = None,
     d: float | None = None,
     r: float | None = None,

@@ -1,0 +1,52 @@
+"""Scripts as users write them: mypy takes what the documentation shows, and refuses what the code refuses."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+_GOOD = """
+import numpy as np
+
+import flockana as fl
+
+pair = fl.pair_law("k*(s - d)**2*(r - s)**2", adjacency="(1 - s/r)**2", range=3, length=2, parameters={"k": 1.0})
+law = fl.Algorithm2(alpha=pair, gains={"c1_alpha": 10.0, "c1_gamma": [1.0, 2.0]}, target=fl.StaticTarget((0.0, 0.0)))
+stiffness: float = law.gains.c1_alpha
+plain = fl.Algorithm1(gains=fl.Gains(c1_alpha=3.0))
+q0 = np.array([[0.0, 0.0], [8.0, 0.0]])
+run = fl.simulate(law, q0, [[0, 0], [0, 0]], (0, 5), method=fl.RK4(0.01))
+verdict: fl.Verdict = fl.verify("os-1", run)
+rows: int = len(fl.verify(law=plain, q0=q0, t_span=[0.0, 5.0]).to_dataframe())
+near = fl.claim("near", lambda run: 9.0 - run.metric("cohesion_radius"), statement="all stay near")
+flock = fl.Flock(plain, lambda seed: np.random.default_rng(seed).normal(size=(5, 2)), t_span=(0, 10))
+runs = fl.ensemble(flock, range(20), theorems=["energy", near], parameters={"gains.c1_alpha": [1.0, 2.0]})
+suffix: str = fl.write_report(flock, "folder", theorems=["energy", near]).suffix
+worst = fl.falsify("os-1", law=law, q0=q0, t_span=np.array([0.0, 4.0]), budget=10)
+rate: float = fl.linearise(plain, fl.find_equilibrium(plain, q0).q).decay_rate
+"""
+_WRONG = """import flockana as fl
+law = fl.Algorithm1(gains=3.0)
+run = fl.simulate(law, [[0.0]], [[0.0]], "0, 5")
+fl.verify(law=law, q0=[[0.0]], t_span="0, 5")
+fl.ensemble("hexagon", range(3), t_span="0, 5")
+name: int = fl.verify("os-1", run).status
+fl.Algorithm1(gain={})
+fl.Algorithm2(gains={"c1_alpha": 1.0}, target="origin")
+"""
+
+
+def test_a_users_script_is_typed(tmp_path):
+    (tmp_path / "good.py").write_text(_GOOD)
+    (tmp_path / "wrong.py").write_text(_WRONG)
+    package = str(Path(__file__).parents[2])
+    options = ["--strict", "--config-file=", "--ignore-missing-imports", "--no-error-summary"]
+    out = subprocess.run(
+        [sys.executable, "-m", "mypy", *options, "good.py", "wrong.py"],
+        cwd=tmp_path,
+        env=os.environ | {"MYPYPATH": package, "PYTHONPATH": package},
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
+    refused = [line.partition(": error: ")[0] for line in out if ": error: " in line]
+    assert refused == [f"wrong.py:{k}" for k in range(2, 9)], out
