@@ -36,7 +36,7 @@ def study(*, quick: bool) -> Found:
             rows.append(_row(what, ["verify", name, "--no-report"], _asked(3.0, why), rounds=2 if quick else 5))
         if not quick:
             for _ in range(2):  # the first compiles what has changed since kernels were last used
-                cpu, wall = _taken(["verify", "--report", str(report)], None)
+                cpu, wall = _taken(["verify", "--output", str(report)], None)
             rows.append(Row(STUDY, "flockana verify, warm: CPU", None, cpu, "s"))
             rows.append(Row(STUDY, "flockana verify, warm: clock", None, wall, "s", asked=_asked(60.0, _VERIFY)))
             _, wall = _taken(["verify", "dead-zone", "--no-report", "--seeds", "400"], None)

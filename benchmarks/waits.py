@@ -18,7 +18,7 @@ WAITS = {
     "flockana scenarios": ("-m", "flockana.cli", "scenarios"),
     "flockana lattice square:4x5": ("-m", "flockana.cli", "lattice", "square:4x5"),
     "flockana verify E3": ("-m", "flockana.cli", "verify", "E3", "--no-report"),
-    "flockana verify hexagon, with report": ("-m", "flockana.cli", "verify", "hexagon", "--report", "report/waits"),
+    "flockana verify hexagon, with report": ("-m", "flockana.cli", "verify", "hexagon", "--output", "report/waits"),
     "flockana ensemble phase --seeds 8": ("-m", "flockana.cli", "ensemble", "phase", "--seeds", "8"),
     "flockana stability hexagonal-patch:3 --delay": ("-m", "flockana.cli", "stability", "hexagonal-patch:3", "--delay"),
     "150 agents: first verdict": ("-c", _VERDICTS + "fl.verify('energy', r)"),

@@ -37,7 +37,7 @@ def test_a_run_is_verified_and_reported_without_loading_what_derives_solves_or_d
 import sys
 from flockana.cli.main import main
 try:
-    main(["verify", "hexagon", "--report", {str(tmp_path)!r}])
+    main(["verify", "hexagon", "-o", {str(tmp_path)!r}])
 except SystemExit as end:
     print(end.code, [m for m in ("sympy", "casadi", "matplotlib", "control", "xarray") if m in sys.modules])
 """

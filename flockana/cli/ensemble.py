@@ -9,7 +9,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
-from flockana.cli.options import AsJson, Drawing, Jobs, ScenarioName, output
+from flockana.cli.options import AsJson, Jobs, Plot, ScenarioName, output
 from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def ensemble_command(
     jobs: Jobs = None,
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
     save_to: Annotated[Path | None, output("netCDF file to write.")] = None,
-    plot: Drawing = None,
+    plot: Plot = None,
     as_json: AsJson = False,
 ) -> int:
     """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.

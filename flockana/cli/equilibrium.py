@@ -6,7 +6,7 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
+from flockana.cli.options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time, output
 from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def equilibrium_command(
     r: Range = None,
     time: Time = None,
     save_to: Annotated[Path | None, output("JSON file to write.")] = None,
-    picture: Drawing = None,
+    plot: Plot = None,
     as_json: AsJson = False,
 ) -> int:
     """Find an equilibrium near a configuration with IPOPT, and classify it.
@@ -45,7 +45,7 @@ def equilibrium_command(
     from flockana.equilibria.record import write_equilibrium
 
     ensure_file(save_to, (".json",))
-    ensure_file(picture)
+    ensure_file(plot)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         announce_time(len(q))
@@ -57,8 +57,8 @@ def equilibrium_command(
     show_facts(facts, as_json, f"{source}: {equilibrium.kind}", _rows(equilibrium, facts))
     if save_to is not None:
         write_equilibrium(equilibrium, save_to)
-    write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])
-    show_files(as_json, saved=save_to, picture=picture)
+    write_picture(lambda ax: _draw(ax, equilibrium, source), plot, m=equilibrium.q.shape[1])
+    show_files(as_json, saved=save_to, picture=plot)
     return OK
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from flockana.cli.options import AsJson, ScenarioName, Seed
+from flockana.cli.options import AsJson, ScenarioName, Seed, output
 from flockana.cli.show import OK, show, show_files, show_json
 
 
@@ -15,7 +15,7 @@ def export_command(
     to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="Target program.")],
     name: ScenarioName,
     *,
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder to write to.")],
+    folder: Annotated[Path, output("Folder to write to.", metavar="DIR")],
     seed: Seed = 0,
     points: Annotated[int, typer.Option(min=2, help="Number of distances in the pair force's table.")] = 20_000,
     inner: Annotated[float | None, typer.Option(help="First distance of the table.")] = None,
@@ -35,7 +35,7 @@ def export_command(
 
     item = scenario(name, seed)
     options: dict[str, Any] = {"points": points, "inner": inner, "dt": dt, "samples": samples, "consensus": consensus}
-    exported = export_lammps(item.law, item.q0, item.p0, item.t_span, out, **options)
+    exported = export_lammps(item.law, item.q0, item.p0, item.t_span, folder, **options)
     if as_json:
         numbers = {"steps": exported.steps, "dt": exported.dt, "force error": exported.force_error}
         words = {name: list(getattr(exported, name)) for name in ("exact", "near", "missing")}

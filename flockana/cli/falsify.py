@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError
-from flockana.cli.options import AsJson, Drawing, output
+from flockana.cli.options import AsJson, On, Plot, output
 from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def falsify_command(
     theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Theorem, such as os-3.")] = None,
     *,
-    on: Annotated[str | None, typer.Option(metavar="SCENARIO", help="Scenario to start from.")] = None,
+    on: On = None,
     budget: Annotated[int, typer.Option(min=1, help="Largest number of runs.")] = 200,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the scenario and of the search.")] = 0,
     claim: Annotated[
@@ -36,18 +36,19 @@ def falsify_command(
     ] = None,
     deepen: Annotated[bool, typer.Option("--deepen", help="Search on after a claim is broken.")] = False,
     save_to: Annotated[Path | None, output("JSON file to write.")] = None,
-    plot: Drawing = None,
+    plot: Plot = None,
     replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check this counterexample instead.")] = None,
     as_json: AsJson = False,
 ) -> int:
     """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
-    THEOREM must be about runs. The search covers a box about the scenario's start. -o writes a counterexample as JSON;
+    THEOREM must be about runs. The search covers a box about the start of the case. -o writes a counterexample as JSON;
     --replay simulates such a file again and checks it. A search that finds nothing proves nothing.
 
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
+    from flockana.cli.own import read_flock
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.falsify import falsify
     from flockana.plots.falsify import falsification
@@ -57,12 +58,12 @@ def falsify_command(
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
         return _replay(replay, as_json=as_json)
     if theorem is None or on is None:
-        raise ArgumentError("expected THEOREM --on SCENARIO, such as os-3 --on three-agents-1d, or --replay FILE")
+        raise ArgumentError("expected THEOREM --on CASE, such as os-3 --on three-agents-1d, or --replay FILE")
     ensure_file(save_to, (".json",))
     ensure_file(plot)
     search = falsify(
         theorem,
-        on,
+        read_flock(on, seed),
         budget=budget,
         seed=seed,
         claim=claim,

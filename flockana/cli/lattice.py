@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.cli.options import AsJson, Time, output
+from flockana.cli.options import AsJson, Plot, Time
 from flockana.cli.show import OK, show_facts, show_files
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ def lattice_command(
         ),
     ] = None,
     time: Time = None,
-    picture: Annotated[Path | None, output("PNG, SVG or PDF to draw to.", metavar="PICTURE")] = None,
+    plot: Plot = None,
     as_json: AsJson = False,
 ) -> int:
     """Measure a configuration: α-lattice or not, links, crossings, planarity, rigidity, defects, Theorem 5.
@@ -53,7 +52,7 @@ def lattice_command(
     from flockana.report.console import details
     from flockana.theorems import verify
 
-    ensure_file(picture)
+    ensure_file(plot)
     given = read_source(source, d=d, r=r, time=time)
     pairs = links(given.q, given.r)
     tolerances = _tolerances(tol)
@@ -61,8 +60,8 @@ def lattice_command(
     facts = lattice_facts(given, pairs, verdict)
     more, hint = {"verdict": verdict.to_dict()}, _hint(facts, tolerances)
     show_facts(facts | more, as_json, given.name, _rows(facts), details(verdict), *hint)
-    write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
-    show_files(as_json, picture=picture)
+    write_picture(lambda ax: _draw(ax, given, pairs), plot, m=given.q.shape[1])
+    show_files(as_json, picture=plot)
     return OK
 
 

@@ -15,6 +15,10 @@ Start = Annotated[
 ]
 AnySeed = Annotated[int | None, typer.Option("--seed", min=0, help="Seed of a scenario's random start; by default 0.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
+On = Annotated[
+    str | None,
+    typer.Option("--on", metavar="CASE", help="A scenario, a saved run (.nc), or FILE.py:NAME, a flock of yours."),
+]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]
 
 # the law, if the source has none
@@ -28,7 +32,7 @@ Range = Annotated[float | None, typer.Option("--r", help="Range r, if the source
 # processes, and what is printed and written
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; by default the number of cores.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else.")]
-Drawing = Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF to draw to.")]
+Plot = Annotated[Path | None, typer.Option("--plot", metavar="PICTURE", help="PNG, SVG or PDF to draw to.")]
 
 
 def output(text: str, *, metavar: str = "FILE") -> Any:

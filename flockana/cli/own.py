@@ -1,7 +1,8 @@
-"""A flock of the user's own, named on the command line as ``FILE.py:NAME``."""
+"""What a command is about: a scenario, a saved run, or a flock of the user's own as ``FILE.py:NAME``."""
 
 from __future__ import annotations
 
+import os
 import runpy
 import traceback
 from pathlib import Path
@@ -15,6 +16,30 @@ KIND = "FILE.py:NAME"
 def is_own(name: str | None) -> bool:
     """Return whether a name is that of a Python file, or of something in one."""
     return name is not None and (name.endswith(".py") or ".py:" in name)
+
+
+def read_case(name: str, seed: int = 0) -> Any:
+    """Return the scenario, the saved run, or what a Python file defines (a flock with the start of its seed)."""
+    from flockana.dynamics.trajectory import Trajectory
+    from flockana.scenarios import Flock, scenario, scenarios
+
+    if is_own(name):
+        case = read_own(name)
+        return case.scenario(seed) if isinstance(case, Flock) else case
+    if name not in scenarios() and (name.endswith(".nc") or os.path.exists(name)):
+        return Trajectory.load(name)
+    return scenario(name, seed)
+
+
+def read_flock(name: str, seed: int = 0) -> Any:
+    """Return a scenario as `read_case` does; of a run one with its law, start and time span."""
+    from flockana.dynamics.trajectory import Trajectory
+    from flockana.scenarios import Flock
+
+    case = read_case(name, seed)
+    if not isinstance(case, Trajectory):
+        return case
+    return Flock(case.law, case.q[0], case.p[0], (float(case.t[0]), float(case.t[-1])), name=name).scenario()
 
 
 def read_own(name: str) -> Any:

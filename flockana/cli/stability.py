@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
+from flockana.cli.options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time
 from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.threads import one_thread_for_matrices
 
@@ -38,9 +38,7 @@ def stability_command(
     modes: Annotated[int, typer.Option(min=1, metavar="N", help="Number of slowest modes.")] = 8,
     delay: Annotated[bool, typer.Option("--delay", help="Delay margins: of all terms, and of pair terms.")] = False,
     norms: Annotated[bool, typer.Option("--norms", help="H2 and Hinf norms from forces to the shape.")] = False,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF: poles, slowest modes, Bode plot.")
-    ] = None,
+    plot: Plot = None,
     as_json: AsJson = False,
 ) -> int:
     """Linearise a law about the equilibrium nearest to a configuration: zero modes, slowest modes, margins, norms.

@@ -10,7 +10,7 @@ import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
-from flockana.cli.options import AnySeed, AsJson, Jobs
+from flockana.cli.options import AnySeed, AsJson, Jobs, On, output
 from flockana.cli.own import is_own
 from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.streams import in_output_encoding
@@ -35,13 +35,10 @@ def verify_command(
         ),
     ] = None,
     seed: AnySeed = None,
-    on: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Check a saved run instead of simulating; NAME says what to check."),
-    ] = None,
+    on: On = None,
     report: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Folder; by default report, or report/NAME beside one on the catalogue."),
+        output("Folder of the report; by default report, or report/NAME beside one on the catalogue.", metavar="DIR"),
     ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
     as_json: AsJson = False,
@@ -52,6 +49,8 @@ def verify_command(
     jobs: Jobs = None,
 ) -> int:
     """Run scenarios, check theorems, print the verdicts, write a report.
+
+    With --on, NAME is the theorem to check on that case, or the scenario that a saved run is of.
 
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
@@ -65,13 +64,13 @@ def verify_command(
     if is_own(name):
         return _verify_own(str(name), seed, on, None if no_report else report or Path("report"), seeds, as_json=as_json)
     if no_report and report is not None:
-        raise ArgumentError(f"--report {report}: --no-report writes none; leave out one of them")
+        raise ArgumentError(f"--output {report}: --no-report writes none; leave out one of them")
     if on is not None:
-        _ensure_checkable(name, seeds, seed)
-    seed = seed or 0
+        _ensure_checkable(name, seeds)
+    start, seed = seed, seed or 0
     work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
     folder = None if no_report else ensure_directory(report or report_folder(name))
-    saved = [] if on is None else [_saved(name, on, not no_report)]
+    saved = [] if on is None else [_case_page(name, on, start, not no_report)]
     results, code, failure = (saved, OK, None) if saved else _check_all(work, jobs or cores())
     pages = [result for result in results if isinstance(result, Page)]
     surveyed = [result for result in results if isinstance(result, SurveyResult)]
@@ -95,7 +94,7 @@ def verify_command(
 
 
 def _verify_own(
-    name: str, seed: int | None, on: Path | None, folder: Path | None, seeds: int | None, *, as_json: bool
+    name: str, seed: int | None, on: str | None, folder: Path | None, seeds: int | None, *, as_json: bool
 ) -> int:
     """Check every theorem about the law of a flock that a Python file defines."""
     from flockana.cli.own import read_own
@@ -176,35 +175,41 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
     return [results[task.name] for task in tasks if task.name in results], code, failure
 
 
-def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> None:
+def _ensure_checkable(name: str | None, seeds: int | None) -> None:
     from flockana.base.checks import ensure_known
     from flockana.report.work import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
     if seeds:
-        raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
-    if seed is not None:
-        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
+        raise ArgumentError(f"--seeds {seeds}: a case has one seed; leave out --seeds or --on")
     if name is None:
-        raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
+        raise ArgumentError("--on CASE needs a NAME: the theorem to check, or the scenario that was run")
     if name == ERRATA:
-        text = f"{name} --on FILE: a saved run is checked by one scenario or theorem"
+        text = f"{name} --on CASE: a case is checked by one scenario or theorem"
         raise ArgumentError(f"{text}; name one, such as os-1")
     ensure_known("scenario or theorem", name, (*scenarios(), *theorems()))
     if name in theorems() and theorem(name).kind != "trajectory":
         raise ArgumentError(f"{name} is not about a run: expected a theorem about motion, such as os-1")
 
 
-def _saved(name: str | None, path: Path, figures: bool) -> Page:
-    """Check a saved run, as one of its scenario or against one theorem."""
+def _case_page(name: str | None, on: str, seed: int | None, figures: bool) -> Page:
+    """Check a theorem on a case, or a saved run as one of its scenario."""
+    from flockana.cli.own import read_case
     from flockana.dynamics.trajectory import Trajectory
+    from flockana.report.own import own_pages
     from flockana.report.pages import scenario_page
     from flockana.scenarios import Scenario, scenario, scenarios
     from flockana.theorems import verify
 
-    run = Trajectory.load(path)
+    run, path = read_case(on, seed or 0), Path(on)
     assert name is not None  # checked before
+    if not isinstance(run, Trajectory):
+        if name in scenarios():
+            raise ArgumentError(f"{name} --on {on}: expected a theorem to check on it, or a saved run of {name}")
+        return own_pages(run, theorems=[name], figures=figures)[0]
+    if seed is not None:
+        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
     if name in scenarios():
         item = scenario(name)
         if type(item.law) is not type(run.law) or item.q0.shape != run.q[0].shape:

@@ -18,7 +18,7 @@ TIMES = ("x", "nan", "-1", "99", "inf", "")
 FOLDERS = ("torn.csv", "torn.csv/x", "none\0")
 ENSEMBLE = "ensemble three-agents-1d --theorem energy --seeds 1"
 FALSIFY = "falsify energy --on three-agents-1d --budget 1"
-EXPORT = "export lammps three-agents-1d --out it"
+EXPORT = "export lammps three-agents-1d -o it"
 
 # each of the values takes the place of {}; a text of several words is split
 TABLE = {
@@ -28,12 +28,12 @@ TABLE = {
     "verify zone-gap --no-report --seeds {}": NOT_SEEDS,
     "verify {} --no-report": NOT_SCENARIOS,
     "verify os-1 --no-report --on {}": ("none.nc", "folder", "torn.nc", "text.csv", "pipe.nc"),
-    "verify E8 --report {}": (*FOLDERS, "n" * 300),
+    "verify E8 -o {}": (*FOLDERS, "n" * 300),
     "animate three-agents-1d -o it.gif --fps {}": (*NOT_POSITIVE, "1e9"),
     "animate three-agents-1d -o it.gif --seconds {}": (*NOT_POSITIVE, "1e9"),
     "equilibrium line:2 -o {}": ("it.nc", "folder", "pipe.json", "torn.csv/it.json", "it"),
-    "lattice line:2 -o {}": NOT_PICTURES,
-    "equilibrium line:2 --picture {}": NOT_PICTURES,
+    "lattice line:2 --plot {}": NOT_PICTURES,
+    "equilibrium line:2 --plot {}": NOT_PICTURES,
     "stability line:2 --plot {}": NOT_PICTURES,
     "stability line:3 --modes {}": NOT_COUNTS,
     "ensemble three-agents-1d --theorem energy --seeds {}": NOT_COUNTS,
@@ -63,8 +63,8 @@ TABLE = {
     f"{EXPORT} --dt {{}}": NOT_POSITIVE,
     f"{EXPORT} --inner {{}}": NOT_POSITIVE,
     f"{EXPORT} --consensus {{}}": ("other", ""),
-    "export lammps {} --out it": NOT_SCENARIOS,
-    "export lammps three-agents-1d --out {}": FOLDERS,
+    "export lammps {} -o it": NOT_SCENARIOS,
+    "export lammps three-agents-1d -o {}": FOLDERS,
 }
 for command, suffix in (("run", ".nc"), ("animate", ".gif")):
     TABLE |= {
@@ -85,7 +85,7 @@ for command in ("equilibrium", "stability"):
 ALONE = f"""verify os-1 E8; verify --on run.nc; verify os-1 --on run.nc --seed 1; run; run three-agents-1d; animate
 animate three-agents-1d; run three-agents-1d -o; animate three-agents-1d -o; lattice; equilibrium; stability
 lattice line:2 --time 0; equilibrium line:2 --time 0; stability line:2 --time 0; falsify; falsify energy
-{FALSIFY} --replay torn.json; export; export gromacs hexagon --out it; export lammps hexagon; prove no-such
+{FALSIFY} --replay torn.json; export; export gromacs hexagon -o it; export lammps hexagon; prove no-such
 prove --jobs 0; prove --time-limit -1; prove -o torn.csv; scenarios --status x; theorems --no-such"""
 CASES = [[v if word == "{}" else word for word in line.split()] for line, values in TABLE.items() for v in values]
 CASES += [line.split() for line in ALONE.replace("\n", ";").split(";")]

@@ -27,7 +27,7 @@ OUTPUTS = [
     ("lattice", "square:2x2", "-o", "it.png"),
     ("lattice", "square:2x2", "-o", "it.pdf"),
     ("equilibrium", "line:2", "-o", "it.json"),
-    ("equilibrium", "line:2", "--picture", "it.png"),
+    ("equilibrium", "line:2", "--plot", "it.png"),
     ("stability", "line:2", "--plot", "it.png"),
     ("ensemble", "three-agents-1d", "--seeds", 1, "--theorem", "energy", "--jobs", 1, "-o", "it.nc"),
     ("animate", "tiny", "-o", "it.gif", "--seconds", "0.2"),
@@ -98,7 +98,7 @@ def test_a_report_on_a_part_leaves_the_one_on_all_alone(call, catalogue, monkeyp
     assert (code, "report: report/tiny/index.html" in out) == (0, True)
     assert Path("report/verdicts.json").read_bytes() == before
     assert json.loads(Path("report/tiny/verdicts.json").read_text(encoding="utf-8"))["of"] == "tiny"
-    out = call("verify", "tiny", "--report", "report")[1]  # whoever names the folder too
+    out = call("verify", "tiny", "--output", "report")[1]  # whoever names the folder too
     assert "report: report/tiny/index.html" in out
     assert Path("report/verdicts.json").read_bytes() == before
 

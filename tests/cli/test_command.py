@@ -6,10 +6,13 @@ import pytest
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["export", "lammps", "hexagon", "-o", ""], "--out '': the name is empty; choose another name; this folder is"),
+        (
+            ["export", "lammps", "hexagon", "-o", ""],
+            "--output '': the name is empty; choose another name; this folder is",
+        ),
         (["course", ""], "DIR '': the name is empty; choose another name; this folder is '.'"),
         (["prove", "-o", ""], "--output '': the name is empty; choose another name; this folder is '.'"),
-        (["verify", "hexagon", "--report", ""], "--report '': the name is empty; choose another name; this folder is"),
+        (["verify", "hexagon", "--output", ""], "--output '': the name is empty; choose another name; this folder is"),
         (["check", ""], "FILE '': the name is empty; choose another name"),
         (["falsify", "--replay", ""], "--replay '': the name is empty; choose another name"),
         (["lattice", ""], "cannot read '': the name is empty; choose another name"),

@@ -54,7 +54,7 @@ def test_algorithm_2_presses_and_the_scale_is_the_users(found):
 
 
 def test_what_is_saved_is_verified_when_it_is_read(call, found, tmp_path):
-    code, out, _ = call("hexagonal-spiral:7", "-o", "seven.json", "--picture", "seven.png")
+    code, out, _ = call("hexagonal-spiral:7", "-o", "seven.json", "--plot", "seven.png")
     assert code == 0
     assert "saved: seven.json" in out
     assert "picture: seven.png" in out
@@ -92,7 +92,7 @@ def test_a_failed_solve_is_3_one_line_and_no_result(call, monkeypatch, tmp_path)
         raise SolverError("no equilibrium found:\nInfeasible_Problem_Detected")
 
     monkeypatch.setattr("flockana.equilibria.find_equilibrium", failing)
-    code, out, err = call("line:3", "-o", "it.json", "--picture", "it.png")
+    code, out, err = call("line:3", "-o", "it.json", "--plot", "it.png")
     assert (code, out) == (3, "")
     assert err == "flockana: no equilibrium found: Infeasible_Problem_Detected\n"
     assert list(tmp_path.iterdir()) == []
@@ -117,7 +117,7 @@ def test_a_run_that_fails_is_3_and_one_that_is_interrupted_130(call, catalogue, 
         (["pair", "--time", "1"], "--time 1.0: pair has a law of its own"),
         (["other"], "expected a sum of a pair term and others whose forces are gradients"),
         (["line:3", "-o", "it.txt"], "it.txt: expected a file name that ends in .json"),
-        (["line:3", "--picture", "nan.csv/it.png"], "cannot write to nan.csv"),
+        (["line:3", "--plot", "nan.csv/it.png"], "cannot write to nan.csv"),
     ],
 )
 def test_bad_input_is_2_and_one_line(refused, catalogue, monkeypatch, tmp_path, arguments, message):
@@ -140,7 +140,7 @@ def test_a_target_that_no_file_can_hold_is_held_in_place(found, offer, tmp_path)
 
 
 def test_dead_zone_contacts_from_a_scenario_and_from_a_file(call, tmp_path):
-    code, out, err = call("dead-zone-flow", "-o", "contacts.json", "--picture", "contacts.png")
+    code, out, err = call("dead-zone-flow", "-o", "contacts.json", "--plot", "contacts.png")
     text = " ".join(out.split())
     assert (code, err) == (0, "")
     assert "law DeadZoneFlocking, n = 16" in text

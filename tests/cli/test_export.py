@@ -4,7 +4,7 @@ COMMAND = ("export",)
 
 
 def test_a_scenario_is_written_and_what_is_missing_is_said(call, tmp_path):
-    code, said, _ = call("lammps", "hexagon", "--out", "new", "--samples", 5, "--points", 500)
+    code, said, _ = call("lammps", "hexagon", "-o", "new", "--samples", 5, "--points", 500)
     assert code == 0
     assert "missing: velocity consensus" in said
     assert "table: force off by at most" in said
@@ -15,7 +15,7 @@ def test_a_scenario_is_written_and_what_is_missing_is_said(call, tmp_path):
 
 
 def test_the_nearest_consensus_can_be_chosen(call, tmp_path):
-    code, said, _ = call("lammps", "hexagon", "--out", tmp_path, "--consensus", "nearest")
+    code, said, _ = call("lammps", "hexagon", "-o", tmp_path, "--consensus", "nearest")
     assert code == 0
     assert "nearly: velocity consensus" in said
     assert "dpd/ext/tstat" in (tmp_path / "in.flock").read_text()
@@ -31,7 +31,7 @@ def test_the_nearest_consensus_can_be_chosen(call, tmp_path):
     ],
 )
 def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, message):
-    code, _, error = call(*arguments, "--out", "new")
+    code, _, error = call(*arguments, "-o", "new")
     assert code == 2
     assert message in error
     assert not (tmp_path / "new").exists()
@@ -46,7 +46,7 @@ def test_another_s_file_is_kept(refused, tmp_path, name, text):
     refused(
         f"{name} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; choose "
         "another folder, or move it away",
-        *("lammps", "hexagon", "--out", tmp_path, "--points", 50),
+        *("lammps", "hexagon", "-o", tmp_path, "--points", 50),
     )
     assert (tmp_path / name).read_text() == text
     assert [path.name for path in tmp_path.iterdir()] == [name]
@@ -54,5 +54,5 @@ def test_another_s_file_is_kept(refused, tmp_path, name, text):
 
 def test_an_export_from_before_is_replaced(call, tmp_path):
     for scenario in ("hexagon", "three-agents-1d"):
-        assert call("lammps", scenario, "--out", tmp_path, "--points", 50)[0] == 0
+        assert call("lammps", scenario, "-o", tmp_path, "--points", 50)[0] == 0
     assert "3 agents" in (tmp_path / "README.txt").read_text()

@@ -95,7 +95,7 @@ def test_parameters_and_the_state_are_chosen(call):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "expected THEOREM --on SCENARIO"),
+        ([], "expected THEOREM --on CASE"),
         (["E8", "--on", "head-on"], "E8 is not about a run"),
         (["os-1", "--on", "head-on", "--claim", "x"], "unknown claim 'x'"),
         (["os-1", "--on", "head-on", "--vary", "x"], "expected 'q', 'p', both"),

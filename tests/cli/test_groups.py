@@ -44,10 +44,14 @@ def test_a_saved_run_is_animated_and_checked_with_one_refusal(call, refused, tmp
     code, text, _ = call("run", "hexagon", "-o", str(run), "--json")
     assert code == 0
     assert json.loads(text)["status"] == "complete"
-    code, text, _ = call("animate", "--on", str(run), "-o", str(film), "--seconds", "0.2", "--json")
+    code, text, _ = call("animate", str(run), "-o", str(film), "--seconds", "0.2", "--json")
     assert (code, json.loads(text)["file"]) == (0, str(film))
     assert film.stat().st_size > 0
     _, text, _ = call("verify", "os-3", "--on", str(run), "--no-report")
     assert text.count("'Algorithm 2 is applied' does not hold:") == 3  # one for each author of claims
     assert text.count("Algorithm1") == 4  # and with the hypothesis itself
-    refused("expected a scenario, or --on", "animate", "-o", film)
+    _, text, _ = call("verify", "energy", "--on", "three-agents-1d", "--no-report", "--json")
+    assert [v["theorem"] for v in json.loads(text)["verdicts"]] == ["energy"]
+    refused("expected a theorem to check on it", "verify", "hexagon", "--on", "three-agents-1d")
+    _, text, _ = call("falsify", "energy", "--on", str(run), "--budget", "1", "--json")
+    assert json.loads(text)["scenario"] == str(run)

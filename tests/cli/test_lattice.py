@@ -102,7 +102,7 @@ def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is
 
 @pytest.mark.parametrize(("source", "suffix"), [("bcc:1x1x1", "png"), ("line:1", "svg"), ("line:4", "pdf")])
 def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, source, suffix):
-    code, out, err = call(source, "-o", f"it.{suffix}")
+    code, out, err = call(source, "--plot", f"it.{suffix}")
     path = tmp_path / f"it.{suffix}"
     assert (code, err) == (0, "")
     assert f"picture: it.{suffix}" in out
@@ -128,8 +128,8 @@ def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, source, suff
         (["line:3", "--time", "1"], "line:3 is no saved run (.nc)"),
         (["run.nc", "--time", "3"], "--time 3: expected a time of the run, 0 to 2"),
         (["line:3", "--d", "0"], "--d = 0: expected a number > 0"),
-        (["line:3", "-o", "it.bmp"], "it.bmp: expected a file name that ends in .png or .svg or .pdf"),
-        (["line:3", "-o", "word.csv/it.png"], "cannot write to word.csv"),
+        (["line:3", "--plot", "it.bmp"], "it.bmp: expected a file name that ends in .png or .svg or .pdf"),
+        (["line:3", "--plot", "word.csv/it.png"], "cannot write to word.csv"),
         (["line:3", "--tol", "0.2"], "--tol 0.2: expected more than 0 and at most 0.1"),
     ],
 )

@@ -70,7 +70,7 @@ def test_a_fixed_theorem_runs_by_itself(call):
 
 
 def test_json_is_all_that_is_printed(call, catalogue):
-    code, out, err = call("verify", "right", "--json", "--seed", 1, "--report", "there")
+    code, out, err = call("verify", "right", "--json", "--seed", 1, "--output", "there")
     data = json.loads(out)
     assert (code, err, data["seed"], data["verdicts"][0]["status"]) == (0, "", 1, "verified")
     assert verdicts("there")["verdicts"] == data["verdicts"]
@@ -117,13 +117,13 @@ def test_errata_are_all_and_only_the_errata():
     [
         (["verify", "colapse"], "unknown scenario or theorem 'colapse'; did you mean 'collapse'?"),
         (["verify", "os-1", "--seeds", "2"], "expected a scenario whose source reports an outcome, got os-1"),
-        (["verify", "zone-51", "--seeds", "2", "--on", "x.nc"], "a saved run has one seed"),
+        (["verify", "zone-51", "--seeds", "2", "--on", "x.nc"], "a case has one seed"),
         (["verify", "--jobs", "0"], "greater than or equal to 1; got '0'"),
-        (["verify", "--on", "run.nc"], "--on FILE needs a NAME"),
+        (["verify", "--on", "run.nc"], "--on CASE needs a NAME"),
         (["verify", "os-1", "--on", "none.nc"], "no file none.nc"),
         (["verify", "E8", "--on", "none.nc"], "E8 is not about a run"),
-        (["verify", "errata", "--on", "none.nc"], "a saved run is checked by one scenario or theorem; name one"),
-        (["verify", "hexagon", "--no-report", "--report", "x"], "--report x: --no-report writes none; leave out one"),
+        (["verify", "errata", "--on", "none.nc"], "a case is checked by one scenario or theorem; name one"),
+        (["verify", "hexagon", "--no-report", "--output", "x"], "--output x: --no-report writes none; leave out one"),
         (["ensemble", "hexagon", "--retry"], "--retry: without a store no failed runs are known; give --store FILE"),
         (["run", "hexagon", "-o", "."], ". is a folder"),
         (["animate", "hexagon", "-o", "x.png"], "expected a file name that ends in .gif or .mp4"),

@@ -71,7 +71,7 @@ def report() -> Path:
         return made
     folder = CACHE / f"report-{digest(('flockana',))}"
     if not _whole(folder):
-        command = [sys.executable, "-m", "flockana", "verify", "--report", str(folder), "--seeds", "0"]
+        command = [sys.executable, "-m", "flockana", "verify", "--output", str(folder), "--seeds", "0"]
         if subprocess.call(command, stdout=subprocess.DEVNULL) not in (0, 3):  # 3: a verdict differs; its page says so
             raise SystemExit("flockana verify failed: run it by itself to see why")
     return folder
