@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
+from flockana.base.shown import ShortRepr
+
 FactStatus = Literal["met", "unmet", "assumed"]
 _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 
@@ -31,7 +33,7 @@ def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
 
 
 @dataclass(frozen=True)
-class PairFacts:
+class PairFacts(ShortRepr):
     """Facts about a pair law over all distances up to its range."""
 
     smooth: Fact  # ψ is C¹ on (0, r], its force vanishes at the range, and so does the adjacency, which is continuous

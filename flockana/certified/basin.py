@@ -32,6 +32,7 @@ from flint import arb, ctx, fmpq
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.shown import ShortRepr
 from flockana.base.tables import facts_text
 from flockana.certified.at_rest import BOX, centred, enclose_rest, rotated_to, unique_projection
 from flockana.certified.balls import ball, minus, norm, norm2
@@ -53,7 +54,7 @@ _APART = 1e-6  # of d: nearer agents are at one place
 
 
 @dataclass(frozen=True, eq=False)
-class Basin:
+class Basin(ShortRepr):
     """Certified basin of an equilibrium's orbit under rotations; all numbers exact, rounded to the safe side.
 
     Every start whose shape is nearer than `radius` to the orbit, over all coordinates, and whose structural energy is

@@ -17,6 +17,7 @@ from flint import arb, ctx
 
 from flockana.base.checks import ensure_nonnegative
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.certified.balls import ball
 from flockana.certified.basin import DIGITS, Basin
 from flockana.certified.decimals import fraction, round_down, round_up
@@ -25,7 +26,7 @@ _STATED = 4
 
 
 @dataclass(frozen=True)
-class UltimateBound:
+class UltimateBound(ShortRepr):
     """Bounds of a flock in a certified basin under a bounded disturbance; all exact, rounded to the safe side.
 
     Parameters

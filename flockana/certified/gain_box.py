@@ -18,6 +18,7 @@ from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.shown import ShortRepr
 from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.krawczyk import column, krawczyk_shift, least_eigenvalue
 from flockana.certified.structure import Structure, in_lengths_of_unit, outer
@@ -34,7 +35,7 @@ _FINEST, _GROWTH, _GROWTHS = 1e-9, 1.25, 20  # first radius of the box, and how 
 
 
 @dataclass(frozen=True)
-class GainBox:
+class GainBox(ShortRepr):
     """Stability of an equilibrium for all gains in a box: proved, refuted by gains, or neither.
 
     Parameters

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_state, normalise
+from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 from flockana.environment.motion import Forced
 from flockana.environment.spring import Spring
 
 
 @dataclass(frozen=True)
-class Copies(Forced):
+class Copies(ShortRepr, Forced):
     """Copies of the γ-agent, one for each agent, each obeying f_r, coupled or not.
 
     q_i' = p_i, p_i' = f_r(q_i, p_i) + k₁ (q̄ − q_i) + k₂ (p̄ − p_i), with the mean q̄, p̄ of all copies. Without coupling

@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball
@@ -42,7 +43,7 @@ def ensure_corners(vertices: Any) -> FloatArray:
     return corners
 
 
-class Obstacle(ABC):
+class Obstacle(ShortRepr, ABC):
     """Base class of convex obstacles: frozen dataclasses with `par`, `ball` and `kernels`.
 
     Inside the solid (where a law must not be started) q̂ stays the closest point of the boundary.

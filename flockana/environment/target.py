@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.shown import ShortRepr
 
 
 class Harmonic(NamedTuple):
@@ -41,7 +42,7 @@ class Harmonic(NamedTuple):
 _ANSWERS = ("consistent", "acceleration_bound", "feature")
 
 
-class Target(ABC):
+class Target(ShortRepr, ABC):
     """Base class of γ-agents: frozen dataclasses with `position`, `rate` and, where p_r differs, `state`.
 
     A class may also say by closed form what it is: `consistent`, `acceleration_bound` and `feature`, None where that is

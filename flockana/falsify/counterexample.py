@@ -15,6 +15,7 @@ from flockana.base.errors import FileError, FlockanaError
 from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
+from flockana.base.shown import ShortRepr
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -34,7 +35,7 @@ _KEYS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Counterexample:
+class Counterexample(ShortRepr):
     """Law, start and claim that a run from there refutes.
 
     Parameters

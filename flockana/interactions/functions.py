@@ -17,6 +17,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.facts import Fact, PairFacts
+from flockana.base.shown import ShortRepr
 from flockana.kernels.neighbours import pair_blocks
 
 PROVED = ("smooth", "weight", "inside")  # facts that a function without a formula may name a proof of
@@ -72,7 +73,7 @@ class Values(NamedTuple):
     adjacency_slope: FloatArray
 
 
-class DistanceFunction(ABC):
+class DistanceFunction(ShortRepr, ABC):
     """Function of the distance of two agents: a potential with its force, an adjacency, or both."""
 
     proofs: ClassVar[Mapping[str, str]] = {}  # of facts about all distances, by name: smooth, weight, inside

@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, normalise, per_agent
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
@@ -21,7 +22,7 @@ def weighted(gain: Any, values: FloatArray) -> float:
 
 
 @dataclass(frozen=True)
-class Gains:
+class Gains(ShortRepr):
     """Gains of the α-, β- and γ-terms: c1 of positions, c2 of velocities, all >= 0.
 
     The paper prints none; the defaults keep c1γ small beside c1α, because a strong γ-agent squeezes the flock until

@@ -20,6 +20,7 @@ from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
+from flockana.base.shown import ShortRepr
 from flockana.interactions.functions import LawFunction, PairCorner, UnknownEdges
 from flockana.interactions.pair import PairInteraction
 from flockana.laws.features import Feature, Unknown, function_feature
@@ -50,7 +51,7 @@ def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
     return None
 
 
-class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract method of its own
+class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract method of its own
     """Common interface of continuous laws and maps.
 
     A law has what its parameters are named for; what it lacks is None or empty, so that nobody need ask for its class.
@@ -232,10 +233,10 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one."""
         return float("nan")
 
-    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a subclass says so
+    def check_dimension(self, m: int) -> None:  # nothing to check unless a subclass says so
         """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this."""
 
-    def check_agents(self, n: int) -> None:  # noqa: B027  # as `check_dimension`
+    def check_agents(self, n: int) -> None:  # as `check_dimension`
         """Raise if the law is not for n agents; a law with a parameter per agent overrides this."""
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:

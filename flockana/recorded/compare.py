@@ -7,6 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.vectors import lengths
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.accelerations import accelerations
@@ -20,7 +21,7 @@ _ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gai
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(ShortRepr):
     """Comparison of a recording with a law.
 
     Attributes

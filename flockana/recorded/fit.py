@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.shown import ShortRepr
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.compare import compare
 from flockana.recorded.contributions import SYMBOLS
@@ -31,7 +32,7 @@ _SHIFTED = 0.1  # of the deviation of an estimate, from which on a constant erro
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(ShortRepr):
     """A law fitted to a recording.
 
     Attributes

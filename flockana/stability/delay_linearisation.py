@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.tables import facts_html, facts_text
 from flockana.laws import Law
 from flockana.stability.damp_table import damp_table
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class DelayLinearisation:
+class DelayLinearisation(ShortRepr):
     """δq''(t) = −Σ_k (K_k δq(t − τ_k) + D_k δq'(t − τ_k)) near an equilibrium, in the frame that moves with it.
 
     It has infinitely many roots, of which the rightmost decide, and no basis of modes.

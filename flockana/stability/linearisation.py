@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.tables import facts_html, facts_text
 from flockana.laws import Law
 from flockana.measures.metrics import pairs_at_one_place
@@ -27,7 +28,7 @@ _MOST_SHOWN = 900  # coordinates up to which all poles are found for a table
 
 
 @dataclass(frozen=True, eq=False)
-class Linearisation(Studies):
+class Linearisation(ShortRepr, Studies):
     """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
 
     Parameters

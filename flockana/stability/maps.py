@@ -20,6 +20,7 @@ from numpy.polynomial import Polynomial
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
 from flockana.stability.damp_table import damp_table
@@ -88,7 +89,7 @@ class MapMode:
 
 
 @dataclass(frozen=True, eq=False)
-class MapLinearisation:
+class MapLinearisation(ShortRepr):
     """δx(k+1) = A δx(k) near the fixed motion of a map, in the frame that moves with it.
 
     Parameters

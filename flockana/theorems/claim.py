@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric", "statistical"]
@@ -22,7 +23,7 @@ BYLINES: Mapping[str, str] = {"source": "the source's", "corrected": "corrected"
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class Hypothesis(ShortRepr):
     """A condition of a theorem, and whether it holds in one case.
 
     Parameters
@@ -59,7 +60,7 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class Claim:
+class Claim(ShortRepr):
     """One statement of a theorem about one case, with its status, margin and numerical error.
 
     Parameters

@@ -119,11 +119,11 @@ class RecordingEvidence(Evidence):
         law = ensure_law(self.law)
         law.check_dimension(rec.m)
         law.check_agents(rec.n)
-        follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
+        follow = rec.cached(f"following {id(law)}", lambda: (law, following(rec, law)))[1]  # whose number no other gets
         first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail, None, "enclosed")
         if follow.status == "unmet":
             return (first,), item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)
-        seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
+        seen = rec.cached(f"observed under {id(law)}", lambda: observed_recording(rec, law, follow))
         return _weighed(examine_observed(item, seen, tolerances), rec, first)
 
     def _moving(self) -> Recording:

@@ -4,10 +4,11 @@ from dataclasses import dataclass, fields
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 
 
 @dataclass(frozen=True)
-class Tolerances:
+class Tolerances(ShortRepr):
     """Every threshold that a verdict uses; it is shown with the verdict.
 
     Parameters

@@ -96,9 +96,14 @@ class Verdict:
         head = {"theorem": data.pop("theorem"), "status": self.status, "summary": self.summary, "rigour": self.rigour}
         return head | data
 
+    def __repr__(self) -> str:
+        return f"<Verdict {self._head()}; {self.summary:.400}>"
+
+    def _head(self) -> str:
+        return f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"
+
     def __str__(self) -> str:
-        lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
-        lines += [f"  {self.summary}"]
+        lines = [self._head(), f"  {self.summary}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
         for name, c in merged((*self.main_claims, *self.further_claims)):
             whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "

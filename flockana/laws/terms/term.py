@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.shown import ShortRepr
 from flockana.interactions.functions import LawFunction
 from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
@@ -92,7 +93,7 @@ class Compiled(NamedTuple):
         return System(*self.functions, self.numbers, view, self.moving, reach, lister(), own, *room)
 
 
-class Term(ABC):
+class Term(ShortRepr, ABC):
     """Term u^T of a law u = Σ u^T; its results are unchecked, as the law checks once for all terms.
 
     A derivative is either a sparse matrix (n m, n m) in the order of ``q.ravel()``, or an array of blocks (n, m, m),
@@ -158,11 +159,11 @@ class Term(ABC):
         """
         return None
 
-    def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a term says so
+    def check_dimension(self, m: int) -> None:  # nothing to check unless a term says so
         """Raise if the term does not live in m dimensions."""
 
-    def check_agents(self, n: int) -> None:  # noqa: B027  # as `check_dimension`
+    def check_agents(self, n: int) -> None:  # as `check_dimension`
         """Raise if the term is not for n agents."""
 
-    def check_start(self, q: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
+    def check_start(self, q: FloatArray) -> None:  # as `check_dimension`
         """Raise if the term forbids a start from these positions."""

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
 from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
@@ -16,7 +17,7 @@ from flockana.sources.jond_2025.kernels.zones import World
 
 
 @dataclass(frozen=True)
-class Alien:
+class Alien(ShortRepr):
     """Agent outside the flock that pursues the nearest flock agent it detects, and otherwise rests.
 
     The paper gives the range of detection, 9 m, and that it is trapped in a triangle; speed and triangle are ours.
@@ -58,7 +59,7 @@ class Alien:
 
 
 @dataclass(frozen=True)
-class ZoneWorld:
+class ZoneWorld(ShortRepr):
     """Obstacles, a box and aliens; empty by default.
 
     Parameters

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, PerAgent, ensure_nonnegative, normalise, per_agent
 from flockana.base.errors import ArgumentError
+from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 
 Table = float | tuple[tuple[float, ...], ...]
@@ -22,7 +23,7 @@ def _spread(name: str, value: PerAgent, n: int) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class ZoneRadii:
+class ZoneRadii(ShortRepr):
     """Radii of an agent's zones: 0 < r <= c < a < s.
 
     Agents at most r away repel; those up to c repel and attract (conflict); those up to a attract. Aliens are watched
@@ -83,7 +84,7 @@ class ZoneRadii:
 
 
 @dataclass(frozen=True)
-class ZoneWeights:
+class ZoneWeights(ShortRepr):
     """Weights of the six behaviours, and gains of the two that are means.
 
     The weights of cohesion and of alignment are divided by their sum, so equal ones cancel: 0.75 and 0.25 in the
