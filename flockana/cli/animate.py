@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from flockana.base.progress import progress_bar
 from flockana.cli.options import AsJson, Seed, output
 from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
 
@@ -25,16 +24,14 @@ def animate_command(
     """Simulate a scenario, or read a saved run, and write a film of it: GIF, or MP4 where ffmpeg is installed."""
     from flockana.cli.own import read_case
     from flockana.dynamics.trajectory import Trajectory
-    from flockana.plots.animation import animate, ensure_film, frame_count
+    from flockana.plots.animation import animate, ensure_film
 
     case = read_case(name, seed)
     ensure_film(film, seconds=seconds, fps=fps)
     run = case if isinstance(case, Trajectory) else case.run(progress=sys.stdout.isatty())
     if run is not case and run.status == "interrupted":
         return INTERRUPTED
-    with progress_bar(frame_count(seconds, fps)) as advance:
-        look: dict[str, Any] = {"seconds": seconds, "fps": fps, "ranges": ranges}
-        animate(run, film, **look, progress=lambda done, total: advance(done, "drawing"))
+    animate(run, film, seconds=seconds, fps=fps, ranges=ranges)
     if as_json:
         show_json({"subject": name, "status": run.status, "message": run.message, "file": str(film)})
     else:

@@ -10,7 +10,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.cli.options import AsJson, Jobs, Plot, ScenarioName, output
-from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
+from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     import xarray
@@ -60,16 +60,12 @@ def ensemble_command(
     ensure_file(plot)
     if plot is not None and len(axes) > 2:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
-    runs = ensemble(
-        scenario,
-        range(first, first + seeds),
-        theorems=theorem or None,
-        parameters=parameters,
-        jobs=jobs,
-        store=store,
-        retry=retry,
-        progress=True,
-    )
+    wanted: dict[str, Any] = {"theorems": theorem or None, "parameters": parameters, "jobs": jobs, "store": store}
+    try:
+        runs = ensemble(scenario, range(first, first + seeds), **wanted, retry=retry, progress=True)
+    except KeyboardInterrupt as stopped:
+        typer.echo(stopped, err=True)
+        return INTERRUPTED
     table = shares(runs, level=level)
     if as_json:
         show_json(share_rows(table))

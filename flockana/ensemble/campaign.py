@@ -115,7 +115,7 @@ def ensemble(
     SolverError
         If the executor fails; what was done is in the store, and the same call with another executor goes on from it.
     KeyboardInterrupt
-        On Ctrl-C; what was done is in the store.
+        On Ctrl-C; it says how many runs are done, and where they are stored.
 
     Examples
     --------
@@ -158,14 +158,22 @@ def ensemble(
             if executor is None:
                 jobs = min(jobs or cores(), len(missing))
                 jobs = 1 if jobs > 1 and not can_start_processes(request) else jobs
-            with worker_pool(executor, jobs=jobs) as workers:
-                for made in make_runs(request, missing, workers):
-                    new = {keys[record.job]: record for record in made}
-                    if kept is not None:
-                        kept.add(name, new)
-                    records |= new
-                    done += len(new)
-                    advance(done, text)
+            try:
+                with worker_pool(executor, jobs=jobs) as workers:
+                    for made in make_runs(request, missing, workers):
+                        new = {keys[record.job]: record for record in made}
+                        if kept is not None:
+                            kept.add(name, new)
+                        records |= new
+                        done += len(new)
+                        advance(done, text)
+            except KeyboardInterrupt:
+                how = (
+                    "a store would keep them"
+                    if store is None
+                    else f"they are stored in {store}, and the same call goes on"
+                )
+                raise KeyboardInterrupt(f"{len(records)} of {len(all_jobs)} runs done; {how}") from None
     return to_dataset(request, grid, [records[keys[job]] for job in all_jobs])
 
 

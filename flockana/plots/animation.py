@@ -17,6 +17,7 @@ from flockana.base.checks import FloatArray, TimeSpan, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import atomic_write, ensure_folder_of, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
+from flockana.base.progress import progress_bar
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.gif import GifWriter
@@ -99,7 +100,7 @@ def animate(
     fps: float = 15.0,
     velocities: bool = False,
     ranges: bool = False,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: bool | Callable[[int, int], None] = True,
 ) -> Path:
     """Write a film of a run: GIF always, MP4 where the program ffmpeg is installed.
 
@@ -117,8 +118,8 @@ def animate(
         Frames per second.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
-    progress : callable
-        Is told the number of frames drawn and their total.
+    progress : bool or callable
+        Show a bar on a terminal; or a function that is told the number of frames drawn and their total.
     """
     target = ensure_film(path, seconds=seconds, fps=fps)
     run = run_of(trajectory, law=law, q0=q0, p0=p0, t_span=t_span, seed=seed)
@@ -126,12 +127,16 @@ def animate(
     writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
-    with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):
+    told, shown = (progress, False) if callable(progress) else (None, progress)
+    bar = progress_bar(frame_count(seconds, fps), enabled=shown)
+    with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL), bar as advance:
 
         def drawn(k: int, total: int) -> None:
             if came:
                 raise KeyboardInterrupt
-            progress(k + 1, total)
+            advance(k + 1, "drawing")
+            if told is not None:
+                told(k + 1, total)
 
         film.save(partial, writer, dpi=_DPI, progress_callback=drawn)
     return target

@@ -1,4 +1,4 @@
-"""Film of a run that plays in a notebook and saves to a file."""
+"""Film of a run that saves to a file; a notebook shows the run in the player."""
 
 import os
 from dataclasses import dataclass
@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.plots.animation import animate, animation, frame_count
+from flockana.plots.animation import animate, frame_count
 
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Film of a run: played in a notebook, saved as GIF or MP4.
+    """Film of a run: a notebook plays the run, `save` writes GIF or MP4.
 
     Parameters
     ----------
@@ -28,6 +28,9 @@ class Film:
     def __post_init__(self) -> None:
         frame_count(self.seconds, self.fps)
 
+    def __repr__(self) -> str:
+        return f"<Film of {self.trajectory!r}, {self.seconds:g} s; .save(path) writes it>"
+
     @property
     def _options(self) -> dict[str, Any]:
         return {key: value for key, value in vars(self).items() if key != "trajectory"}
@@ -43,5 +46,5 @@ class Film:
         return animate(self.trajectory, path, **self._options)
 
     def _repr_html_(self) -> str:
-        """Return the HTML player with its frames."""
-        return str(animation(self.trajectory, **self._options).to_jshtml(fps=round(self.fps), default_mode="loop"))
+        """Return the player, a hundredth of the film's frames as pictures."""
+        return str(self.trajectory.player()._repr_html_())

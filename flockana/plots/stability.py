@@ -163,7 +163,7 @@ def animate_mode(
     seconds: float = 4.0,
     fps: float = 15.0,
     velocities: bool = False,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: bool | Callable[[int, int], None] = True,
 ) -> Path:
     """Write a film of a mode: GIF always, MP4 where the program ffmpeg is installed.
 
