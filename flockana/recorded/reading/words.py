@@ -1,173 +1,28 @@
 """Vocabulary of recordings: what a column's name says of its kind, axis, owner and unit."""
 
+import csv
 import re
+from importlib.resources import files
 from typing import Any, NamedTuple
 
 AXES = "xyz"
-_TIMES = {
-    *("t", "time", "times", "timestamp", "timestamps", "stamp", "seconds", "second", "sec", "secs", "tau", "clock"),
-    *("elapsed", "date", "datetime", "utc", "epoch", "unix", "rosbag"),
+_WORDS = {
+    key: set(words.split())
+    for key, words in csv.reader(files(__package__).joinpath("words.csv").read_text(encoding="utf-8").splitlines())
 }
-_FRAMES = {"frame", "step", "sample", "tick", "iteration", "seq", "timestep"}
-_AGENTS = {
-    *(
-        "agent",
-        "track",
-        "trajectory",
-        "traj",
-        "particle",
-        "robot",
-        "drone",
-        "uav",
-        "ugv",
-        "quad",
-        "quadrotor",
-        "copter",
-    ),
-    *("bird", "pigeon", "jackdaw", "starling", "fish", "animal", "individual", "ped", "pedestrian", "person", "people"),
-    *("vehicle", "car", "cell", "object", "obj", "body", "boid", "node", "actor", "member", "entity", "ant", "bee"),
-    *("mouse", "sheep", "player", "atom", "bot", "vessel", "ship", "aircraft", "tag", "target", "identity", "subject"),
-    *("cf", "crazyflie", "insect", "bat", "fly", "larva", "nucleus", "bacterium", "walker", "unit", "vicon"),
-}
-_NUMBERS = {
-    "id",
-    "ids",
-    "number",
-    "no",
-    "nr",
-    "num",
-    "index",
-    "idx",
-    "name",
-    "key",
-    "label",
-    "code",
-    "count",
-    "identifier",
-}
-_FILLERS = {"field", "header", "data", "msg", "value", "state", "states", "world", "the", "of", "coordinate", "coord"}
-_FILLERS |= {"coordinates", "coords", "odom", "odometry", "stamped"}
-_ROLES = {
-    "other": {
-        *(
-            "goal",
-            "target",
-            "setpoint",
-            "error",
-            "err",
-            "ref",
-            "reference",
-            "desired",
-            "des",
-            "cmd",
-            "command",
-            "force",
-        ),
-        *(
-            "torque",
-            "thrust",
-            "angular",
-            "omega",
-            "gyro",
-            "gyroscope",
-            "mag",
-            "magnetic",
-            "offset",
-            "bias",
-            "std",
-            "sd",
-        ),
-        *("var", "cov", "covariance", "sigma", "uncertainty", "noise", "min", "max", "bbox", "box", "normal", "wind"),
-        *(
-            "waypoint",
-            "wp",
-            "obstacle",
-            "landmark",
-            "camera",
-            "mean",
-            "stddev",
-            "sp",
-            "destination",
-            "jerk",
-            "residual",
-        ),
-    },
-    "orientation": {
-        *(
-            "orientation",
-            "quaternion",
-            "quat",
-            "rotation",
-            "rot",
-            "attitude",
-            "heading",
-            "rpy",
-            "euler",
-            "ori",
-            "angle",
-        ),
-        *("angles", "roll", "pitch", "yaw", "theta"),
-    },
-    "u": {"acceleration", "accelerations", "accel", "acc", "a", "u", "ddot", "input"},
-    "p": {"velocity", "velocities", "vel", "v", "speed", "linear", "twist", "dot"},
-    "q": {
-        "position",
-        "positions",
-        "pos",
-        "location",
-        "loc",
-        "translation",
-        "pose",
-        "place",
-        "point",
-        "centroid",
-        "p?",
-        "q?",
-    },
-}
+_TIMES, _FRAMES, _AGENTS, _NUMBERS, _FILLERS = (_WORDS[key] for key in ("time", "frame", "agent", "number", "filler"))
+_ROLES = {key: _WORDS[key] for key in ("other", "orientation", "u", "p", "q")}
+_PREFIXES = {"q": ("pos", "loc", "t", "c"), "p": ("v", "vel"), "u": ("u", "a", "acc"), "p?": ("p",), "q?": ("q",)}
+_SUFFIXES = {"pos": "q", "vel": "p", "acc": "u", "dot": "p"}
 _FUSED = {
-    first + axis: (kind, axis)
-    for kind, prefixes in {
-        "q": ("pos", "loc", "t", "c"),
-        "p": ("v", "vel"),
-        "u": ("u", "a", "acc"),
-        "p?": ("p",),
-        "q?": ("q",),
-    }.items()
-    for first in prefixes
-    for axis in "xyzw"
-} | {
-    axis + last: (kind, axis)
-    for axis in AXES
-    for last, kind in (("pos", "q"), ("vel", "p"), ("acc", "u"), ("dot", "p"))
-}
+    first + axis: (kind, axis) for kind, prefixes in _PREFIXES.items() for first in prefixes for axis in "xyzw"
+} | {axis + last: (kind, axis) for axis in AXES for last, kind in _SUFFIXES.items()}
 
-_LENGTHS = {
-    "m": 1.0,
-    "mm": 1e-3,
-    "cm": 1e-2,
-    "dm": 0.1,
-    "km": 1e3,
-    "um": 1e-6,
-    "nm": 1e-9,
-    "ft": 0.3048,
-    "px": 0.0,
-    "bl": 0.0,
-}
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "um": 1e-6, "nm": 1e-9, "ft": 0.3048}
+_LENGTHS |= {"px": 0.0, "bl": 0.0}
 _DURATIONS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _SPELLINGS = {
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("µm", "μm", "micron", "microns", "micrometer"), "um"),
-    **dict.fromkeys(("pixel", "pixels", "pix"), "px"),
-    **dict.fromkeys(("feet", "foot"), "ft"),
-    **{"mps": "m/s", "mmps": "mm/s", "cmps": "cm/s"},
-    **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
-    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("msec", "msecs", "millisecond", "milliseconds", "millis"), "ms"),
-    **dict.fromkeys(("µs", "μs", "usec", "microsecond", "microseconds"), "us"),
-    **dict.fromkeys(("nsec", "nanosec", "nanosecond", "nanoseconds"), "ns"),
-    **dict.fromkeys(("minute", "minutes"), "min"),
-    **dict.fromkeys(("hour", "hours"), "h"),
+    spelling: key.removeprefix("unit ") for key in _WORDS if key.startswith("unit ") for spelling in _WORDS[key]
 }
 _BRACKET = re.compile(r"\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]\s*$")  # x [m], t (s)
 _RATE = re.compile(r"^([a-zµμ]+)(?:\s*(?:/|·|\*|per|\s)\s*([a-zµμ]+)\s*(?:\^|\*\*)?-?([12²])?(?:\s*/\s*([a-zµμ]+))?)?$")
