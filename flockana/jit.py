@@ -46,17 +46,7 @@ _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is co
 
 
 class Kernel:
-    """Function that is compiled when it is first called.
-
-    Parameters
-    ----------
-    function : callable
-        What to compile.
-    kept : bool
-        Keep the compiled code on disk, if the function is a module's own.
-    options : dict
-        Those of `numba.njit`.
-    """
+    """Function that is compiled when it is first called."""
 
     def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
@@ -135,30 +125,12 @@ class Inlined(Kernel):
 
 
 def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """Return a decorator like `numba.njit`, which loads numba at the first call.
-
-    Examples
-    --------
-    >>> @njit()
-    ... def twice(x):
-    ...     return 2 * x
-    >>> twice(21)
-    42
-    """
+    """Return a decorator like `numba.njit`, which loads numba at the first call."""
     return lambda function: Kernel(function, cache, options)
 
 
 def register_jitable(function: Callable[..., Any]) -> Inlined:
-    """Return a function for kernels to call, which is compiled into them.
-
-    Examples
-    --------
-    >>> @register_jitable
-    ... def twice(x):
-    ...     return 2 * x
-    >>> twice(21), njit()(lambda x: twice(x) + 1)(21)
-    (42, 43)
-    """
+    """Return a function for kernels to call, which is compiled into them."""
     return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
 
 
@@ -198,15 +170,7 @@ def callback_like(kernel: Kernel, result: Any, *arguments: Any) -> Any:
 
 
 def thawed(array: Any) -> Any:
-    """Return a view of an array that numba types as writable, so that one compiled version serves all arrays.
-
-    Examples
-    --------
-    >>> x = np.zeros(2)
-    >>> x.flags.writeable = False
-    >>> thawed(x).flags.writeable, thawed(x).base is not None
-    (True, True)
-    """
+    """Return a view of an array that numba types as writable, so that one compiled version serves all arrays."""
     return np.asarray(_Memory(array))
 
 

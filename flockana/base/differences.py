@@ -23,15 +23,6 @@ class Differences(NamedTuple):
 def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, unit: float) -> Differences:
     """Return ∂f/∂x at x, shape (f.size, x.size), by central differences of order 6 at the width that serves best.
 
-    Parameters
-    ----------
-    function : callable
-        From an array of the shape of x to an array.
-    x : ndarray
-        Where.
-    unit : float
-        Size of a change of x over which the function bends; the widths are at most a thousandth of it.
-
     Examples
     --------
     >>> found = differences(np.sin, np.array([0.5]), 1.0)

@@ -43,13 +43,7 @@ class BallOrbit:
 
 
 def has_ball_orbit(law: Any) -> bool:
-    """Return whether a map is an explicit one-step method of a law that is known in balls.
-
-    Parameters
-    ----------
-    law : DiscreteLaw
-        The map.
-    """
+    """Return whether a map is an explicit one-step method of a law that is known in balls."""
     if type(law) is not FixedSteps:
         return False
     try:
@@ -64,25 +58,7 @@ def enclose_orbit(
 ) -> BallOrbit:
     """Enclose the exact orbit of a scheme at some of its steps; at least the rows before `known` are thin.
 
-    Parameters
-    ----------
-    law : FixedSteps
-        Of a law that `enclose` supports, such as ``RK4(Algorithm1(), 0.01)``. Its parameters, unlike those of a tube,
-        are their binary values.
-    t0, q0, p0 : float, ndarray of shape (n, m)
-        The start, exact.
-    wanted : sequence of int
-        Rising numbers of steps; 0 is the start.
-    budget : float
-        Pairs that may be evaluated, counted at 128 bits.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.solvers.explicit_euler import ExplicitEuler
-    >>> orbit = enclose_orbit(ExplicitEuler(Algorithm1(), 0.5), 0.0, np.zeros((1, 1)), np.ones((1, 1)), [0, 3])
-    >>> orbit.q.ravel().tolist(), orbit.known
-    ([0.0, 1.5], 2)
+    The law's parameters, unlike those of a tube, are their binary values; `budget` counts pairs, at 128 bits.
     """
     bits, left = _FIRST_BITS, float(budget)
     best: BallOrbit | None = None

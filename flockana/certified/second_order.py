@@ -41,11 +41,6 @@ def is_hurwitz(coefficients: Sequence[fmpq]) -> bool:
     """Return whether all roots of a real polynomial, given from its constant term on, have negative real parts.
 
     Routh's array: all entries of its first column have one sign.
-
-    Examples
-    --------
-    >>> is_hurwitz([fmpq(1), fmpq(1), fmpq(1)]), is_hurwitz([fmpq(1), fmpq(0), fmpq(1)])
-    (True, False)
     """
     falling = list(reversed([fmpq(c) for c in coefficients]))
     upper, lower = falling[0::2], falling[1::2]

@@ -16,19 +16,11 @@ STRENGTH, LENGTH, DECAY = range(3)
 
 @dataclass(frozen=True)
 class WeightKernels:
-    """Compiled functions of a weight.
+    """Compiled functions of a weight."""
 
-    Attributes
-    ----------
-    of_square : Kernel
-        a(s²) of its parameters.
-    weight, slope : callable
-        a and da/d(s²) over an array of squared distances.
-    """
-
-    of_square: Kernel
-    weight: Callable[..., Any]
-    slope: Callable[..., Any]
+    of_square: Kernel  # a(s²) of its parameters
+    weight: Callable[..., Any]  # a over an array of squared distances
+    slope: Callable[..., Any]  # da/d(s²) over such an array
 
     @property
     def match(self) -> Callable[..., float]:

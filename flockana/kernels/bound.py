@@ -26,14 +26,7 @@ _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re
 
 @cache
 def bound(template: str, **bindings: Any) -> ModuleType:
-    """Return the module of a template with its names bound; the same module for the same bindings.
-
-    Examples
-    --------
-    >>> from flockana.kernels.scalars import sigma_1
-    >>> bound("flockana.kernels.over_array", function=sigma_1) is bound("flockana.kernels.over_array", function=sigma_1)
-    True
-    """
+    """Return the module of a template with its names bound; the same module for the same bindings."""
     spec = find_spec(template)
     text = Path(spec.origin).read_text("utf-8")  # type: ignore[union-attr, arg-type]
     functions, left = {}, dict(bindings)

@@ -67,11 +67,6 @@ def pair_blocks(
     """Yield every unordered pair with ‖q_j − q_i‖ < r exactly once, as blocks of index arrays (i, j).
 
     A block's arrays are reused for the next one: use each before asking for the next.
-
-    Examples
-    --------
-    >>> [(i.tolist(), j.tolist()) for i, j in pair_blocks(np.array([[0.0], [1.0], [5.0]]), 2.0)]
-    [([0], [1])]
     """
     n = q.shape[0]
     capacity = max(block, n)
@@ -92,14 +87,7 @@ def pair_blocks(
 
 
 def pair_list(q: FloatArray, r: float) -> tuple[IndexArray, IndexArray]:
-    """All pairs of `pair_blocks` at once, i < j, in lexicographic order: O(number of pairs) memory.
-
-    Examples
-    --------
-    >>> i, j = pair_list(np.array([[0.0], [1.0], [1.5]]), 1.2)
-    >>> i.tolist(), j.tolist()
-    ([0, 1], [1, 2])
-    """
+    """All pairs of `pair_blocks` at once, i < j, in lexicographic order: O(number of pairs) memory."""
     blocks = [(i.copy(), j.copy()) for i, j in pair_blocks(q, r)]
     i = np.concatenate([b[0] for b in blocks])
     j = np.concatenate([b[1] for b in blocks])

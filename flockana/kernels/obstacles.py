@@ -21,18 +21,10 @@ from flockana.kernels.bound import bound
 
 @dataclass(frozen=True)
 class ObstacleKernels:
-    """Compiled sums over agents and the obstacles of one kind (`flockana.kernels.obstacle_sums`).
+    """Compiled sums over agents and the obstacles of one kind (`flockana.kernels.obstacle_sums`)."""
 
-    Attributes
-    ----------
-    project : Kernel
-        The closest-point map.
-    turn : Kernel, optional
-        How p̂ turns as an agent moves; without it, `braking` is right where p = 0 alone.
-    """
-
-    project: Kernel
-    turn: Kernel | None
+    project: Kernel  # the closest-point map
+    turn: Kernel | None  # how p̂ turns as an agent moves; without it `braking` is right where p = 0 alone
 
     @property
     def turns(self) -> bool:

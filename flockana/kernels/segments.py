@@ -131,13 +131,7 @@ def cross(x, i, j, g, h, planes):
 
 @kernel
 def foot(p, a, b):
-    """Distance of a point from a segment.
-
-    Examples
-    --------
-    >>> foot(np.array([1.0, 2.0, 0.0]), np.zeros(3), np.array([3.0, 0.0, 0.0]))
-    2.0
-    """
+    """Distance of a point from a segment."""
     along, size = 0.0, 0.0
     for k in range(3):
         along += (p[k] - a[k]) * (b[k] - a[k])
@@ -151,14 +145,7 @@ def foot(p, a, b):
 
 @kernel
 def between(a, b, c, d):
-    """Distance of two segments that do not cross: at an end of one, or along their common normal.
-
-    Examples
-    --------
-    >>> x = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 2.0], [0.0, 1.0, 2.0]])
-    >>> between(x[0], x[1], x[2], x[3])
-    2.0
-    """
+    """Distance of two segments that do not cross: at an end of one, or along their common normal."""
     nearest = min(min(foot(a, c, d), foot(b, c, d)), min(foot(c, a, b), foot(d, a, b)))
     uu, uv, vv, uw, vw = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):

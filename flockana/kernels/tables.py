@@ -25,11 +25,6 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
 
     Each panel is about as wide as its distance from the poles, so their number grows with the logarithm of the
     interval only.
-
-    Examples
-    --------
-    >>> panel_edges(0.0, 4.0, 1.0).tolist()
-    [0.0, 1.0, 2.0, 3.0, 4.0]
     """
     steps = 2.0 ** np.arange(max(1, int(np.ceil(np.log2(1.0 + abs(left - centre) + abs(right - centre)))) + 1))
     marks = np.concatenate([centre - steps, [centre], centre + steps])
@@ -42,12 +37,6 @@ def integral_panels(
     """Panels of the antiderivative of `function` that equals `value` at the edge `anchor`.
 
     It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
-
-    Examples
-    --------
-    >>> panels = integral_panels(lambda z: 2.0 * z, np.array([0.0, 1.0, 3.0]), anchor=3.0, value=9.0)
-    >>> bool(abs(polynomial.polyval(-1.0, panels[0, 2:])) < 1e-14)  # z² at 0
-    True
     """
     half, middle = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
     values = function((middle + half * series_nodes()).ravel()).reshape(-1, NODES)
@@ -69,13 +58,7 @@ def series_nodes() -> FloatArray:
 
 
 def series_of(values: FloatArray) -> FloatArray:
-    """Coefficients of the Chebyshev polynomials, of functions on [−1, 1].
-
-    Examples
-    --------
-    >>> series_of(2.0 * series_nodes() ** 2).round(15)[:4].tolist()  # 1 + T₂
-    [1.0, 0.0, 1.0, 0.0]
-    """
+    """Coefficients of the Chebyshev polynomials, of functions on [−1, 1]."""
     return _times(values, _orthogonality())
 
 

@@ -124,12 +124,6 @@ def as_scenario(given: Any, seed: int = 0) -> Scenario:
 
 
 def run_of(given: Any = None, *, seed: int = 0, **parts: Any) -> Trajectory:
-    """Return a run as it is, or simulate a scenario, its name, a flock, or the parts of a flock.
-
-    Parameters
-    ----------
-    **parts
-        law, q0, p0, t_span, as of `chosen`.
-    """
+    """Return a run as it is, or simulate a scenario, its name, a flock, or the parts of a flock."""
     item = chosen(given, **parts)
     return as_scenario(item, seed).run() if isinstance(item, str | Flock | Scenario) else ensure_run(item)

@@ -18,32 +18,17 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class StrongComponents:
-    """Indices of each strongly connected component, those that are heard before those that hear them.
+    """Indices of each strongly connected component, those that are heard before those that hear them."""
 
-    Parameters
-    ----------
-    indices : tuple of int array
-        Rows of each component, rising.
-    heard : tuple of set of int
-        Numbers of the earlier components that each hears directly.
-    """
-
-    indices: tuple[IndexArray, ...]
-    heard: tuple[frozenset[int], ...]
+    indices: tuple[IndexArray, ...]  # rows of each component, rising
+    heard: tuple[frozenset[int], ...]  # numbers of the earlier components that each hears directly
 
     def __len__(self) -> int:
         return len(self.indices)
 
-    def upstream(self, k: int) -> IndexArray:
-        """Return the rows of all components that component k hears, directly or through others, in order."""
-        return self._rows(self._all_heard[k])
-
     def downstream(self, k: int) -> IndexArray:
         """Return the rows of all components that hear component k, directly or through others, in order."""
-        return self._rows(j for j, sources in enumerate(self._all_heard) if k in sources)
-
-    def _rows(self, numbers: Any) -> IndexArray:
-        parts = [self.indices[j] for j in sorted(numbers)]
+        parts = [self.indices[j] for j, sources in enumerate(self._all_heard) if k in sources]
         return np.concatenate(parts) if parts else np.zeros(0, dtype=np.int64)
 
     @cached_property
@@ -58,19 +43,6 @@ def strong_components(*matrices: Any) -> StrongComponents:
     """Return the strongly connected components of square matrices taken together.
 
     Entry (i, j) says what i hears from j; only an exact zero is none.
-
-    Parameters
-    ----------
-    matrices : array_like or sparse array, shape (N, N)
-        Such as K and D.
-
-    Examples
-    --------
-    Agent 1 hears agent 0; agents 2 and 3 hear each other, and agent 1:
-
-    >>> net = strong_components([[0, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 1, 0]])
-    >>> [rows.tolist() for rows in net.indices], net.downstream(0).tolist()
-    ([[0], [1], [2, 3]], [1, 2, 3])
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components

@@ -16,20 +16,7 @@ if TYPE_CHECKING:
 
 
 def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DataFrame:
-    """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp` prints them.
-
-    Parameters
-    ----------
-    poles : iterable of (str, complex)
-        Names and poles; with a step `dt` multipliers z, whose s = ln z/dt is what the other columns say.
-    settled : float
-        Share of a deviation at which it counts as settled.
-
-    Examples
-    --------
-    >>> damp_table([("swing", -3 + 4j), ("creep", -0.5 + 0j)]).round(3).iloc[1, 1:].tolist()
-    [0.6, 5.0, 0.333, 1.304]
-    """
+    """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp` prints them."""
     import pandas as pd
 
     settled = ensure_positive("settled", settled)

@@ -33,11 +33,7 @@ def period_map(parts: Sequence[LatePart], period: float, clock: FloatArray) -> F
     """Return one period of q'' = u, u held, u = −Σ (K_k q(t − τ_k) + D_k q'(t − τ_k)) at each sample.
 
     Its state is (q, p, u, earlier u …) just after the last sample of a period, shape (N (2 + inputs),) twice.
-
-    Parameters
-    ----------
-    clock : ndarray, shape (N,)
-        When each coordinate is sampled, after the beginning of the period.
+    `clock` has when each coordinate is sampled, after the beginning of the period.
     """
     longest, events = max(part.delay for part in parts), np.unique(clock)
     each, behind = len(events), int(np.ceil(longest / period)) + 2

@@ -31,12 +31,8 @@ def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Flo
 def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's error, of rounding and of the matrix.
 
-    A block triangular matrix has the eigenvalues of its strongly connected components, with the errors of these.
-
-    Parameters
-    ----------
-    off : float
-        By what share of its size the matrix itself may be off.
+    The matrix itself may be off by the share `off` of its size. A block triangular matrix has the
+    eigenvalues of its strongly connected components, with the errors of these.
     """
     net = strong_components(matrix)
     if len(net) < 2:

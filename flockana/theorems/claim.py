@@ -165,11 +165,6 @@ class Claim(ShortRepr):
 def unmet(hypotheses: Needs) -> Hypothesis | None:
     """Return the first unmet hypothesis; None if no hypothesis is unmet.
 
-    Parameters
-    ----------
-    hypotheses : iterable of Hypothesis
-        In the theorem's order.
-
     Examples
     --------
     >>> unmet([Hypothesis("c1α > 0", "met"), Hypothesis("c2α > 0", "unmet")]).name
@@ -180,11 +175,6 @@ def unmet(hypotheses: Needs) -> Hypothesis | None:
 
 def with_alarm(claims: Iterable[Claim]) -> tuple[Claim, ...]:
     """Return claims; where numbers contradict a proof, none that has hypotheses is decided.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-        Of one verdict.
 
     Examples
     --------

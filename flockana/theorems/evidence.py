@@ -12,18 +12,10 @@ from flockana.theorems.verdicts import Verdicts
 
 
 class Evidence(ABC):
-    """A run, a map's run, a recording, a tube, a state, or nothing at all, as theorems are judged on it.
+    """A run, a map's run, a recording, a tube, a state, or nothing at all, as theorems are judged on it."""
 
-    Attributes
-    ----------
-    law : Law or None
-        The law that it is evidence about, None if no law is known.
-    until : float or None
-        Up to when it shows motion, None where it shows none.
-    """
-
-    law: Any = None
-    until: float | None = None
+    law: Any = None  # None if no law is known
+    until: float | None = None  # up to when it shows motion, None where it shows none
 
     @abstractmethod
     def examine(self, item: Theorem, tolerances: Tolerances) -> Known:

@@ -67,11 +67,6 @@ def _short(claim: Claim) -> str:
 def overall(statuses: Iterable[Status]) -> Status:
     """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
 
-    Parameters
-    ----------
-    statuses : iterable of str
-        Of the claims.
-
     Examples
     --------
     >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])

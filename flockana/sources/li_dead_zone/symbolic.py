@@ -16,35 +16,17 @@ PSI = with_derivative("psi", FORCE)
 
 
 def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return the repulsion below d_1, 2k_r/rho^2 + k_delta.
-
-    Examples
-    --------
-    >>> repulsion()
-    k_delta + 2*k_r/rho**2
-    """
+    """Return the repulsion below d_1, 2k_r/rho^2 + k_delta."""
     return 2 * K_R / rho**2 + K_DELTA
 
 
 def attraction(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return the attraction between d_2 and r, 2k_r/(r_d - rho)^2 + k_delta.
-
-    Examples
-    --------
-    >>> attraction()
-    k_delta + 2*k_r/(r_d - rho)**2
-    """
+    """Return the attraction between d_2 and r, 2k_r/(r_d - rho)^2 + k_delta."""
     return 2 * K_R / (R_D - rho) ** 2 + K_DELTA
 
 
 def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
-    """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector.
-
-    Examples
-    --------
-    >>> direction(eta=sp.Integer(0))
-    rho
-    """
+    """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector."""
     return rho / sp.sqrt(1 + eta * rho**2)
 
 
@@ -53,25 +35,13 @@ def _pieces(rho: sp.Expr, beyond: sp.Expr, near: sp.Expr, between: sp.Expr, far:
 
 
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on.
-
-    Examples
-    --------
-    >>> action().subs(RHO, D_1 / 2).subs({D_1: 2, D_2: 4, R: 5, K_R: 1, K_DELTA: 0})
-    -2
-    """
+    """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on."""
     inner, outer = (sp.S.One,) * 2 if ramp == 0 else (sp.Min(1, (D_1 - rho) / ramp), sp.Min(1, (rho - D_2) / ramp))
     return _pieces(rho, sp.S.Zero, -inner * repulsion(rho), sp.S.Zero, outer * attraction(rho))
 
 
 def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond.
-
-    Examples
-    --------
-    >>> force().subs({RHO: 3, D_1: 2, D_2: 4, R: 5})
-    3*k_1
-    """
+    """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond."""
     return action(rho, ramp=ramp) * direction(rho) + sp.Piecewise((K_1 * rho, rho < R), (sp.S.Zero, True))
 
 
@@ -92,13 +62,7 @@ def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp
 
 
 def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return the saturated potential of a pair without ramp, psi(min(rho, r)), for d_2 < r.
-
-    Examples
-    --------
-    >>> potential().subs({RHO: 3, D_1: 2, D_2: 4, R: 5})
-    9*k_1/2
-    """
+    """Return the saturated potential of a pair without ramp, psi(min(rho, r)), for d_2 < r."""
 
     def far(s: sp.Expr) -> sp.Expr:
         return attractive_primitive(s, eta=eta) - attractive_primitive(D_2, eta=eta) + K_1 * s**2 / 2
@@ -108,13 +72,7 @@ def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
 
 
 def derive_potential() -> Derivation:
-    """Derive psi: the derivative identities of both primitives, for eta > 0 and eta = 0, and its growth at 0.
-
-    Examples
-    --------
-    >>> derive_potential().holds
-    True
-    """
+    """Derive psi: the derivative identities of both primitives, for eta > 0 and eta = 0, and its growth at 0."""
     s = sp.Symbol("s", positive=True)
     gap = sp.Symbol("g", positive=True)  # r_d = s + g keeps every root and logarithm real
     steps, residuals = [], []
@@ -134,13 +92,7 @@ def derive_potential() -> Derivation:
 
 
 def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
-    """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r.
-
-    Examples
-    --------
-    >>> jumps()["r"][1]
-    0
-    """
+    """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r."""
     near, far = repulsion() * direction(), attraction() * direction()
     pull = K_1 * RHO
     return {

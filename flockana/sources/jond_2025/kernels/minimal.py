@@ -50,14 +50,7 @@ def _directed(q, first, second, square):
 
 
 def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """(head, tail) of every directed edge: agent head[e] perceives agent tail[e], not farther than its own radius.
-
-    Examples
-    --------
-    >>> head, tail = perceived_edges(np.array([[0.0], [2.0]]), np.array([1.0, 2.0]))
-    >>> head.tolist(), tail.tolist()
-    ([1], [0])
-    """
+    """(head, tail) of every directed edge: agent head[e] perceives agent tail[e], not farther than its own radius."""
     reach, square = float(radius.max()) * _SLACK, radius * radius
     parts = [_directed(q, i, j, square) for i, j in pair_blocks(q, reach)]
     if len(parts) == 1:
@@ -208,13 +201,6 @@ def semi_implicit_steps(
     """Semi-implicit Euler steps by `perceived_forces` of few agents: q, p after each and u before, (steps, n, m).
 
     All pairs are looked at in each step. Up to `AT_ONCE` agents it is what steps one by one are, to the bit.
-
-    Examples
-    --------
-    >>> edges = EqualEdges(np.full(2, 9.0), np.full(2, 1.0), False, 1.0, 0.0, False)
-    >>> q, p, u = semi_implicit_steps(np.array([[0.0], [3.0]]), np.zeros((2, 1)), edges, 0.25, 1)
-    >>> q[0].tolist(), p[0].tolist(), u[0].tolist()
-    ([[0.125], [2.875]], [[0.5], [-0.5]], [[2.0], [-2.0]])
     """
     reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter

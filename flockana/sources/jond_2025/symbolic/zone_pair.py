@@ -24,14 +24,7 @@ def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix
 
 
 def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
-    """Return (d, b, d', b'): distance and bearing (11) from i to j, and their rates by the chain rule (12).
-
-    Examples
-    --------
-    >>> d, _, rate, _ = bearing(2)
-    >>> rate.subs(dict(zip([*pair_symbols(2)[0], *pair_symbols(2)[2]], (0, 0, 3, 4))))
-    -3*v_i1/5 - 4*v_i2/5 + 3*v_j1/5 + 4*v_j2/5
-    """
+    """Return (d, b, d', b'): distance and bearing (11) from i to j, and their rates by the chain rule (12)."""
     p_i, v_i, p_j, v_j = pair_symbols(m)
     gap = p_j - p_i
     d = sp.sqrt(gap.dot(gap))
@@ -42,39 +35,20 @@ def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
 
 
 def position_form(m: int = 2) -> dict[str, sp.Matrix]:
-    """Return cohesion (3), alignment (4) and separation (6) of a pair with unit weights, from positions.
-
-    Examples
-    --------
-    >>> position_form(1)["cohesion"]
-    Matrix([[-p_i1 + p_j1]])
-    """
+    """Return cohesion (3), alignment (4) and separation (6) of a pair with unit weights, from positions."""
     p_i, v_i, p_j, v_j = pair_symbols(m)
     d = sp.sqrt((p_j - p_i).dot(p_j - p_i))
     return {"cohesion": p_j - p_i, "alignment": v_j - v_i, "separation": (1 - C / d) * (p_j - p_i)}
 
 
 def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
-    """Return cohesion (14), alignment (15) and separation (19) of a pair with unit weights, from bearing and distance.
-
-    Examples
-    --------
-    >>> p_i, _, p_j, _ = pair_symbols(1)
-    >>> bearing_form(1)["separation"].subs({p_i[0]: 0, p_j[0]: 2, C: 3})
-    Matrix([[-1]])
-    """
+    """Return cohesion (14), alignment (15) and separation (19) of a unit-weight pair, from bearing and distance."""
     d, b, d_rate, b_rate = bearing(m)
     return {"cohesion": d * b, "alignment": d * b_rate + d_rate * b, "separation": (d - C) * b}
 
 
 def derive_equivalence(m: int = 2) -> Derivation:
-    """Derive that the two forms agree for cohesion, alignment (the identity (13)) and separation.
-
-    Examples
-    --------
-    >>> derive_equivalence().holds
-    True
-    """
+    """Derive that the two forms agree for cohesion, alignment (the identity (13)) and separation."""
     left, right = bearing_form(m), position_form(m)
     residuals = tuple(sp.simplify(a - b) for name in left for a, b in zip(left[name], right[name], strict=True))
     d, b, d_rate, b_rate, v_i, v_j = sp.symbols("d_ij b_ij d'_ij b'_ij v_i v_j")
@@ -89,11 +63,6 @@ def estimate_gap() -> sp.Expr:
     """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation.
 
     (17) adds δ u^aux, the input without the global speed term u^ga, so that Remark 3's equivalence fails (J8).
-
-    Examples
-    --------
-    >>> estimate_gap()
-    delta*w*(-v + v^d*sign(v))
     """
     aux = sp.Symbol("u^aux", real=True)
     drive = GAIN * (SPEED * sp.sign(OWN) - OWN)
@@ -101,40 +70,20 @@ def estimate_gap() -> sp.Expr:
 
 
 def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:
-    """Return m tanh(x/m), the length that (9) and (10) give to a vector of length x.
-
-    Examples
-    --------
-    The drag of (10): at 3 m/s with a bound of 4 a single step leaves (erratum J7)
-
-    >>> saturation(3, bound=4).evalf(4)
-    2.541
-    """
+    """Return m tanh(x/m), the length that (9) and (10) give to a vector of length x."""
     bound = exact("bound", bound)
     return bound * sp.tanh(exact("norm", norm) / bound)
 
 
 def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits: int = 15) -> sp.Float:
-    """Return lim sup ‖v‖ under (10) for inputs up to `force`: the fixed point of v ↦ sat(v + δ u).
-
-    Examples
-    --------
-    >>> fastest_under_drag(0.1, 2, 4, digits=5)
-    2.0083
-    """
+    """Return lim sup ‖v‖ under (10) for inputs up to `force`: the fixed point of v ↦ sat(v + δ u)."""
     v = sp.Symbol("v", positive=True)
     delta, u, m = (exact(name, x) for name, x in (("step", step), ("force", force), ("bound", bound)))
     return sp.nsolve(saturation(v + delta * u, bound=m) - v, v, m / 2, prec=digits)
 
 
 def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr = DRIVE, weight: sp.Expr = GAIN) -> sp.Expr:
-    """Return the distance at which an agent that heads for a wall stands: global drive and repulsion balance (J12).
-
-    Examples
-    --------
-    >>> stand_off(desired_speed=3, drive=5, weight=5).subs(C, 3), stand_off(desired_speed=3, drive=5, weight=20)
-    (0, c - 3/4)
-    """
+    """Return the distance at which an agent that heads for a wall stands: global drive and repulsion balance (J12)."""
     d = sp.Symbol("d", real=True)
     balance = exact("drive", drive) * exact("v^d", desired_speed) + exact("weight", weight) * (d - C)
     return sp.expand(sp.solve(balance, d)[0])
@@ -144,13 +93,6 @@ def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repul
     """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15).
 
     Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
-
-    Examples
-    --------
-    >>> rest_distance(separation=5, cohesion=1, repulsion=sp.Rational(3, 2)).subs(C, 3)
-    5/2
-    >>> rest_distance(separation=5, cohesion=10, repulsion=sp.Rational(3, 2)).subs(C, 3)
-    3/2
     """
     d = sp.Symbol("d", positive=True)
     balance = exact("separation", separation) * (d - C) + exact("cohesion", cohesion) * d
@@ -158,13 +100,7 @@ def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repul
 
 
 def altitude(speed: sp.Expr | None = None) -> sp.Expr:
-    """Return the altitude of an obstacle zone that goes from r at rest to a at the greatest speed m (J13).
-
-    Examples
-    --------
-    >>> altitude(0), altitude(BOUND), altitude(2 * BOUND)
-    (r, a, a)
-    """
+    """Return the altitude of an obstacle zone that goes from r at rest to a at the greatest speed m (J13)."""
     r, a = LEAST, sp.Symbol("a", positive=True)
     v = sp.Symbol("v", nonnegative=True) if speed is None else exact("speed", speed)
     return sp.expand(r + (a - r) * sp.Min(1, v / BOUND))
@@ -174,11 +110,6 @@ def informed_pair() -> tuple[sp.Matrix, sp.Expr]:
     """Return (M, its characteristic polynomial) of x' = M x, the speeds of a pair less v^d, of which one is informed.
 
     g is the gain of alignment, w that of the desired speed. All coefficients are positive: both take over v^d (J14).
-
-    Examples
-    --------
-    >>> informed_pair()[1]
-    g*w + lambda**2 + lambda*(2*g + w)
     """
     g, rate = PULL, sp.Symbol("lambda")
     matrix = sp.Matrix([[-g - GAIN, g], [g, -g]])
