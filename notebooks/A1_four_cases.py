@@ -141,7 +141,7 @@ grade(period, 6.28318531, digits=4, hint="the centre obeys a linear equation of 
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★ (1 point, derivation) Suppose the centre of mass starts at $(25, 25)$. Which $x$ does it reach on the other
-# side, exactly? (The project reads 300 from its figure.)
+# side, exactly? (The project reads 300 from its figure, for $(25, 25)$.)
 
 # %% tags=["answer"]
 far_side = ...

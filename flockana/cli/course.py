@@ -24,6 +24,9 @@ def course_command(
     address: Annotated[
         str, typer.Option(help="Source to install flockana from in notebooks: git+https://HOST/PATH.")
     ] = "",
+    student: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Exercises with this student's own numbers; solutions follow.")
+    ] = None,
     as_json: AsJson = False,
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
@@ -35,6 +38,8 @@ def course_command(
     """
     if solutions + self_study + slides + (grader is not None) > 1:
         raise ArgumentError("--solutions, --self-study, --slides, --grader: expected one of them; leave the others out")
+    if student is not None and (slides or not student.strip()):
+        raise ArgumentError(f"--student {student!r}: expected a name, and exercises to number; slides have none")
     try:
         from flockana.course.build import write
         from flockana.course.export import write_for
@@ -45,12 +50,12 @@ def course_command(
 
     ensure_directory(folder)
     if grader is not None:
-        notebooks = write_for(folder, grader)
+        notebooks = write_for(folder, grader, student=student or "")
     elif slides:
         notebooks = write_slides(folder)
     else:
         version = "solutions" if solutions else "self-study" if self_study else "student"
-        notebooks = write(folder, version, address=address)
+        notebooks = write(folder, version, address=address, student=student or "")
     if as_json:
         show_json({"notebooks": [str(path) for path in notebooks]})
     else:

@@ -20,6 +20,7 @@ from flockana.base.checks import ensure_choice
 from flockana.base.errors import ArgumentError
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.grading import form_of
+from flockana.course.numbers import give_own_numbers, variants
 from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -77,14 +78,17 @@ def tags(cell: Any) -> list[str]:
     return list(cell.metadata.get("tags", ()))
 
 
-def notebook(source: Path, version: str, *, address: str = "") -> Any:
+def notebook(source: Path, version: str, *, address: str = "", student: str = "") -> Any:
     """Return the notebook of a lecture: for the student, for self-study (with checks), or with solutions.
 
     `address` is where its first cell installs flockana from if it is missing, such as ``git+https://host/flockana``.
+    With a `student`, whose name is in the notebook's metadata, exercises have this student's own numbers.
     """
     ensure_choice("version", version, VERSIONS)
     book = jupytext.read(source)
-    book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
+    book.metadata = nbformat.from_dict({"kernelspec": _KERNEL} | ({"student": student} if student else {}))
+    if student:
+        give_own_numbers(book.cells, number_of(source), variants(source.parent)[number_of(source)], student)
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
@@ -164,9 +168,10 @@ def form_check(check: str) -> str:
     return f'from flockana.course import answered\n\nanswered({name}, "{form}")'
 
 
-def write(folder: Path, version: str = "student", *, address: str = "") -> list[Path]:
+def write(folder: Path, version: str = "student", *, address: str = "", student: str = "") -> list[Path]:
     """Write a version of all lectures with everything that they import or show; with solutions, the lecturer's too."""
-    books = {f"{each.stem}.ipynb": notebook_bytes(notebook(each, version, address=address)) for each in sources()}
+    made = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
+    books = {f"{name}.ipynb": notebook_bytes(book) for name, book in made.items()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
     if version == "solutions":
         pages |= lecturer_pages()

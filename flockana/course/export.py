@@ -23,11 +23,11 @@ c.ClearSolutions.text_stub = "*Your answer:*"
 GRADERS = ("otter", "nbgrader")
 
 
-def master(source: Path, grader: str) -> Any:
+def master(source: Path, grader: str, *, student: str = "") -> Any:
     """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
-    book, asked = build.notebook(source, "solutions"), iter(build.exercises(source))
+    book, asked = build.notebook(source, "solutions", student=student), iter(build.exercises(source))
     cells: list[Any] = [new_raw_cell(_assignment(source))] if grader == "otter" else []
     parts: dict[str, Any] = {}
     for cell in book.cells:
@@ -45,13 +45,13 @@ def master(source: Path, grader: str) -> Any:
     return book
 
 
-def write_for(folder: Path, grader: str) -> list[Path]:
+def write_for(folder: Path, grader: str, *, student: str = "") -> list[Path]:
     """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``."""
     books: dict[str, bytes] = {}
     others: dict[str, bytes] = {}
     for source in build.sources():
         home = f"source/{source.stem}/" if grader == "nbgrader" else ""
-        books[f"{home}{source.stem}.ipynb"] = notebook_bytes(master(source, grader))
+        books[f"{home}{source.stem}.ipynb"] = notebook_bytes(master(source, grader, student=student))
         if build.needs_companions(source):
             others |= {f"{home}{name}": content for name, content in build.companions().items()}
     if grader == "nbgrader":

@@ -23,6 +23,7 @@ def test_notebooks_are_written_for_students_and_with_solutions(call, tmp_path):
         (("new",), "answered(jump", "grade(jump"),
         (("solved", "--solutions"), "grade(jump", "jump = ..."),
         (("alone", "--self-study"), "grade(jump", 'fl.verify(\\"E10\\")'),
+        (("hers", "--student", "Emmy Noether"), '"student": "Emmy Noether"', "$c^* = 1000$"),
     ):
         code, said, _ = call(*arguments)
         assert code == 0
@@ -39,6 +40,11 @@ def test_two_versions_at_once_are_refused(call, tmp_path):
     assert code == 2
     assert "expected one of them" in complaint
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("options", [("--student", " "), ("--student", "Ada", "--slides")], ids=" ".join)
+def test_a_student_without_a_name_or_exercises_is_refused(refused, options):
+    refused("expected a name, and exercises to number; slides have none", "new", *options)
 
 
 @pytest.mark.parametrize(
