@@ -54,6 +54,7 @@ from .interactions import PairInteraction as PairInteraction
 from .interactions import pair_law as pair_law
 from .interactions.from_formula import PairLawWarning as PairLawWarning
 from .interactions.weights import RationalWeight as RationalWeight
+from .interactions.weights import SingularWeight as SingularWeight
 from .interactions.weights import Weight as Weight
 from .lammps.dump import read_lammps as read_lammps
 from .lammps.export import export_lammps as export_lammps
@@ -119,6 +120,7 @@ from .solvers.scipy_solver import Scipy as Scipy
 from .solvers.semi_implicit_euler import SemiImplicitEuler as SemiImplicitEuler
 from .solvers.solver import AdaptivePair as AdaptivePair
 from .solvers.taylor_step import TaylorStep as TaylorStep
+from .sources.carrillo_2017 import SingularAlignment as SingularAlignment
 from .sources.cucker_smale_2007 import CuckerSmale as CuckerSmale
 from .sources.jond_2025 import Alien as Alien
 from .sources.jond_2025 import Box as Box

@@ -65,7 +65,7 @@ def _driven(
             failure = failure or _describe_short_steps(stepper, law, good, (at - since) / (tally.steps - before))
             since, before = at, tally.steps
         if failure:
-            tally.fail(failure)
+            tally.fail(failure.rstrip(".") + _nearest_pair(stepper, good) if 0.0 in law.poles else failure)
             return
         stepper.continue_from(good)
 
@@ -81,14 +81,21 @@ def _describe_short_steps(stepper: Stepper, law: Law, good: int, mean: float) ->
     if law.scales is None or mean >= _SHORT * law.scales.time:
         return ""
     text = f"steps collapse at t = {at:g}: the last {_MANY} are {mean:.2g} long on average"
-    q = stepper.states(good)[0][-1, 0]
-    if len(q) == 1:
-        return text
+    return text if 0.0 in law.poles else text + _nearest_pair(stepper, good)
+
+
+def _nearest_pair(stepper: Stepper, row: int) -> str:
+    """Return in words which agents are nearest at a row of the block; '' for one agent."""
     from scipy.spatial import cKDTree
 
+    (n, m), order = stepper.frame.shape, stepper.order
+    if n == 1:
+        return ""
+    q = stepper.block.y[row, : n * m].reshape(n, m)  # as the frame sees it: finer than the positions
     apart, others = map(np.asarray, cKDTree(q).query(q, k=2))
-    i = int(apart[:, 1].argmin())
-    return f"{text}; the nearest agents, {i} and {int(others[i, 1])}, are {apart[i, 1]:.3g} apart"
+    k = int(apart[:, 1].argmin())
+    i, j = sorted((int(order[k]), int(order[others[k, 1]])))
+    return f"; the nearest agents, {i} and {j}, are {apart[k, 1]:.3g} apart"
 
 
 def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:

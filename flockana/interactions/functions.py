@@ -94,6 +94,11 @@ class DistanceFunction(ShortRepr, ABC):
         """
 
     @property
+    def coincidence(self) -> bool:
+        """Whether two agents may coincide; False where their force or adjacency has no limit there."""
+        return True
+
+    @property
     def faults(self) -> tuple[str, ...]:
         """Properties that theorems ask for and the function lacks (C¹, smooth end), each in words."""
         return ()
@@ -241,6 +246,11 @@ class LawFunction:
     edges: Edges | None = None  # pairs that are joined at every distance; None for all pairs within the range
     listeners: tuple[int, ...] | None = None  # agents that feel it; None for all
     mean: bool = False  # whether the gains are divided by the number of agents
+
+    @property
+    def has_pole(self) -> bool:
+        """Whether it has no limit where any two agents meet."""
+        return self.function is not None and self.edges is None and not self.function.coincidence
 
     @property
     def corners(self) -> tuple[Corner, ...]:

@@ -116,11 +116,6 @@ class PairInteraction(DistanceFunction):
         return self.surfaces
 
     @property
-    def coincidence(self) -> bool:
-        """Whether two agents may coincide; False where their force has no limit there."""
-        return True
-
-    @property
     def poles(self) -> tuple[float, ...]:
         """Distances at which the potential is infinite or the force has no limit."""
         edge = (self.range,) if self.far_potential == inf else ()

@@ -12,7 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.units import Powers
 from flockana.interactions.functions import DistanceFunction, InnerValues, SlopeBound
-from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope
+from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope, singular, singular_slope
 
 
 class Weight(DistanceFunction):
@@ -99,4 +99,59 @@ class RationalWeight(Weight):
     @cached_property
     def par(self) -> FloatArray:
         """Parameters K, ℓ, β."""
+        return np.array([self.strength, self.length, self.decay])
+
+
+_SINGULAR = lift_weight(singular, singular_slope)
+
+
+@dataclass(frozen=True)
+class SingularWeight(Weight):
+    """Weight a(s) = K (ℓ/s)^α with a pole at distance 0, where no two agents may start.
+
+    Parameters
+    ----------
+    strength : float
+        K > 0, the weight at distance ℓ (1/time).
+    decay : float
+        α > 0.
+    length : float
+        ℓ > 0.
+
+    Examples
+    --------
+    >>> SingularWeight(2.0, decay=0.5)(4.0)
+    1.0
+    """
+
+    strength: float = 1.0
+    decay: float = 1.0
+    length: float = 1.0
+
+    coincidence = False
+    kernels: ClassVar[WeightKernels] = _SINGULAR
+    proofs: ClassVar[Mapping[str, str]] = {"smooth": "a power of s is analytic at s > 0; at 0 it has a pole"} | (
+        dict.fromkeys(("weight", "inside"), "K > 0 times a power of ℓ/s > 0")
+    )
+    units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
+
+    def __post_init__(self) -> None:
+        normalise(self, ensure_positive, "strength", "decay", "length")
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
+        """Return bounds of |da/ds|, which falls, on geometric parts of all lengths; infinite on the part at 0.
+
+        Parameters
+        ----------
+        parts : int
+            How many, within 2⁻²⁰ ℓ and 2²⁰ ℓ; two more reach to 0 and to infinity.
+        """
+        edges = np.geomspace(2.0**-20, 2.0**20, parts + 1) * self.length
+        at = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
+        rows = zip([0.0, *edges], [*edges, inf], [inf, *at], strict=True)
+        return tuple(SlopeBound(float(left), float(right), 0.0, float(slope)) for left, right, slope in rows)
+
+    @cached_property
+    def par(self) -> FloatArray:
+        """Parameters K, ℓ, α."""
         return np.array([self.strength, self.length, self.decay])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import exp, log1p
+from math import exp, inf, log1p
 from typing import Any
 
 from flockana.jit import Kernel, register_jitable
@@ -52,3 +52,15 @@ def rational(s2, par):
 def rational_slope(s2, par):
     """−β/(ℓ² + s²) times the weight, its derivative in s²."""
     return -par[DECAY] / (par[LENGTH] * par[LENGTH] + s2) * rational(s2, par)
+
+
+@register_jitable
+def singular(s2, par):
+    """K (ℓ/s)^α; infinite at 0."""
+    return par[STRENGTH] * (s2 / (par[LENGTH] * par[LENGTH])) ** (-0.5 * par[DECAY]) if s2 > 0.0 else inf
+
+
+@register_jitable
+def singular_slope(s2, par):
+    """−α/(2 s²) times the weight, its derivative in s²."""
+    return -0.5 * par[DECAY] / s2 * singular(s2, par) if s2 > 0.0 else -inf

@@ -220,9 +220,11 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
     def poles(self) -> tuple[float, ...]:
         """Distances between agents at which the potential is infinite or the force has no limit; none is crossed.
 
-        Those of the law's pair interaction, if it has one. A run that meets one ends as failed.
+        Those of the law's pair interaction, if it has one, and 0 of a weight with a pole. A run that meets one ends as
+        failed.
         """
-        return () if self.pair is None else self.pair.poles
+        pair = () if self.pair is None else self.pair.poles
+        return pair or ((0.0,) if any(entry.has_pole for entry in self.functions) else ())
 
     @property
     def pole_pairs(self) -> tuple[tuple[int, int], ...] | None:

@@ -4,10 +4,10 @@ from flockana.theorems.theorem import Rigour
 
 _PROOFS: dict[Rigour, str] = {
     "symbolic": "certified-basins constant-acceleration deviation-energy disturbed-basins energy-identities "
-    "nonplanar-fcc smoothness stand-off turned-axes",
+    "nonplanar-fcc singular-pair smoothness stand-off turned-axes",
     "smt": "any-potential any-potential-limits bearing-distance bearing-distance-printed cohesion collisions "
     "convergence cucker-smale dead-zone headings informed-agents links-kept matched-velocities net-consensus "
-    "net-measures own-sums second-order-modes tanner theorem5-counts theorem5-crossings theorem6",
+    "net-measures own-sums second-order-modes singular-alignment tanner theorem5-counts theorem5-crossings theorem6",
     "interval": "barrier compressed-patches delayed-consensus distinct-pairs double-agent n-max speed-bound "
     "strained-thirteen tracking-gain",
 }

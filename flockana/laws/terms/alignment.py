@@ -10,6 +10,7 @@ from flockana.interactions.functions import LawFunction
 from flockana.interactions.pair import pair_matrix
 from flockana.interactions.weights import Weight
 from flockana.kernels.listed import no_energy
+from flockana.laws.terms.pairs import ensure_apart
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
@@ -50,6 +51,11 @@ class AlignmentTerm(Term):
     def functions(self) -> tuple[LawFunction, ...]:
         """The weight."""
         return (LawFunction("the alignment weight", self.weight, 0.0, self.gain, mean=self.mean),)
+
+    def check_start(self, q: FloatArray) -> None:
+        """Raise if two agents coincide whose weight has a pole there."""
+        if not self.weight.coincidence:
+            ensure_apart(q, "the alignment weight has a pole there")
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         gain, r = self._gain(len(q)), self.weight.range
