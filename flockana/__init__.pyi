@@ -135,6 +135,7 @@ from .sources.jond_2025 import ZoneWorld as ZoneWorld
 from .sources.li_dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .sources.li_dead_zone import DeadZoneInteraction as DeadZoneInteraction
 from .sources.li_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
+from .sources.moreau_2005 import NetAveraging as NetAveraging
 from .sources.motsch_tadmor_2011 import MotschTadmor as MotschTadmor
 from .sources.tanner_2007 import FixedNetFlocking as FixedNetFlocking
 from .sources.tanner_2007 import LogPotential as LogPotential

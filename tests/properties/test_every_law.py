@@ -28,6 +28,7 @@ ORIGIN = fl.StaticTarget((0.0, 0.0))
 ROUND = {"rotation", "reflection"}
 PLACED = ROUND | {"permutation"}  # about a γ-agent or an obstacle at the origin
 FREE = PLACED | {"translation", "boost"}
+AVERAGES = np.random.default_rng(3).dirichlet(np.ones(N), (2, N))
 
 LAWS = {
     "Algorithm1": (fl.Algorithm1(), FREE),
@@ -47,6 +48,7 @@ LAWS = {
     "ProximityFlocking": (ProximityFlocking(fl.LogPotential(1.0, 5.0), r=8.0), FREE),
     "LinkKeeping": (LinkKeeping(((0, 1), (1, 2)), r=60.0), FREE - {"permutation"}),
     "HeadingAveraging": (HeadingAveraging(range=8.0, speed=2.0, dt=0.1, average="vectors"), FREE - {"boost"}),
+    "NetAveraging": (fl.NetAveraging(AVERAGES, lengths=(2, 1)), ROUND | {"translation"}),
     "DirectedNet": (fl.DirectedNet(fl.Algorithm1(), view=2.0), FREE - {"boost"}),
     "DeadZoneFlocking": (fl.DeadZoneFlocking(), FREE),
     "LedDeadZoneFlocking": (

@@ -1,0 +1,132 @@
+"""Averaging over a net that changes by a schedule: each agent moves to a mean of what it hears."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_numbers, ensure_positive, normalise
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.units import Powers
+from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.law import Arrays
+
+_WANTED = "square arrays of weights w_ij >= 0 of one size, with which agent i hears agent j and itself"
+_ROUNDING = 1e-12  # of a sum of weights
+
+
+def ensure_averages(name: str, value: Any) -> tuple[tuple[tuple[float, ...], ...], ...]:
+    """Return row-stochastic matrices as rows of numbers; one matrix is a net by itself."""
+    nets = ensure_numbers(name, value, _WANTED)
+    nets = nets[None] if nets.ndim == 2 else nets
+    if nets.ndim != 3 or nets.shape[1] != nets.shape[2] or not nets.size:
+        raise ArgumentError(f"{name} has shape {nets.shape}: expected {_WANTED}")
+    bad = ~np.isfinite(nets) | (nets < 0.0)
+    if bad.any():
+        k, i, j = np.argwhere(bad)[0].tolist()
+        raise ArgumentError(f"{name}[{k}][{i}, {j}] = {nets[k, i, j]:g}: expected {_WANTED}")
+    off = np.abs(nets.sum(axis=2) - 1.0)
+    if off.max() > _ROUNDING:
+        k, i = np.argwhere(off > _ROUNDING)[0].tolist()
+        total = nets[k, i].sum()
+        raise ArgumentError(f"row {i} of {name}[{k}] sums to {total:.6g}: expected 1; divide it by its sum")
+    return tuple(tuple(map(tuple, net)) for net in nets.tolist())
+
+
+def ensure_steps(name: str, value: Any, least: int, count: int) -> tuple[int, ...]:
+    """Return one whole number for each net, each at least `least`."""
+    steps = np.asarray(value)
+    if steps.shape != (count,) or steps.dtype.kind not in "iu" or (steps < least).any():
+        wanted = f"{count} whole numbers >= {least}, one for each net"
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {wanted}")
+    return tuple(steps.tolist())
+
+
+@dataclass(frozen=True)
+class NetAveraging(DiscreteLaw):
+    """q_i becomes Σ_j w_ij q_j: each agent moves to a mean of its own place and those that it hears, all at once.
+
+    Nets act in turn, each for its number of steps, round after round; with `growth` each round is longer than the one
+    before. Agents have no velocities of their own: p is that of the last step, and 0 at the start.
+
+    Parameters
+    ----------
+    nets : array_like, shape (K, n, n) or (n, n)
+        Weights w_ij >= 0 of each net, with which agent i hears agent j; rows sum to 1.
+    lengths : sequence of int
+        Steps for which each net acts in the first round; by default 1 each.
+    growth : sequence of int
+        Steps by which this grows from round to round; by default 0 each.
+    dt : float
+        Step, in time units.
+
+    Raises
+    ------
+    ArgumentError
+        On weights that are no averages, or numbers of steps that do not fit the nets.
+
+    Examples
+    --------
+    Agent 1 hears agent 0 for two steps, then agent 0 hears agent 1 for one:
+
+    >>> law = NetAveraging([[[1.0, 0.0], [0.5, 0.5]], [[0.5, 0.5], [0.0, 1.0]]], lengths=(2, 1))
+    >>> [law.net_at(step) for step in range(4)]
+    [0, 0, 1, 0]
+    >>> law.step(0.0, np.array([[0.0], [1.0]]), np.zeros((2, 1)), {"step": np.array(0.0)})[0].tolist()
+    [[0.0], [0.5]]
+    """
+
+    nets: Any
+    lengths: Any = None
+    growth: Any = None
+    dt: float = 1.0
+
+    references: ClassVar[tuple[str, ...]] = ("moreau-2005", "ren-beard-2005")
+    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
+
+    def __post_init__(self) -> None:
+        normalise(self, ensure_averages, "nets")
+        normalise(self, ensure_positive, "dt")
+        for name, least in (("lengths", 1), ("growth", 0)):
+            given = getattr(self, name)
+            steps = [least] * len(self.nets) if given is None else given
+            object.__setattr__(self, name, ensure_steps(name, steps, least, len(self.nets)))
+
+    def net_at(self, step: int) -> int:
+        """Return which net acts in a step, counted from 0.
+
+        Parameters
+        ----------
+        step : int
+            At least 0.
+        """
+        first, more, rounds = sum(self.lengths), sum(self.growth), 0
+        if not more:
+            step %= first
+        while step >= first + more * rounds:
+            step -= first + more * rounds
+            rounds += 1
+        ends = np.cumsum(np.array(self.lengths) + rounds * np.array(self.growth))
+        return int(np.searchsorted(ends, step, side="right"))
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        if len(q) != len(self.nets[0]):
+            raise ArgumentError(f"nets are of {len(self.nets[0])} agents and the state is of {len(q)}: expected all")
+        if p.any():
+            i = int(np.abs(p).max(axis=1).argmax())
+            raise ArgumentError(f"agent {i} starts at {p[i].tolist()}: expected p0 = 0, as places alone have a law")
+
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
+        """Return the number of steps made, 0; nothing where one net acts for ever."""
+        return {"step": np.array(0.0)} if len(self.nets) > 1 else {}
+
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
+        net = np.array(self.nets[self.net_at(int(memory["step"])) if memory else 0])
+        heard = np.where(net[:, :, None] > 0.0, q, np.nan)
+        after = np.clip(net @ q, np.nanmin(heard, axis=1), np.nanmax(heard, axis=1))  # a mean, to the last bit
+        velocities = (after - q) / self.dt
+        return after, velocities, (velocities - p) / self.dt, {name: value + 1.0 for name, value in memory.items()}
+
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
+        return {"spread": ("largest extent of the places along an axis", np.ptp(q, axis=1).max(axis=1))}

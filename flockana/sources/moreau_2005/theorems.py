@@ -1,0 +1,154 @@
+"""Moreau; Ren and Beard: agents that average agree if the nets of every bounded window of time have a root together."""
+
+from typing import Any
+
+import numpy as np
+
+from flockana.sources.moreau_2005.laws import NetAveraging
+from flockana.theorems.toolkit import (
+    EPS,
+    Checked,
+    Claim,
+    Enclosure,
+    Hypothesis,
+    Needs,
+    Observed,
+    Tolerances,
+    by_count,
+    condition,
+    judged,
+    law_is,
+    limit_claim,
+    run_theorem,
+    unmet,
+    vacuous,
+)
+
+_LAW = law_is("averaging over nets in turn", NetAveraging)
+_PROOF = "rooted-averaging"
+_GROWS = "growing-windows"
+_HALF = (  # agent 1 hears 0, is heard by 0, hears 2, is heard by 2
+    ((1.0, 0.0, 0.0), (0.5, 0.5, 0.0), (0.0, 0.0, 1.0)),
+    ((0.5, 0.5, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((1.0, 0.0, 0.0), (0.0, 0.5, 0.5), (0.0, 0.0, 1.0)),
+    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.5, 0.5)),
+)
+
+
+def unheard_groups(weights: Any) -> list[list[int]]:
+    """Return the groups of agents that hear nobody outside; a net has a root exactly if there is one."""
+    import networkx
+
+    hears = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)
+    return sorted(sorted(group) for group in networkx.attracting_components(hears))
+
+
+def _words(groups: list[list[int]]) -> str:
+    listed = " and ".join(", ".join(map(str, group[:4])) + (" ..." if len(group) > 4 else "") for group in groups[:2])
+    return f"root {groups[0][0]}" if len(groups) == 1 else f"{len(groups)} groups hear nobody outside: {listed}"
+
+
+def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
+    """Return the hypotheses that every window of some length has a root, and that all nets together have none."""
+    nets, grows = np.array(law.nets), np.array(law.growth) > 0
+    together = unheard_groups(nets.sum(axis=0))
+    rootless = condition("the nets have no root together", len(together) > 1, detail=_words(together))
+    name, remedy = "the nets of every window of T steps have a root together, for some T", ""
+    if not grows.any():
+        text, holds = f"T = {sum(law.lengths)}: {_words(together)}", len(together) == 1
+        remedy = "let all but one of these groups hear another"
+    else:  # a net acts for longer and longer, so that long windows show it alone
+        alone = [(k, unheard_groups(nets[k])) for k in np.flatnonzero(grows).tolist()]
+        lacking = [(k, groups) for k, groups in alone if len(groups) > 1]
+        holds, text = not lacking, f"T = {sum(law.lengths) + 1}: each net that acts ever longer has a root"
+        if lacking:
+            text = f"net {lacking[0][0]} acts ever longer, in which {_words(lacking[0][1])}"
+            remedy = "keep the lengths bounded"
+    return condition(name, holds, detail=text, remedy=remedy), rootless
+
+
+def _hull(seen: Observed, needs: Needs) -> Claim:
+    least, most = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
+    out = np.flatnonzero(((np.diff(least, axis=0) < 0.0) | (np.diff(most, axis=0) > 0.0)).any(axis=1))
+    spread = (most - least).max(axis=1)
+    return by_count("hull", out.size, needs, proof=_PROOF).described(
+        computed=float(spread[-1]),
+        stated="along no axis the greatest place ever rises, or the least falls",
+        witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
+        detail=f"the extent goes from {spread[0]:.4g} to {spread[-1]:.4g}",
+    )
+
+
+def _agreement(seen: Observed, needs: Needs) -> Claim:
+    spread = float(np.ptp(seen.run.q[-1], axis=0).max())
+    return limit_claim("agreement", needs, proof=_PROOF).described(
+        computed=spread, stated="q_i - q_j -> 0 from every start", detail=f"at the end places differ by {spread:.3g}"
+    )
+
+
+@run_theorem(
+    _PROOF,
+    title="Averages over changing nets agree, if every window of some length has a root",
+    source="Moreau 2005; Ren and Beard 2005, in our words; hull and some-start ours",
+    law=_LAW,
+    claims=("agreement", "hull", "some-start"),
+    ours=("hull", "some-start"),
+    references=("moreau-2005", "ren-beard-2005", "jadbabaie-lin-morse-2003", "flockana"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let q_i become Σ_j w_ij q_j, rows summing to 1, all w_ii and all other weights that are not 0 at least an ε > 0.
+    If for some T in the nets of every T steps together one agent is heard by all, directly or through others, all agree
+    from every start. No agent ever leaves the extent of the places before. If all nets together have no such root, some
+    start never agrees. Where the root is an agent who hears nobody all come to it: a leader.
+    """
+    least = min(min(np.diag(np.array(net))) for net in seen.law.nets)
+    keeps = condition("each agent keeps a share of its own place", least > 0.0, least, f"least w_ii = {least:g}")
+    windows, rootless = windows_rooted(seen.law)
+    some = judged("some-start", Enclosure.of(0.0), [rootless], about="all", proof=_PROOF)
+    return [], [
+        _agreement(seen, [keeps, windows]),
+        _hull(seen, []),
+        vacuous("some-start", rootless)
+        if rootless.status == "unmet"
+        else some.described(stated="from some start places never agree", detail=rootless.detail),
+    ]
+
+
+@run_theorem(
+    _GROWS,
+    title="Averages need not agree where every round has a root, but rounds grow",
+    source="Ours, on Moreau 2005",
+    law=_LAW,
+    claims=("apart",),
+    references=("moreau-2005", "flockana"),
+    author="flockana",
+)
+def growing(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let agent 1, between agents 0 and 2 on a line, average in halves with 0 for L steps, then 0 with 1 for one, then
+    1 with 2 for L, then 2 with 1 for one, L >= 2 rising by one or more from round to round. Each round has a root, and
+    the distance of 0 and 2 stays above 1 - 2^(1-L) times the first, L of the first round.
+    """
+    law, q = seen.law, seen.given.q[0]
+    length, growth = law.lengths[0], law.growth[0]
+    like = law.nets == _HALF and law.lengths == (length, 1, length, 1) and law.growth == (growth, 0, growth, 0)
+    text = f"lengths {law.lengths}, growth {law.growth}"
+    needs = [condition("agent 1 hears 0 and 2 in turn, ever longer", like and length >= 2 and growth >= 1, detail=text)]
+    ends = sorted(q[[0, 2], 0].tolist()) if q.shape == (3, 1) else [0.0, 0.0]
+    between = ends[0] < ends[1] and ends[0] <= q[1, 0] <= ends[1]
+    needs.append(
+        condition(
+            "on a line, agent 1 between 0 and 2", bool(between), detail=f"at {np.array2string(q[:3, 0], precision=4)}"
+        )
+    )
+    if unmet(needs):
+        return needs, []
+    apart = np.abs(seen.run.q[:, 2, 0] - seen.run.q[:, 0, 0])
+    share = 1.0 - 2.0 ** (1 - length)
+    error = 4.0 * EPS * float(np.abs(seen.run.q).max()) * (1.0 + (seen.t[-1] - seen.t[0]) / law.dt)
+    room = Enclosure.around(float(apart.min()) - share * apart[0], error)
+    claim = judged("apart", room, needs, about="all", proof=_GROWS).described(
+        computed=float(apart.min() / apart[0]),
+        stated=f"above {share:g} of the first distance for ever",
+        detail=f"the least seen is {apart.min() / apart[0]:.6g} of the first",
+    )
+    return needs, [claim]
