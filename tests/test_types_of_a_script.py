@@ -39,7 +39,7 @@ fl.Algorithm2(gains={"c1_alpha": 1.0}, target="origin")
 def test_a_users_script_is_typed(tmp_path):
     (tmp_path / "good.py").write_text(_GOOD)
     (tmp_path / "wrong.py").write_text(_WRONG)
-    package = str(Path(__file__).parents[2])
+    package = str(Path(__file__).parents[1])
     options = ["--strict", "--config-file=", "--ignore-missing-imports", "--no-error-summary"]
     out = subprocess.run(
         [sys.executable, "-m", "mypy", *options, "good.py", "wrong.py"],
