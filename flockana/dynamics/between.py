@@ -100,12 +100,12 @@ class Recorder:
 
     def __init__(self, most: int = MOST) -> None:
         self.most, self._held, self._thinned = most, 0, False
-        self._samples: list[Sample | Samples] = []  # as they came: no memory beside the run's own
+        self._samples: list[Samples] = []  # as they came: no memory beside the run's own
         self._steps: list[Samples] = []
-        self._single: list[Sample] = []  # the last steps, as far as they came one at a time
+        self._single: list[Samples] = []  # the last steps, as far as they came one at a time
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
-    def add(self, some: Sample | Samples) -> None:
+    def add(self, some: Samples) -> None:
         """Add samples or steps; all samples before some steps must be added before these."""
         if some.wanted:
             self._samples.append(some)
@@ -114,18 +114,15 @@ class Recorder:
             self._steps, self._single, self._held = [], [], 0
         self._limit_memory()
         self._held += 3 * some.q.size
-        if isinstance(some, Sample):
-            self._single.append(some)
-            if len(self._single) < _TOGETHER:
-                return
-        self._assemble()
-        if isinstance(some, Samples):
-            self._steps.append(some)
+        self._single.append(some)
+        if len(some.t) > 1 or len(self._single) >= _TOGETHER:
+            self._assemble()
 
     def _assemble(self) -> None:
-        if self._single:
-            self._steps.append(Samples.of(self._single))
-            self._single = []
+        if len(self._single) > 1:
+            self._single = [Samples.joined(self._single)]
+        self._steps += self._single
+        self._single = []
 
     def between(self) -> Between | None:
         """Return the steps between the samples; None if there are none."""
@@ -133,8 +130,8 @@ class Recorder:
         if not (self._steps and self._samples):
             return None
         self._limit_memory()
-        times = np.concatenate([np.atleast_1d(some.t) for some in self._samples])
-        t, q, p, u = (np.concatenate([getattr(some, name) for some in self._steps]) for name in ("t", "q", "p", "u"))
+        times = np.concatenate([some.t for some in self._samples])
+        t, q, p, u, *_ = Samples.joined(self._steps)
         inside = (t > times[0]) & (t < times[-1])
         if not inside.any():
             return None
@@ -151,7 +148,7 @@ class Recorder:
         if self._held <= self.most or not self._samples:
             return
         self._assemble()
-        first = next(self._samples[0].each()).t
+        first = self._samples[0].t[0]
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]
         exact, before, kept, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False
@@ -164,7 +161,8 @@ class Recorder:
                     continue
                 kept.append(one)
             before = one
-        self._steps, self._thinned = [Samples.of(kept)], True
+        arrays = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
+        self._steps, self._thinned = [Samples(*arrays, {}, wanted=False)], True
         self._held = 3 * self._steps[0].q.size
 
 

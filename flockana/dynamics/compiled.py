@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.encounters import StepChecks, at_a_pole
-from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.encounters import at_a_pole
+from flockana.dynamics.frame import Plan
 from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Start
-from flockana.dynamics.stepper import Stepper
+from flockana.dynamics.stepper import Integrator
 from flockana.jit import thawed
 from flockana.kernels.advance import Advanced, advance
 from flockana.kernels.march import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
@@ -26,34 +26,31 @@ _BLOCKS = "scipy-DOP853"  # which looks at pairs in blocks
 _SMALL = "Required step size is less than spacing between numbers."  # scipy's words
 
 
-class Engine(Stepper):
+class Engine(Integrator):
     """Compiled integrator: a law and a method, at the current time of a run.
 
     Agents are sorted by cell, so that a pair's are close in memory: `order` has every agent's own number.
     """
 
-    def __init__(
-        self, form: Compiled, tableau: Tableau, frame: Frame, plan: Plan, y: FloatArray, f: FloatArray
-    ) -> None:
-        self.frame, self.plan, (n, m) = frame, plan, frame.shape
-        self.failure, self.evaluations, self.redone = "", 1, 0
-        self.stops, self.due = plan.stops[plan.stops > frame.t0], plan.due[plan.due > frame.t0]
+    def __init__(self, law: Law, form: Compiled, tableau: Tableau, start: Start, plan: Plan) -> None:
+        rows, (n, m) = int(np.clip(_NUMBERS // (4 * start.q.size), 1, _STEPS)), start.q.shape
+        super().__init__(law, start, plan, rows)
+        speeds = self.block.y[0, n * m : 2 * n * m]
+        self.block.f[0], self.evaluations = np.concatenate([speeds, start.u.ravel(), [start.power]]), 1
         self.pairs, self._sorted, self._h = no_pairs(n, m), 0, 0.0
-        rows = int(np.clip(_NUMBERS // (4 * frame.size), 1, _STEPS)) + 1
-        self.block = Block(*(np.empty((rows, *shape)) for shape in ((), y.shape, y.shape, ())))
-        self._pace, self._unsorted = Pace(_BEGIN // frame.size, rows - 1), 0
-        for each, value in zip(self.block, (frame.t0, y, f, np.nan), strict=True):
-            each[0] = value
-        self._system, self._sampled = form.system(frame.view, n, m), 0
-        self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * frame.size))))
+        self._pace, self._unsorted = Pace(_BEGIN // (n * m), rows), 0
+        self._system, self._sampled = form.system(self.frame.view, n, m), 0
+        self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * n * m))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau]
-        self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
+        size = self.block.y.shape[1]
+        self._room = Room(np.empty((int(max(given[4])) + 1, size)), np.empty(size))
         rtol, floor, longest = plan.control
         given += [float(rtol), tuple(map(float, floor)), float(longest)]
         self._method = Method(*given)
 
-    def advance(self, checks: StepChecks) -> int:  # noqa: D102
+    def advance(self) -> int:  # noqa: D102
+        checks = self.checks
         if self._unsorted <= 0:  # by a count of steps, so that no order of sums hangs on the clock
             self._unsorted = len(self.block.t) - 1
             if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
@@ -67,7 +64,7 @@ class Engine(Stepper):
             )
         self._unsorted -= made.steps
         self._h, self._sampled = made.h, made.samples if made.steps else 0
-        self.evaluations, self.redone = self.evaluations + made.evaluations, self.redone + made.redone
+        self.evaluations, self.notes["redone"] = self.evaluations + made.evaluations, self.notes["redone"] + made.redone
         t = float(self.block.t[made.steps])
         if made.status == FULL and not made.steps:
             self._samples = self._room_for(made.samples)
@@ -120,8 +117,5 @@ def engine_of(law: Law, start: Start, plan: Plan) -> Engine | None:
     form = None if tableau is None else law.compiled(start.q.shape[1])
     if tableau is None or form is None or not start.energetic:
         return None
-    frame = Frame.of(start.t, start.q, start.p, energetic=True)
-    y0 = frame.start(start.q, start.p)
-    f0 = np.concatenate([y0[frame.size : 2 * frame.size], start.u.ravel(), [start.power]])
-    engine = Engine(form, tableau, frame, plan, y0, f0)
+    engine = Engine(law, form, tableau, start, plan)
     return engine if engine.list_pairs() else None

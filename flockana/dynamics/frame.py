@@ -22,8 +22,13 @@ class Plan(NamedTuple):
 
     solver: Solver
     stops: FloatArray  # rising times at which a step must end, the last of them the end of the run
-    due: FloatArray  # times of samples between steps
+    keep: FloatArray | None  # times of samples; None: each step is one
     control: Control = EXACT  # tolerances, and the longest step
+
+    @property
+    def due(self) -> FloatArray:
+        """Times of samples at which no step needs to end."""
+        return np.empty(0) if self.keep is None or self.solver.dt else self.keep
 
     def describe_failure(self, t: float, why: str) -> str:
         """Return in words why a run ended early."""

@@ -4,49 +4,46 @@ Solvers with a past (BDF, LSODA) begin anew where a step is made again.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.encounters import StepChecks, at_a_pole
-from flockana.dynamics.frame import Flow, Frame, Plan
-from flockana.dynamics.sample import finite
-from flockana.dynamics.stepper import Stepper
-from flockana.kernels.march import Block
+from flockana.dynamics.encounters import at_a_pole
+from flockana.dynamics.frame import Plan
+from flockana.dynamics.sample import Start, finite
+from flockana.dynamics.stepper import Integrator
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.law import Law
 from flockana.solvers.solver import Limits
 
 
-class Interpreter(Stepper):
-    """Integrator that steps a law, or another flow, in Python."""
+class Interpreter(Integrator):
+    """Integrator that steps a law in Python."""
 
-    def __init__(self, law: Law, frame: Frame, plan: Plan, y: FloatArray, flow: Flow | None = None) -> None:
-        self.law, self.frame, self.plan = law, frame, plan
-        self.failure, self.evaluations, self.redone = "", 0, 0
-        self.stops, self.due = plan.stops, plan.due[plan.due > frame.t0]
-        self.order, self.pairs = np.arange(frame.shape[0], dtype=np.uint64), no_pairs(0, frame.shape[1])
-        self.block = Block(np.zeros(2), np.empty((2, y.size)), np.empty((2, y.size)), np.full(2, np.nan))
-        self.begin(law.flow if flow is None else flow, frame.t0, y)
+    def __init__(self, law: Law, start: Start, plan: Plan) -> None:
+        super().__init__(law, start, plan)
+        self.order, self.pairs = np.arange(len(start.q), dtype=np.uint64), no_pairs(0, self.frame.shape[1])
+        self._rhs = self.frame.rate(self._counted)
+        self.begin()
 
-    def begin(self, flow: Flow, t: float, y: FloatArray) -> None:
-        """Go on from here, with another flow."""
-        self._rhs = self.frame.rate(partial(self._counted, flow))
-        self.block.t[0], self.block.y[0], self.block.energy[0] = t, y, np.nan
-        self.stops = self.stops[self.stops > t]
+    def begin(self) -> None:
+        """Open a solver at the first row, which knows nothing of earlier steps."""
         if self.stops.size:
             if self.plan.solver.dt:
-                self.block.f[0] = self._rhs(t, y)
+                self.block.f[0] = self._rhs(float(self.block.t[0]), self.block.y[0])
             self._open(self.stops[0], None)
             self._write(0)
 
-    def _counted(self, flow: Flow, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return a flow that counts its evaluations, and stops a solver once values are not finite."""
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """As `Law.flow`."""
+        return self.law.flow(t, q, p)
+
+    def _counted(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """Count the flow's evaluations, and stop a solver once values are not finite."""
         self.evaluations += 1
-        u, rate = flow(t, q, p)
+        u, rate = self.flow(t, q, p)
         if self.plan.solver.name == "LSODA" and not finite(u):  # it would try to step over it for ever
             raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
         return u, rate
@@ -66,20 +63,20 @@ class Interpreter(Stepper):
         self.block.f[row] = self._rhs(t, y) if f is None else f
         return finite(self.block.y[row], self.block.f[row])
 
-    def advance(self, checks: StepChecks) -> int:
+    def advance(self) -> int:
         """Make one accepted step into the second row; return 0 if the run ends, with the reason in `failure`."""
         while self.step():
-            if checks.energetic:
+            if self.checks.energetic:
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
                     t = float(self.block.t[row])
                     self.block.energy[row] = self.law.hamiltonian(t, *self.frame.state(t, self.block.y[row]))
-            shorter, singular = checks.examine(self.block, self.order, self.pairs)
+            shorter, singular = self.checks.examine(self.block, self.order, self.pairs)
             if singular:
                 self.failure = at_a_pole(float(self.block.t[0]))
                 return 0
             if not shorter:
                 return 1
-            self.redone += 1
+            self.notes["redone"] += 1
             self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + shorter, shorter)
         return 0
 
@@ -116,7 +113,7 @@ class Interpreter(Stepper):
         for k, t in enumerate(due.tolist()):
             y = self.course(t)
             q, p = self.frame.state(t, y)
-            states[k] = q, p, self.law.flow(t, q, p)[0]
+            states[k] = q, p, self.flow(t, q, p)[0]
             work[k] = y[-1] if self.frame.energetic else np.nan
         return due, states, work
 

@@ -1,15 +1,21 @@
-"""The steps of a map."""
+"""The steps of a map, and how a map that stands for a law with a past misses no encounter."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
+from math import ceil
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.pace import Pace
-from flockana.dynamics.sample import Samples, Tally, copied, finite
+from flockana.dynamics.sample import Samples, Start, copied, finite
+from flockana.dynamics.stepper import Stepper
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
-from flockana.laws.law import Arrays
+from flockana.laws.wrapped import wrappers_within
+from flockana.solvers.fixed_steps import FixedSteps
 
 _NUMBERS = 6_000_000  # kept of the steps made at once, at most
 _BEGIN = 16  # steps made at once at first
@@ -21,64 +27,93 @@ def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float],
     return int(rounded((stop - start + (slack if rounded is np.floor else -slack)) / dt))
 
 
-def discrete(
-    law: DiscreteLaw, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
-) -> Iterator[Samples]:
-    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
-    # Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
-    # times to keep the nearest steps are given, each once: between its steps a map has no state.
-    q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
-    steps, wanted = count_steps(*t_span, dt, np.floor), wanted_steps(law, t_span, keep)
-    if wanted is None or 0 in wanted:
-        extra = {name: values[None] for name, values in copied(memory).items() if name not in law.private}
-        yield Samples(np.array([t0]), q[None], p[None], np.zeros((1, *q.shape)), extra)
-    pace, first, last = Pace(min(_BEGIN, 20_000 // q0.size), min(law.steps_at_once, _NUMBERS // (3 * q0.size))), 0, 0
-    while last < steps:
-        first, last = last, min(last + pace.steps, steps)
-        own = np.arange(first + 1, last + 1)
-        if wanted is not None:
-            own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
+class MapStepper(Stepper):
+    """Steps of a map: sample k holds the state at t0 + k dt and the input that brought it there.
+
+    Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
+    times to keep the nearest steps are given, each once: between its steps a map has no state. A law with a past or a
+    clock, and without noise, is integrated: its steps are looked at, and a step, or past, that misses an encounter
+    raises.
+    """
+
+    def __init__(self, law: DiscreteLaw, start: Start, t_span: tuple[float, float], keep: FloatArray | None) -> None:
+        self.law, self.t_span, self.notes, size = law, t_span, {}, start.q.size
+        self.q, self.p, self.memory = start.q, start.p, law.start(start.q, start.p)
+        self.steps, self.done = count_steps(*t_span, law.dt, np.floor), 0
+        self.wanted = None if keep is None else _nearest(t_span[0], law.dt, self.steps, keep)
+        self.first = start.sample if self.wanted is None or 0 in self.wanted else None
+        self.pace = Pace(min(_BEGIN, 20_000 // size), min(law.steps_at_once, _NUMBERS // (3 * size)))
+        self.encounters: Encounters | None = None
+        if isinstance(law, FixedSteps) and wrappers_within(law.law) and not law.noisy:
+            known = Encounters.of(law.law, len(start.q))
+            self.encounters = known if known.any else None
+            past = [State(*row[:3]) for row in self.memory.get("past", ())]
+            for k, (before, after) in enumerate(pairwise(past), 1 - len(past)):
+                self._ensure_resolved(before, after, t_span[0] + k * law.dt)
+
+    @property
+    def finished(self) -> bool:  # noqa: D102
+        return self.done >= self.steps
+
+    def advance(self) -> int:
+        """Make some steps; those from the first on that is not finite are not accepted."""
+        t0, dt, first, last = self.t_span[0], self.law.dt, self.done, min(self.done + self.pace.steps, self.steps)
+        own = np.arange(1, last - first + 1)
+        if self.wanted is not None:
+            own = self.wanted[slice(*np.searchsorted(self.wanted, [first + 1, last + 1]))] - first
         times = t0 + np.arange(float(first), float(last)) * dt  # so a step hangs on its own time, and on no block's
-        with pace:
-            made, rows, states = _chunk(law, times, q, p, memory, own - first)
-        qs, ps, us, series = states
-        good = made.size
+        with self.pace:
+            made, states = self._visit(times, own)
+        good, (qs, ps, us, self._series) = made.size, states
         if not finite(qs, ps):
             good = int(np.argmin(np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))))
-        kept = rows[rows < good]
-        if kept.size:
+            self.failure = f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}"
+        t = np.minimum(t0 + (made + first) * dt, self.t_span[1])  # which the last step may pass by its rounding
+        self._made, self._kept = Samples(t, qs, ps, us, {}), np.searchsorted(made, own)
+        self._kept = self._kept[self._kept < good]
+        if self.encounters is not None:
+            q, p = self.q, self.p
+            for at, *after in zip(t[:good].tolist(), qs, ps, us, strict=False):
+                # the input of a step is its mean: that of both of its ends, to the order that paths are looked at
+                self._ensure_resolved(State(q, p, after[2]), State(*after), at - dt)
+                q, p, _ = after
+        count = int(made[good - 1]) if good else 0
+        self.evaluations += count
+        return count
+
+    def _ensure_resolved(self, before: State, after: State, t: float) -> None:
+        """Raise if a step from t on misses an encounter."""
+        h, share = self.law.dt, self.encounters.share(self.law.dt, before, after) if self.encounters else 1.0
+        if share < 1.0:
+            raise ArgumentError(
+                f"dt = {h:g}: agents come into range and out again, or go too far there, within the step from t = "
+                f"{t:.6g}; expected dt <= {h / ceil(1.0 / share):.4g}"
+            )
+
+    def _visit(self, times: FloatArray, own: IndexArray) -> tuple[IndexArray, States]:
+        """Return (indices of steps, states after them): its own and the last, or all that can be judged only so.
+
+        All where encounters are looked at, and where the map has left the finite numbers: which step was the first?
+        """
+        every = np.arange(1, len(times) + 1)
+        few = every if self.encounters is not None else np.union1d(own, every[-1:])
+        states = self.law.visit(times, self.q, self.p, copied(self.memory), few)
+        if few.size == every.size or finite(*states[:2]):
+            return few, states
+        return every, self.law.visit(times, self.q, self.p, self.memory, every)
+
+    def samples(self, count: int) -> Iterator[Samples]:
+        """Yield the steps that are wanted."""
+        if self._kept.size:
             # of all steps a view, of some a copy: the others are let go
-            at = slice(0, good) if kept.size == made.size else kept
-            some = {name: values[at] for name, values in series.items() if name not in law.private}
-            t = np.minimum(t0 + (made[at] + first) * dt, t_span[1])  # which the last step may pass by its rounding
-            yield Samples(t, qs[at], ps[at], us[at], some)
-        done = int(made[good - 1]) if good else 0
-        tally.steps, tally.evaluations = tally.steps + done, tally.evaluations + done
-        if good < made.size:
-            tally.fail(f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}")
-            return
-        # a copy: a law may change its memory in place
-        q, p, memory = qs[-1], ps[-1], copied({name: values[-1] for name, values in series.items()})
+            rows = slice(0, self._kept.size) if self._kept.size == len(self._made.t) else self._kept
+            public = {name: values for name, values in self._series.items() if name not in self.law.private}
+            yield self._made._replace(extra=public).at(rows)
 
-
-def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray | None) -> IndexArray | None:
-    """Return indices of the steps nearest to the times to keep, each once; None to keep all."""
-    return None if keep is None else _nearest(t_span[0], law.dt, count_steps(*t_span, law.dt, np.floor), keep)
-
-
-def _chunk(
-    law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, own: IndexArray
-) -> tuple[IndexArray, IndexArray, States]:
-    """Return (indices of steps, positions of the wanted ones among them, states after them).
-
-    They are its own and the last; all where the map has left the finite numbers: which step was the first?
-    """
-    steps = len(times)
-    few = own if own.size and own[-1] == steps else np.append(own, steps)
-    states = law.visit(times, q, p, copied(memory), few)
-    if few.size == steps or finite(*states[:2]):
-        return few, np.arange(own.size), states
-    return np.arange(1, steps + 1), own - 1, law.visit(times, q, p, memory, np.arange(1, steps + 1))
+    def continue_from(self, count: int) -> None:
+        """Go on; from a copy of the memory, which a law may change in place."""
+        self.q, self.p, self.done = self._made.q[-1], self._made.p[-1], self.done + count
+        self.memory = copied({name: values[-1] for name, values in self._series.items()})
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:

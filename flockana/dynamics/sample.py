@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray
 
 
 class Sample(NamedTuple):
-    """One instant of a run: a sample, or if it is not `wanted` a step that the integrator made between samples."""
+    """One instant of a run."""
 
     t: float
     q: FloatArray
@@ -22,13 +22,9 @@ class Sample(NamedTuple):
     extra: dict[str, FloatArray]
     wanted: bool = True
 
-    def each(self) -> Iterator[Sample]:
-        """Yield the sample itself, as `Samples.each` yields each of several."""
-        yield self
-
 
 class Samples(NamedTuple):
-    """Several instants of a run: a `Sample` with a first axis of time; either all are wanted or none."""
+    """Instants of a run, along a first axis: samples, or if not `wanted` the integrator's steps between samples."""
 
     t: npt.NDArray[np.floating]
     q: FloatArray
@@ -38,10 +34,15 @@ class Samples(NamedTuple):
     wanted: bool = True
 
     @classmethod
-    def of(cls, steps: Sequence[Sample]) -> Samples:
-        """Return steps between samples, stacked into one array for each quantity."""
-        t, q, p, u = (np.array([getattr(step, name) for step in steps]) for name in ("t", "q", "p", "u"))
+    def joined(cls, blocks: Sequence[Samples]) -> Samples:
+        """Return steps between samples, joined into one array for each quantity."""
+        t, q, p, u = (np.concatenate([getattr(block, name) for block in blocks]) for name in ("t", "q", "p", "u"))
         return cls(t, q, p, u, {}, wanted=False)
+
+    def at(self, rows: Any) -> Samples:
+        """Return some of them: views where `rows` is a slice."""
+        extra = {name: values[rows] for name, values in self.extra.items()}
+        return Samples(self.t[rows], self.q[rows], self.p[rows], self.u[rows], extra, self.wanted)
 
     def each(self) -> Iterator[Sample]:
         """Yield the samples one by one."""
@@ -67,10 +68,11 @@ class Start(NamedTuple):
         return bool(np.isfinite(self.energy))
 
     @property
-    def sample(self) -> Sample:
-        """The initial state as a sample."""
-        work = {"work": np.array(0.0)} if self.energetic else {}
-        return Sample(self.t, self.q, self.p, self.u, {**self.memory, **work})
+    def sample(self) -> Samples:
+        """The initial state as a single sample."""
+        extra = {**self.memory, **({"work": np.array(0.0)} if self.energetic else {})}
+        one = {name: np.asarray(values)[None] for name, values in extra.items()}
+        return Samples(np.array([self.t]), self.q[None], self.p[None], self.u[None], one)
 
 
 @dataclass

@@ -6,6 +6,7 @@ of the energy balance is `Trajectory.energy_residual`.
 
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,12 +25,12 @@ from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.dynamics.between import Between, Recorder
-from flockana.dynamics.delayed import followed
-from flockana.dynamics.driver import integrated
+from flockana.dynamics.driver import drive, integrator_of
 from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
-from flockana.dynamics.iterate import count_steps, discrete
-from flockana.dynamics.sample import Sample, Samples, Start, Tally, copied
+from flockana.dynamics.iterate import MapStepper, count_steps
+from flockana.dynamics.sample import Sample, Samples, Start, Tally
+from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
@@ -124,23 +125,17 @@ def simulate(
     start = first_call(law, t_span[0], q0, p0)
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
-    tally, how = Tally(), dict[str, Any]()
-    samples: Iterator[Sample | Samples]
     if isinstance(law, DiscreteLaw):
         if dt is not None or max_step is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt, max_step nor method")
         name, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        if isinstance(law, FixedSteps) and wrappers_within(law.law) and not law.noisy:
-            samples = followed(law, q0, p0, t_span, keep, tally)
-        else:
-            samples = discrete(law, q0, p0, t_span, keep, tally)
+        make_stepper: Callable[[], Stepper] = partial(MapStepper, law, start, t_span, keep)
     else:
         plan, how = _plan(solver_of(method, dt), law, start, t_span, keep, (rtol, atol, max_step))
-        name, every = plan.solver.name, plan.solver.dt is not None and keep is None
-        samples = integrated(law, start, plan, plan.stops if every else keep, tally)
-    started = time.perf_counter()
-    kept, between = _collect(samples, t_span, tally, progress, watch)
+        name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan)
+    started, tally = time.perf_counter(), Tally()
+    kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
     counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     if not kept:  # ended before the first time to keep
@@ -178,27 +173,24 @@ def _plan(
             raise ArgumentError(f"max_step = {max_step!r}: {solver.name} takes steps of dt; make dt shorter")
         dt = _ensure_step("dt", solver.dt, t_span)
         _ensure_samples_fit(dt, t_span, start.q, keep)
-        return Plan(solver, np.array(list(_stops(t_span, dt, keep))), np.empty(0)), {"dt": dt}
+        stops = np.array(list(_stops(t_span, dt, keep)))
+        return Plan(solver, stops, stops if keep is None else keep), {"dt": dt}
     how: dict[str, Any] = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
     floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
     longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
-    control, due = Control(how["rtol"], floor, longest), np.empty(0) if keep is None else keep
+    control = Control(how["rtol"], floor, longest)
     how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
-    return Plan(solver, np.array([t_span[1]]), due, control), how
+    return Plan(solver, np.array([t_span[1]]), keep, control), how
 
 
-def _stacked(
-    kept: list[Sample | Samples],
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
+def _stacked(kept: list[Samples]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
     """Return (t, q, p, u, extra) of a run, stacked without holding its samples twice in memory."""
-    one = next(kept[0].each())
-    end = sum(np.size(samples.t) for samples in kept)
-    shape, t = (end, *one.q.shape), np.empty(end)
-    q, p, u = np.empty(shape), np.empty(shape), np.empty(shape)
-    extra = {key: np.empty((end, *np.shape(value))) for key, value in one.extra.items()}
+    one, end = kept[0], sum(len(samples.t) for samples in kept)
+    t, (q, p, u) = np.empty(end), (np.empty((end, *one.q.shape[1:])) for _ in range(3))
+    extra = {key: np.empty((end, *values.shape[1:])) for key, values in one.extra.items()}
     while kept:
         samples = kept.pop()
-        start = end - np.size(samples.t)
+        start = end - len(samples.t)
         t[start:end], q[start:end], p[start:end], u[start:end] = samples.t, samples.q, samples.p, samples.u
         for key, series in extra.items():
             series[start:end] = samples.extra[key]
@@ -246,46 +238,40 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
     return times
 
 
-def _copy(sample: Sample) -> Sample:
-    """Return a copy of a sample for the user's `watch`, which may change it without harm to the run."""
-    q, p, u = (np.array(series) for series in (sample.q, sample.p, sample.u))
-    return sample._replace(q=q, p=p, u=u, extra=copied(sample.extra))
+def _copy(single: Samples) -> Sample:
+    """Return a copy of a single sample for the user's `watch`, which may change it without harm to the run."""
+    (t, *state), extra = single[:4], {name: np.array(values[0]) for name, values in single.extra.items()}
+    return Sample(float(t[0]), *(values[0].copy() for values in state), extra)
 
 
 def _collect(
-    samples: Iterator[Sample | Samples],
+    samples: Iterator[Samples],
     t_span: tuple[float, float],
     tally: Tally,
     progress: bool,
     watch: Callable[[Sample], object] | None,
-) -> tuple[list[Sample | Samples], Between | None]:
+) -> tuple[list[Samples], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
-    kept: list[Sample | Samples] = []
-    recorder, reached = Recorder(), t_span[0]
+    kept, recorder, reached = list[Samples](), Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with restore_interrupts():
-                for found in samples if watch is None else _one_by_one(samples):
-                    if found.wanted:
-                        kept.append(found)
-                        if watch is not None and isinstance(found, Sample):
-                            watch(_copy(found))
-                    recorder.add(found)
+                for some in samples if watch is None else _one_by_one(samples):
+                    if some.wanted:
+                        kept.append(some)
+                        if watch is not None:
+                            watch(_copy(some))
+                    recorder.add(some)
                     if progress:
-                        reached = max(reached, _end(found))
+                        reached = max(reached, float(some.t[-1]))
                         advance(reached - t_span[0], f"t = {reached:.4g}")
         except KeyboardInterrupt:
-            until = f"the last sample is at t = {_end(kept[-1]):g}" if kept else "no sample was reached but the start"
+            until = f"the last sample is at t = {kept[-1].t[-1]:g}" if kept else "no sample was reached but the start"
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
     return kept, recorder.between()
 
 
-def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample | Samples]:
+def _one_by_one(samples: Iterator[Samples]) -> Iterator[Samples]:
     """Yield samples one at a time for the user's `watch`, and steps as they come."""
-    for found in samples:
-        yield from found.each() if found.wanted else (found,)
-
-
-def _end(found: Sample | Samples) -> float:
-    """The time of the last of some samples."""
-    return float(found.t[-1]) if isinstance(found, Samples) else found.t
+    for some in samples:
+        yield from (some.at(slice(k, k + 1)) for k in range(len(some.t))) if some.wanted else (some,)

@@ -1,6 +1,8 @@
-"""Interface between the driver of runs and integrators, compiled or not."""
+"""What makes the steps of a run, as the drive loop knows it; and integrators, which write theirs into a block."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -8,40 +10,146 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.sample import Samples, Start
 from flockana.kernels.advance import record
 from flockana.kernels.march import Block
+from flockana.laws.law import Law
+
+_MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
+_ENDLESS = 1e9  # and so do steps of which so many more would be needed: hours of the fastest flocks
 
 
 class Stepper(ABC):
-    """Integrator at the current time of a run; it writes steps into a block, after the block's first row."""
+    """Maker of the steps of a run, from its current time on."""
 
-    frame: Frame
-    plan: Plan
-    block: Block
-    order: npt.NDArray[np.uint64]  # every agent's own number, in the order of the vectors
-    stops: FloatArray  # times to come at which a step must end
-    due: FloatArray  # times to come of samples
-    evaluations: int
-    redone: int  # steps made again
-    failure: str  # why it gave up, if it did
+    first: Samples | None  # the start, if it is kept
+    failure: str = ""  # why the run ends early, if it does
+    evaluations: int = 0  # of the law
+    notes: dict[str, Any]  # further entries of `Trajectory.stats`
+
+    @property
+    @abstractmethod
+    def finished(self) -> bool:
+        """Whether the end of the time span is reached."""
 
     @abstractmethod
-    def advance(self, checks: StepChecks) -> int:
-        """Make accepted steps; `failure` says why the run ends, if it does."""
+    def advance(self) -> int:
+        """Make steps and return how many are accepted; `failure` says why the run ends, if it does."""
+
+    @abstractmethod
+    def samples(self, count: int) -> Iterator[Samples]:
+        """Yield what a run keeps of these steps."""
+
+    def describe_failure(self, steps: int, count: int) -> str:
+        """Return in words why a run that made so many steps, the last of them now, ends here; '' if it goes on."""
+        return self.failure
+
+    @abstractmethod
+    def continue_from(self, count: int) -> None:
+        """Go on from the end of these steps."""
+
+
+class Integrator(Stepper):
+    """Integrator of a continuous law; it writes steps into a block, after the block's first row."""
+
+    order: npt.NDArray[np.uint64]  # every agent's own number, in the order of the vectors
+
+    def __init__(self, law: Law, start: Start, plan: Plan, rows: int = 1) -> None:
+        self.law, self.plan, self.notes = law, plan, {"redone": 0}
+        self.frame = Frame.of(start.t, start.q, start.p, energetic=start.energetic)
+        self.checks, y = StepChecks(law, self.frame, plan), self.frame.start(start.q, start.p)
+        self.stops, self.due = plan.stops[plan.stops > start.t], plan.due[plan.due > start.t]  # still to come
+        self.block = Block(*(np.empty((rows + 1, *shape)) for shape in ((), y.shape, y.shape, ())))
+        self.block.t[0], self.block.y[0], self.block.energy[0] = start.t, y, np.nan
+        self.first = start.sample if plan.keep is None or start.t in plan.keep[:1] else None  # exact, unlike the frame
+        self._counted_from = start.t, 0.0
+
+    @property
+    def finished(self) -> bool:  # noqa: D102
+        return not self.stops.size
 
     @abstractmethod
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (times, states, work) of the samples due within the steps; work is NaN where a step ended."""
 
-    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
-        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-        states, work = np.empty((good, 3, *self.frame.shape)), np.empty(good)
+    def states(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """(states of shape (count, 3, n, m), work) at the ends of the steps."""
+        states, work = np.empty((count, 3, *self.frame.shape)), np.empty(count)
         record(self.block, self.order, self.frame.view, states, work)
         return states, work
 
-    def continue_from(self, good: int) -> None:
-        """Go on from the end of the last step."""
+    def samples(self, count: int) -> Iterator[Samples]:
+        """Yield the steps that are not samples, then the samples, in blocks for speed."""
+        # Steps come first: a run that is interrupted after them has no samples whose steps are not known.
+        made, (states, work), keep = self.block.t[1 : count + 1].copy(), self.states(count), self.plan.keep
+
+        def samples(t: FloatArray, states: FloatArray, work: FloatArray, wanted: bool = True) -> Samples:
+            extra = {"work": work} if wanted and self.frame.energetic else {}
+            return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra, wanted)
+
+        if keep is None:
+            yield samples(made, states, work)
+            return
+        due, seen, done = self.between()
+        chosen, apart = _among(made, keep), ~_among(due, made)  # where a step ended there is nothing in what is between
+        if not chosen.all():
+            own = np.flatnonzero(~chosen)
+            contiguous = own[-1] - own[0] < own.size  # then a view
+            rows = slice(own[0], own[-1] + 1) if contiguous else own
+            yield samples(made[rows], states[rows], work, wanted=False)
+        if chosen.any() or apart.any():
+            t = np.concatenate([made[chosen], due[apart]])
+            order = np.argsort(t)
+            some, its_work = (
+                np.concatenate([own[chosen], others[apart]])[order] for own, others in ((states, seen), (work, done))
+            )
+            yield samples(t[order], some, its_work)
+
+    def describe_failure(self, steps: int, count: int) -> str:
+        """Return why the run ends here, with the nearest pair of a law that has a pole where two agents meet."""
+        text = self.failure or self._describe_stall(steps, count)
+        return text.rstrip(".") + self._name_nearest(count) if text and 0.0 in self.law.poles else text
+
+    def _describe_stall(self, steps: int, count: int) -> str:
+        """Return in words that the last steps are far too short for the law's own time or the span, '' otherwise."""
+        at, (since, before) = float(self.block.t[count]), self._counted_from
+        ahead = self.stops[self.stops > at]
+        if self.plan.solver.dt:
+            return self.plan.describe_cuts(steps, len(self.plan.stops) - ahead.size)
+        if steps < before + _MANY:
+            return ""
+        mean, self._counted_from = (at - since) / (steps - before), (at, steps)
+        if ahead.size and ahead[-1] - at > _ENDLESS * mean:
+            return (
+                f"it would take {(ahead[-1] - at) / mean:.1e} more steps to t = {ahead[-1]:g}: the last {_MANY} are "
+                f"{mean:.2g} long on average; expected a shorter span or slower gains"
+            )
+        if self.law.scales is None or mean >= _SHORT * self.law.scales.time:
+            return ""
+        text = f"steps collapse at t = {at:g}: the last {_MANY} are {mean:.2g} long on average"
+        return text if 0.0 in self.law.poles else text + self._name_nearest(count)
+
+    def _name_nearest(self, row: int) -> str:
+        """Return in words which agents are nearest at a row of the block; '' for one agent."""
+        from scipy.spatial import cKDTree
+
+        n, m = self.frame.shape
+        if n == 1:
+            return ""
+        q = self.block.y[row, : n * m].reshape(n, m)  # as the frame sees it: finer than the positions
+        apart, others = map(np.asarray, cKDTree(q).query(q, k=2))
+        k = int(apart[:, 1].argmin())
+        i, j = sorted((int(self.order[k]), int(self.order[others[k, 1]])))
+        return f"; the nearest agents, {i} and {j}, are {apart[k, 1]:.3g} apart"
+
+    def continue_from(self, count: int) -> None:  # noqa: D102
         for rows in self.block:
-            rows[0] = rows[good]
+            rows[0] = rows[count]
         t = float(self.block.t[0])
         self.stops, self.due = self.stops[self.stops > t], self.due[self.due > t]
+
+
+def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
+    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block."""
+    nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
+    return np.asarray(nearest == times)

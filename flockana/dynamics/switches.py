@@ -1,6 +1,5 @@
 """Laws with jumps: the first time within a step at which a pair leaves its smooth piece is located."""
 
-from collections import deque
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -8,8 +7,9 @@ from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
+from flockana.dynamics.frame import Plan
 from flockana.dynamics.interpreted import Interpreter
-from flockana.dynamics.sample import Sample, Start, Tally
+from flockana.dynamics.sample import Samples, Start
 from flockana.laws.switched import Pieces, SwitchedLaw
 
 Way = Callable[[float], FloatArray]
@@ -20,86 +20,60 @@ _NODES = chebyshev.chebpts1(2 * _DEGREE + 1)  # so many that a squared distance 
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
-class Switches:
-    """Flow with every pair held in its smooth piece until one leaves it.
+class SwitchingInterpreter(Interpreter):
+    """Integrator from switch to switch: every pair is held in its smooth piece until one leaves it.
 
-    A pair held at a surface (a Filippov sliding mode) would switch ever more frequently: `cross` reports it.
+    A pair held at a surface (a Filippov sliding mode) would switch ever more frequently: it ends the run.
     """
 
-    def __init__(self, law: SwitchedLaw, q0: FloatArray) -> None:
-        self.law, self.pieces, self.count = law, law.pieces(q0), 0
+    law: SwitchedLaw
+
+    def __init__(self, law: SwitchedLaw, start: Start, plan: Plan) -> None:
+        self.pieces = law.pieces(start.q)
+        self._crossed: Pieces | None = None  # after the last step, if a switch ends it
+        self._beside: Samples | None = None
+        super().__init__(law, start, plan)
+        self.notes, self._counted_from = {"switches": 0}, (start.t, np.inf)  # switches end steps, however short
+        self.first = self.first and self.first._replace(u=self.flow(*start[:3])[0][None])
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """As `Law.flow`, every pair's piece continued smoothly beyond its edges."""
         return self.law.piece_flow(self.pieces, t, q, p)
 
-    def first(self, way: Way, start: float, end: float) -> float | None:
-        """The first time at which a pair is beyond its piece, however short the visit; None if there is none."""
-        return first_switch(self.law, self.pieces, way, start, end)
-
-    def cross(self, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Move pairs to their pieces after a switch; return in words what slides there, None if nothing does."""
-        before = self.pieces
-        self.pieces, self.count = self.law.crossed(before, self.law.margins(before, q)), self.count + 1
-        return self.law.sliding(before, self.pieces, t, q, p)
-
-
-def switched(
-    solver: Interpreter, switches: Switches, start: Start, keep: FloatArray | None, tally: Tally
-) -> Iterator[Sample]:
-    """Steps from switch to switch, and samples at times to keep; a sliding mode ends the run."""
-    frame, flow, t = solver.frame, switches.flow, solver.frame.t0
-    due, beside = deque([] if keep is None else keep.tolist()), None
-
-    def sample(t: float, y: FloatArray) -> Sample:
-        q, p = frame.state(t, y)
-        return Sample(t, q, p, flow(t, q, p)[0], {"work": np.array(y[-1])} if frame.energetic else {})
-
-    if keep is None or due[0] == t:
-        yield start.sample._replace(u=flow(t, start.q, start.p)[0])  # not a rounding beside it, as in the frame
-        _drop(due, t)
-    tally.notes["switches"] = 0
-    while solver.stops.size:
-        stepped = solver.step()
-        tally.evaluations = solver.evaluations
-        if not stepped:
-            tally.fail(solver.failure)
-            return
-        tally.steps += 1
-        end, y = float(solver.block.t[1]), solver.block.y[1].copy()
-        switch = switches.first(lambda s: frame.state(s, solver.course(s))[0], t, end)
+    def advance(self) -> int:
+        """Make one step up to the first switch, which may be followed by a sliding mode."""
+        if not self.step():
+            return 0
+        t, end = self.block.t.tolist()
+        switch = first_switch(self.law, self.pieces, lambda s: self.frame.state(s, self.course(s))[0], t, end)
         if switch is not None:
-            end, y = switch, solver.course(switch)
-        reached, t = sample(end, y), end
-        if beside is not None and beside.t < (min(t, due[0]) if due else t):
-            yield beside
-        beside = None
-        while due and due[0] < t:
-            yield sample(due[0], solver.course(due[0]))
-            due.popleft()
-        yield reached._replace(wanted=_drop(due, t) or keep is None)
-        if switch is None:
-            solver.continue_from(1)
-            continue
-        sliding = switches.cross(t, reached.q, reached.p)
-        tally.notes["switches"] = switches.count
-        if sliding is not None:
-            tally.notes["sliding"] = sliding
-            tally.fail(f"sliding at t = {t:.6g}: {sliding}")
-            return
-        solver.begin(flow, t, y)
-        beside = _sample_after(sample(t, y))
+            y = self.course(switch)
+            self.block.t[1], self.block.y[1], self.block.f[1] = switch, y, self.frame.rate(self.flow)(switch, y)
+            q, p = self.frame.state(switch, y)
+            self._crossed = self.law.crossed(self.pieces, self.law.margins(self.pieces, q))
+            self.notes["switches"] += 1
+            sliding = self.law.sliding(self.pieces, self._crossed, switch, q, p)
+            if sliding is not None:
+                self.notes["sliding"], self.failure = sliding, f"sliding at t = {switch:.6g}: {sliding}"
+        return 1
 
+    def samples(self, count: int) -> Iterator[Samples]:
+        """As of other steps; before them a second step just after the last switch, if nothing else is so near."""
+        if self._beside is not None and self._beside.t < min([self.block.t[1], *self.due[:1]]):
+            yield self._beside
+        self._beside = None
+        yield from super().samples(count)
 
-def _drop(due: deque[float], t: float) -> bool:
-    """Remove a time from those due for a sample; return whether it was due."""
-    return bool(due) and due[0] == t and due.popleft() == t
-
-
-def _sample_after(switch: Sample) -> Sample:
-    """Return a second sample just after a switch, from which the path continues with the other side's input."""
-    gap = 4.0 * float(np.spacing(abs(switch.t)))
-    return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)
+    def continue_from(self, count: int) -> None:
+        """Go on from the end of the step, after a switch with pairs in their new pieces."""
+        super().continue_from(count)
+        if self._crossed is not None:
+            self.pieces, self._crossed = self._crossed, None
+            self.begin()
+            (t, y, f, _), n = (rows[:1] for rows in self.block), self.frame.size
+            q, p = (each[None] for each in self.frame.state(float(t[0]), y[0]))
+            gap = 4.0 * float(np.spacing(abs(t[0])))  # from there the path continues with the other side's input
+            self._beside = Samples(t + gap, q + gap * p, p, f[:, n : 2 * n].reshape(q.shape).copy(), {}, wanted=False)
 
 
 def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:

@@ -12,7 +12,7 @@ import pytest
 from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.between import Between, Recorder, merged
-from flockana.dynamics.sample import Sample, Samples
+from flockana.dynamics.sample import Samples
 from flockana.dynamics.simulate import simulate
 from flockana.measures.metrics import cohesion_radii, min_distances
 from flockana.measures.path_bounds import closest_approach, cohesion_bound
@@ -161,13 +161,14 @@ class TestBoundedMemory:
 
     def test_single_steps_of_few_agents_take_their_numbers_and_no_objects(self):
         recorder, steps = Recorder(), 4000
-        recorder.add(Sample(-1.0, *np.zeros((3, 2, 1)), {}))
+        recorder.add(Samples(np.array([-1.0]), *np.zeros((3, 1, 2, 1)), {}))
         tracemalloc.start()
         for k in range(steps):
-            recorder.add(Sample(float(k), *(np.full((2, 1), float(k)) for _ in range(3)), {}, wanted=False))
+            arrays = (np.full(shape, float(k)) for shape in ((1,), *3 * ((1, 2, 1),)))
+            recorder.add(Samples(*arrays, {}, wanted=False))
         held, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        recorder.add(Sample(float(steps), *np.zeros((3, 2, 1)), {}))
+        recorder.add(Samples(np.array([float(steps)]), *np.zeros((3, 1, 2, 1)), {}))
         assert held < 4 * 8 * (7 * steps)
         np.testing.assert_array_equal(recorder.between().t, np.arange(steps))
         np.testing.assert_array_equal(recorder.between().u[:, 1, 0], np.arange(steps))
@@ -178,8 +179,7 @@ class TestBoundedMemory:
         tracemalloc.start()
         for k in range(20):
             q, p, u = np.moveaxis(block.copy(), 1, 0)
-            some = Samples(np.arange(float(at_once)) + at_once * k, q, p, u, {}, wanted=False)
-            recorder.add(some if at_once > 1 else next(some.each()))
+            recorder.add(Samples(np.arange(float(at_once)) + at_once * k, q, p, u, {}, wanted=False))
         held, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert held < max(2 * block.nbytes, 16_000)  # some objects beside; all 20 steps are 96,000 at least
@@ -190,12 +190,13 @@ class TestBoundedMemory:
         every, _, _ = runs
         ends = [0, len(every.t) // 2, len(every.t) - 2]  # the last step leads to no sample
         one_by_one, together = Recorder(), Recorder()
+        all_steps = Samples(every.t, every.q, every.p, every.u, {})
         for k in range(len(every.t)):
-            one_by_one.add(Sample(float(every.t[k]), every.q[k], every.p[k], every.u[k], {}, k in ends))
+            one_by_one.add(all_steps.at([k])._replace(wanted=k in ends))
         wanted = np.isin(np.arange(len(every.t)), ends)
-        together.add(Sample(float(every.t[0]), every.q[0], every.p[0], every.u[0], {}))
+        together.add(all_steps.at([0]))
         for some, flag in ((~wanted, False), (wanted & (every.t > 0.0), True)):
-            together.add(Samples(every.t[some], every.q[some], every.p[some], every.u[some], {}, flag))
+            together.add(all_steps.at(some)._replace(wanted=flag))
         for name in ("t", "q", "p", "u"):
             here, there = (getattr(recorder.between(), name) for recorder in (one_by_one, together))
             np.testing.assert_array_equal(here, there)

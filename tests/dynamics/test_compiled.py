@@ -10,7 +10,6 @@ import pytest
 from flockana import Algorithm3, Capsule, ObstacleTerm, PairTerm, Polygon, Sphere, Wall, simulate
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
-from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.tolerance import Control, ErrorFloors
@@ -114,7 +113,7 @@ def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
     control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
     made_of = engine(law, q0, p0, Plan(DOP853(), np.array([0.7]), np.empty(0), control), 0.5)
-    made = made_of.advance(StepChecks(law, made_of.frame, made_of.plan))
+    made = made_of.advance()
     t, f = float(made_of.block.t[made]), made_of.block.f[made]
     states, work = made_of.states(made)
     q, p, found = states[-1]
@@ -204,7 +203,7 @@ def test_a_call_ends_early_where_steps_are_much_work():
     q = 1e-3 * np.random.default_rng(0).normal(size=(600, 2))
     control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
     crowd = engine(Algorithm1(), q, np.zeros_like(q), Plan(DOP853(), np.array([9.0]), np.empty(0), control))
-    assert crowd.advance(StepChecks(Algorithm1(), crowd.frame, crowd.plan)) < 5e7 / (12 * 180_000) + 2
+    assert crowd.advance() < 5e7 / (12 * 180_000) + 2
     assert crowd.failure == ""
 
 
