@@ -87,12 +87,9 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
     """Samples and the steps between them in order of time."""
     if between is None:
         return Course(t, q, p, u, None)
-    order = np.argsort(np.concatenate([t, between.t]))
-
-    def both(samples: FloatArray, steps: FloatArray) -> FloatArray:
-        return np.concatenate([samples, steps])[order]
-
-    return Course(both(t, between.t), both(q, between.q), both(p, between.p), both(u, between.u), between.slack)
+    pairs = (t, between.t), (q, between.q), (p, between.p), (u, between.u)
+    order = np.argsort(np.concatenate(pairs[0]))
+    return Course(*(np.concatenate(pair)[order] for pair in pairs), between.slack)
 
 
 class Recorder:
@@ -131,16 +128,15 @@ class Recorder:
             return None
         self._limit_memory()
         times = np.concatenate([some.t for some in self._samples])
-        t, q, p, u, *_ = Samples.joined(self._steps)
-        inside = (t > times[0]) & (t < times[-1])
+        steps = Samples.joined(self._steps)
+        inside = (steps.t > times[0]) & (steps.t < times[-1])
         if not inside.any():
             return None
-        if not inside.all():
-            t, q, p, u = t[inside], q[inside], p[inside], u[inside]
+        steps = steps if inside.all() else steps.at(inside)
         if not self._thinned:
-            return Between(t, q, p, u)
-        exact, knots = np.zeros(q.shape[1]), np.sort(np.concatenate([times, t]))
-        return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
+            return Between(*steps[:4])
+        exact, knots = np.zeros(steps.q.shape[1]), np.sort(np.concatenate([times, steps.t]))
+        return Between(*steps[:4], np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
     def _limit_memory(self) -> None:
         """Drop every other step if there are too many, and free their memory."""

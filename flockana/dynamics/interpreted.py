@@ -84,20 +84,14 @@ class Interpreter(Integrator):
         """Try one step into the second row; return whether it succeeds, with the reason in `failure` if not."""
         if self._solver.status == "finished":  # a stop, or a step that was made again ended here
             self._open(self.stops[0], getattr(self._solver, "h_abs", None))
-        self._course = None
-        if not self._attempt():
-            return False
-        start = float(self.block.t[0])
-        if self.block.t[1] <= start:
-            self.failure = self.plan.describe_failure(start, "its step is lost in the rounding of the time")
-        return not self.failure
-
-    def _attempt(self) -> bool:
-        """Try one step as the solver proposes it; return whether it succeeds."""
+        self._course, start = None, float(self.block.t[0])
         try:
             why = self._solver.step()
             if self._solver.status != "failed" and self._write(1):
-                return True
+                if self.block.t[1] > start:
+                    return True
+                self.failure = self.plan.describe_failure(start, "its step is lost in the rounding of the time")
+                return False
             why = why or "the state is no longer finite"
         except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:  # implicit solvers raise on NaN
             if isinstance(error, ArgumentError):

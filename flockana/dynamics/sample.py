@@ -35,9 +35,10 @@ class Samples(NamedTuple):
 
     @classmethod
     def joined(cls, blocks: Sequence[Samples]) -> Samples:
-        """Return steps between samples, joined into one array for each quantity."""
-        t, q, p, u = (np.concatenate([getattr(block, name) for block in blocks]) for name in ("t", "q", "p", "u"))
-        return cls(t, q, p, u, {}, wanted=False)
+        """Return instants of several blocks in one, which are wanted if those of the first are."""
+        arrays = (np.concatenate(series) for series in zip(*(block[:4] for block in blocks), strict=True))
+        extra = {name: np.concatenate([block.extra[name] for block in blocks]) for name in blocks[0].extra}
+        return cls(*arrays, extra, blocks[0].wanted)
 
     def at(self, rows: Any) -> Samples:
         """Return some of them: views where `rows` is a slice."""

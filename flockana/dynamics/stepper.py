@@ -78,32 +78,26 @@ class Integrator(Stepper):
         record(self.block, self.order, self.frame.view, states, work)
         return states, work
 
+    def _samples_of(self, t: FloatArray, states: FloatArray, work: FloatArray) -> Samples:
+        extra = {"work": work} if self.frame.energetic else {}
+        return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra)
+
     def samples(self, count: int) -> Iterator[Samples]:
         """Yield the steps that are not samples, then the samples, in blocks for speed."""
         # Steps come first: a run that is interrupted after them has no samples whose steps are not known.
-        made, (states, work), keep = self.block.t[1 : count + 1].copy(), self.states(count), self.plan.keep
-
-        def samples(t: FloatArray, states: FloatArray, work: FloatArray, wanted: bool = True) -> Samples:
-            extra = {"work": work} if wanted and self.frame.energetic else {}
-            return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra, wanted)
-
-        if keep is None:
-            yield samples(made, states, work)
+        steps = self._samples_of(self.block.t[1 : count + 1].copy(), *self.states(count))
+        if self.plan.keep is None:
+            yield steps
             return
-        due, seen, done = self.between()
-        chosen, apart = _among(made, keep), ~_among(due, made)  # where a step ended there is nothing in what is between
+        due = self._samples_of(*self.between())
+        chosen, apart = _among(steps.t, self.plan.keep), ~_among(due.t, steps.t)  # where a step ended it is the sample
         if not chosen.all():
-            own = np.flatnonzero(~chosen)
-            contiguous = own[-1] - own[0] < own.size  # then a view
-            rows = slice(own[0], own[-1] + 1) if contiguous else own
-            yield samples(made[rows], states[rows], work, wanted=False)
+            rows = np.flatnonzero(~chosen)
+            contiguous = rows[-1] - rows[0] < rows.size  # then a view
+            yield steps.at(slice(rows[0], rows[-1] + 1) if contiguous else rows)._replace(extra={}, wanted=False)
         if chosen.any() or apart.any():
-            t = np.concatenate([made[chosen], due[apart]])
-            order = np.argsort(t)
-            some, its_work = (
-                np.concatenate([own[chosen], others[apart]])[order] for own, others in ((states, seen), (work, done))
-            )
-            yield samples(t[order], some, its_work)
+            both = Samples.joined([steps.at(chosen), due.at(apart)])
+            yield both.at(np.argsort(both.t))
 
     def describe_failure(self, steps: int, count: int) -> str:
         """Return why the run ends here, with the nearest pair of a law that has a pole where two agents meet."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -88,6 +87,7 @@ class DOP853(AdaptivePair):
 
     order = 8
     error_order = 7
+    in_scipy = True
 
     @cached_property
     def tableau(self) -> Tableau:
@@ -103,13 +103,6 @@ class DOP853(AdaptivePair):
             interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
         places, exponent = shared_rows(a, estimates, interpolant), -1.0 / (self.error_order + 1)
         return Tableau(a, np.array(C), estimates, interpolant, places, STAGES, exponent)
-
-    @property
-    def scipy_class(self) -> Any:
-        """Scipy's own."""
-        import scipy.integrate
-
-        return scipy.integrate.DOP853
 
 
 def _dense_rows(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:

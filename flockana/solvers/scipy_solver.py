@@ -55,12 +55,7 @@ class Scipy(Solver):
 class ScipyPair(AdaptivePair):
     """Pair with the coefficients of scipy's class of the same name."""
 
-    @property
-    def scipy_class(self) -> Any:
-        """Scipy's own."""
-        import scipy.integrate
-
-        return getattr(scipy.integrate, self.name)
+    in_scipy = True
 
     @cached_property
     def tableau(self) -> Tableau:

@@ -90,6 +90,8 @@ class AdaptivePair(Solver):
         Order of the estimate.
     interpolant : sequence of sequences, optional
         P in y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j; by default the cubic through both ends and their rates.
+    in_scipy : bool
+        Whether its coefficients are those of scipy's class of this name.
     """
 
     a: ClassVar[Rows]
@@ -97,6 +99,7 @@ class AdaptivePair(Solver):
     error: ClassVar[Sequence[float]]
     error_order: ClassVar[int]
     interpolant: ClassVar[Rows | None] = None
+    in_scipy: ClassVar[bool] = False
 
     @cached_property
     def tableau(self) -> Tableau:
@@ -108,6 +111,8 @@ class AdaptivePair(Solver):
         """Class of scipy's that makes the same steps in Python."""
         import scipy.integrate
 
+        if self.in_scipy:
+            return getattr(scipy.integrate, self.name)
         known, stages = self.tableau, self.tableau.stages
         facts = {"order": self.order, "error_estimator_order": self.error_order, "n_stages": stages}
         arrays = {"A": known.a[:stages, :stages], "B": known.a[stages, :stages], "C": known.c[:stages]}
