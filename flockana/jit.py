@@ -6,8 +6,6 @@ compiled again with all its callers. numba numbers files and symbols from one on
 function is a module's own, of a name and a signature that no other function has, and one process compiles at a time.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import logging

@@ -48,7 +48,6 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("cli",),
 )
 STAGE = {name: k for k, names in enumerate(STAGES) for name in names}
-CIRCULAR = ("stability",)  # rooms whose modules may: a linearisation offers as methods what is computed above it
 KINDS = {"scene": "player", "figures": "report"}  # parts of a source whose name is not that of their room
 
 
@@ -112,7 +111,7 @@ def faults_of(path: Path, parts: tuple[str, ...], uses: dict[str, set[str]]) -> 
 def circle(root: Path) -> list[str]:
     """Return modules that import each other in a circle, for type checking too; none if there is none."""
     named_paths = ((path.relative_to(root).with_suffix("").parts, path) for path in (root / PACKAGE).rglob("*.py"))
-    paths = {".".join(parts): path for parts, path in named_paths if parts[1] not in CIRCULAR}
+    paths = {".".join(parts): path for parts, path in named_paths}
     graph = dict[str, set[str]]()
     for name, path in paths.items():
         tree = ast.walk(ast.parse(path.read_text()))

@@ -24,6 +24,7 @@ _EXAMPLES = {
     "DistanceFunction": "a function of the distance, such as pair_law(...)",
     "Falsification": "what falsify(...) gives",
     "Iterable": "a sequence",
+    "LinearFlock": "what linearise(...) gives",
     "Linearisation": "what linearise(...) gives",
     "Mapping": "a mapping, such as a dict of values by label",
     "Mode": "one of the modes of linearise(...)",

@@ -4,8 +4,6 @@ A function has an `energy`, a `force` = −dV/ds (positive repels), an `adjacenc
 and a `range` beyond which two agents do not feel each other; what it lacks is 0.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Many steps of a compiled law in one call: each is checked, and repeated with a shorter one if it fails."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

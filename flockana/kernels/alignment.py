@@ -1,7 +1,5 @@
 """Weights of the distance for velocity consensus alone, and their sums (`flockana.kernels.weight_sums`)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import exp, inf, log1p

@@ -1,7 +1,5 @@
 """Helpers of all sums over pairs: blocks of pairs, differences of two rows, parameters in registers."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from flockana.jit import Kernel, register_jitable

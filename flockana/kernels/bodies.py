@@ -4,8 +4,6 @@ They are: how many obstacles of one kind there are, m, the range r', gains c1 an
 the parameters of each obstacle begin (K + 1), its ball (m + 1 each), and its parameters.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ A template is a module of its own, in which a comment marks the lines that may b
 a file that is named by a digest of its text, so that numba keeps what it compiles of it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import re

@@ -3,8 +3,6 @@
 One source for every integrator, compiled with the law or not. A step that does not stand is made again, and shorter.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

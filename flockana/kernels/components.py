@@ -3,8 +3,6 @@
 Links may come in any order and in parts, so no more of them than one part need be in memory.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

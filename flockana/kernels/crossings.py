@@ -1,7 +1,5 @@
 """Which of some pairs of links cross, and how near the nearest two come."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

@@ -4,8 +4,6 @@ Both are quintics (`flockana.kernels.paths`). The long one is parted at the midd
 two curves stays in the hull of the differences of their control points.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel, register_jitable

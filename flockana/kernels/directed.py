@@ -1,7 +1,5 @@
 """α-forces on directed nets: every agent has a range of its own, and may look ahead only."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

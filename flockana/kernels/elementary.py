@@ -1,7 +1,5 @@
 """Sine and cosine that a compiler turns into vector instructions: no branch, no call, no table."""
 
-from __future__ import annotations
-
 from math import factorial, floor, pi
 
 from flockana.jit import inlined, register_jitable

@@ -4,8 +4,6 @@ The paths of a step are the quintics through its ends (`flockana.kernels.paths`)
 made again for the few pairs that may matter.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fixed steps of a compiled law as a map: exact steps, nothing checked or made again, many in one call."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@
 the rows of the constant part, of the amplitudes of cos ωt and of those of sin ωt.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import Any
 

@@ -3,8 +3,6 @@
 The text is written by this package, from a formula that its own grammar has read.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 from flockana.jit import Kernel

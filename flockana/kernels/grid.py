@@ -1,7 +1,5 @@
 """Agents sorted into the cells of a grid: those within a range of each other are in the same or in adjacent cells."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel

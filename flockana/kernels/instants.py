@@ -1,7 +1,5 @@
 """Least and greatest distances of a flock at many instants: for few agents all pairs are faster than any search."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

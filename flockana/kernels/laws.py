@@ -5,8 +5,6 @@ numbers, panels, listed)`` returns the potential energy (`flockana.kernels.liste
 a kernel ``guard(points, allowance, numbers, shell, far, share)``, which returns the share given, or less.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any, NamedTuple
 

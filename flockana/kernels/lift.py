@@ -3,8 +3,6 @@
 The sums are ordinary source (`pair_sums`, `pair_blocks`, `over_array`), bound to the functions of a law.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property

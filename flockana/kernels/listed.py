@@ -1,7 +1,5 @@
 """Data of a term beside the state, and the numbers of a pair term."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

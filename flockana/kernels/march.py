@@ -3,8 +3,6 @@
 What a step may not leap over, and what its energies say, is looked at once it is made (`flockana.kernels.checks`).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@
 of gains (1, or one per agent), ω, f and then a, b, c, s, e; p_r = f dq_r/dt + e; then c1γ and c2γ.
 """
 
-from __future__ import annotations
-
 from math import cos, sin, sqrt
 
 import numpy as np

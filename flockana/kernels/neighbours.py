@@ -5,8 +5,6 @@ yields. Blocks keep memory O(n) even where every agent is within range of every 
 directly; larger ones are sorted into a grid (`flockana.kernels.grid`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

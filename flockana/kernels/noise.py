@@ -4,8 +4,6 @@ A number is a hash of (seed, step, agent, partner, channel), by the finaliser of
 generators do it. Integers and one exact conversion give it, so that every processor has the same bits.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

@@ -4,8 +4,6 @@
 holds it: agents farther from the ball than the range cost one distance.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel, register_jitable

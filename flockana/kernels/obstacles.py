@@ -5,8 +5,6 @@ the agent to its β-agent and the β-agent's velocity dq̂/dt into the last two 
 to the boundary, negative inside. The gap, not q̂, is what it gives: q̂ − q would cancel near the surface.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt

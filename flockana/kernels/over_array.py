@@ -1,7 +1,5 @@
 """A scalar function over a one-dimensional array: a template (`flockana.kernels.bound`)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

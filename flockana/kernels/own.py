@@ -4,8 +4,6 @@ They have no potential energy. `numbers` begin with whether the law's energy is 
 on all agents alike does no work and a drag works on the differences of velocity alone.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 
 from flockana.jit import kernel

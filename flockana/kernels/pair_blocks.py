@@ -1,7 +1,5 @@
 """Potential and derivatives of a pair law over a block of pairs: a template (`flockana.kernels.bound`)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

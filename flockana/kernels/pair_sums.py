@@ -6,8 +6,6 @@ both agents. The compiler may not fuse products and sums, though it would save a
 same bits.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable

@@ -12,8 +12,6 @@ plus ∫ (t − θ)₊ᵏ⁻¹ dμ(θ) with a μ of one sign; q − Q, L2 and L3
 every (t − θ)₊ᵏ⁻¹ are ≥ 0; and of each of these the bound holds (tests/kernels/test_paths.py). That is the allowance.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable

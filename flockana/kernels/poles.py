@@ -4,8 +4,6 @@ No motion crosses a pole, so a step whose path does is no motion. Paths are the 
 (`flockana.kernels.paths`); those of many agents are not kept, but made again for the few pairs that may matter.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel

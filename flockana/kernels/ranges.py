@@ -4,8 +4,6 @@ The squared distance of two agents on their quintics is a polynomial of degree 1
 and those of its derivative tell that it rises or falls, on pieces that are halved until one of the two is decided.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

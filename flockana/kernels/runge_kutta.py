@@ -6,8 +6,6 @@ those of DOP853; P the interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The
 rates.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any, NamedTuple
 

@@ -4,8 +4,6 @@ Signs of determinants are taken in floating point where a bound of the rounding 
 and are handed back as UNSURE where it does not.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

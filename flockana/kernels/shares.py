@@ -3,8 +3,6 @@
 A template (`flockana.kernels.bound`): a run compiles only the checks that its law needs.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel

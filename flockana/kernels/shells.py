@@ -3,8 +3,6 @@
 The paths of a step are the quintics through its ends, given by their control points (`flockana.kernels.paths`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel, register_jitable

@@ -1,7 +1,5 @@
 """Sums over agents, coordinate by coordinate, in four lanes: quick, and the same to the bit on every processor."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import inlined, kernel

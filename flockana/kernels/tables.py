@@ -4,8 +4,6 @@ What leads from values to coefficients is the same for every panel: three matric
 solvers of linear algebra, which sum otherwise on other processors, have no part in it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -4,8 +4,6 @@ A list is a half list of two index arrays with room to spare, which kernels fill
 what a pair needs close in memory.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any, NamedTuple
 

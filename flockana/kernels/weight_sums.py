@@ -4,8 +4,6 @@ A weight is a scalar function of the squared distance and of its parameters. The
 it is divided by the number of agents, the range (infinite for all pairs) and the parameters.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel, register_jitable

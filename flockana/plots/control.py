@@ -18,7 +18,7 @@ from flockana.plots.symbols import typeset
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.stability.norms import NormTable
+    from flockana.stability.law_studies import NormTable
     from flockana.stability.sweeps import MarginSweep, Sweep
 
 _DASHES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"))

@@ -14,7 +14,7 @@ from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture
 from flockana.report.image import plots, svg
 from flockana.stability import Linearisation
-from flockana.stability.norms import norms_against_size
+from flockana.stability.law_studies import norms_against_size
 from flockana.stability.sweeps import centre_locus
 from flockana.stability.translational import CentreOfMass
 

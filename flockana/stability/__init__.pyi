@@ -1,6 +1,5 @@
 from .blocks import Blocks as Blocks
 from .blocks import blocks as blocks
-from .blocks import law_blocks as law_blocks
 from .centre_path import steady_error as steady_error
 from .consensus import consensus_root as consensus_root
 from .consensus import consensus_system as consensus_system
@@ -13,7 +12,6 @@ from .decay import linear_range as linear_range
 from .delay import DelayMargin as DelayMargin
 from .delay import DelaySystem as DelaySystem
 from .delay import delay_margin as delay_margin
-from .delay import delay_system as delay_system
 from .delay import scalar_margin as scalar_margin
 from .delay_linearisation import DelayLinearisation as DelayLinearisation
 from .delay_roots import rightmost_roots as rightmost_roots
@@ -22,6 +20,11 @@ from .design import design_gains as design_gains
 from .gain_problems import gain_problem as gain_problem
 from .informing import InformedAgents as InformedAgents
 from .informing import agents_to_inform as agents_to_inform
+from .law_studies import delay_system as delay_system
+from .law_studies import law_blocks as law_blocks
+from .law_studies import norms_against_size as norms_against_size
+from .law_studies import robustness_margins as robustness_margins
+from .law_studies import sampling_margin as sampling_margin
 from .linearisation import Linearisation as Linearisation
 from .linearise import linearise as linearise
 from .maps import MapLinearisation as MapLinearisation
@@ -35,18 +38,15 @@ from .nets import transient_growth as transient_growth
 from .norms import disturbance_system as disturbance_system
 from .norms import h2_norm as h2_norm
 from .norms import hinf_norm as hinf_norm
-from .norms import norms_against_size as norms_against_size
 from .norms import stationary_covariance as stationary_covariance
 from .packet_loss import LossMargin as LossMargin
 from .packet_loss import loss_margin as loss_margin
 from .robustness import RobustnessMargins as RobustnessMargins
 from .robustness import open_loop as open_loop
-from .robustness import robustness_margins as robustness_margins
 from .sampled_delays import delayed_sampling_margin as delayed_sampling_margin
 from .sampled_delays import sampled_delay_margin as sampled_delay_margin
 from .sampling import ModePeriod as ModePeriod
 from .sampling import SamplingMargin as SamplingMargin
-from .sampling import sampling_margin as sampling_margin
 from .sampling import scalar_period as scalar_period
 from .slowest import SlowModes as SlowModes
 from .slowest import slowest_modes as slowest_modes

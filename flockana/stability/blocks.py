@@ -10,14 +10,10 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.equilibria.potential import Potential
-from flockana.equilibria.solve import RESIDUAL
 from flockana.equilibria.terminal import rigid_motions
 from flockana.laws import Navigation, PairTerm
 from flockana.stability.bases import NEUTRAL, complement
-from flockana.stability.linearise import linearise
 
-_LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which it cancels
 MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many
 
 
@@ -40,8 +36,8 @@ class Blocks:
     --------
     Algorithm 1 lets a bond drift (2 translations) and leaves its orientation neutral:
 
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> pair = law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
+    >>> from flockana import Algorithm1, stability
+    >>> pair = stability.law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
     >>> pair.rigid.shape[1], pair.neutral.shape[1], pair.drifting.shape[1]
     (3, 3, 2)
     """
@@ -110,44 +106,6 @@ def ensure_pairs_and_pull(law: Any) -> None:
         raise ArgumentError(
             f"expected Algorithm1 or Algorithm2, pairs and at most a linear pull: got {type(law).__name__}"
         )
-
-
-def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
-    """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
-
-    K = c1α ∇²V + c1γ and D = c2α L̂ + c2γ, the gains of the γ-agent one for all or one per agent. Under Algorithm 2
-    translations are held by c1γ; the rotation about the γ-agent is neutral at every equilibrium, because the stress
-    of the pressed links cancels what c1γ holds.
-
-    Parameters
-    ----------
-    q : Equilibrium or array_like, shape (n, m)
-    strict : bool
-        Refuse a state that is no equilibrium.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> from flockana.environment.targets import StaticTarget
-    >>> one = law_blocks(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
-    >>> one.stiffness.tolist(), one.neutral.shape
-    ([[1.1]], (1, 0))
-    """
-    q = ensure_points("q", getattr(q, "q", q))
-    ensure_pairs_and_pull(law)
-    law.check_dimension(q.shape[1])
-    law.check_agents(len(q))
-    if q.size > MOST:
-        raise ArgumentError(
-            f"n m = {q.size}: expected at most {MOST} for a dense spectrum; linearise has sparse matrices"
-        )
-    if strict and (residual := Potential(law).residual(q)) > RESIDUAL:
-        raise ArgumentError(
-            f"q is no equilibrium: residual force {residual:.2g} of the law's force scale, more than {RESIDUAL:g}; "
-            "find_equilibrium finds one, and strict=False studies this state all the same"
-        )
-    linearised = linearise(law, q, allow_residual=True)
-    return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q, zero=max(linearised.zero, _LEAST))
 
 
 def _kernel(matrix: FloatArray, basis: FloatArray, zero: float) -> FloatArray:

@@ -24,7 +24,7 @@ from flockana.stability.rounding import eigenvalues
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from flockana.stability.linearisation import Linearisation
+    from flockana.stability.linear_flock import LinearFlock
 
 _ROUNDINGS = 64.0  # of eps N ‖A‖: singular values that count as 0
 _SEARCHES = 4  # poles from which the distance to a flock that is not controllable is sought
@@ -144,7 +144,7 @@ class ScaledModel(NamedTuple):
         return b
 
 
-def scaled_model(flock: Linearisation) -> ScaledModel:
+def scaled_model(flock: LinearFlock) -> ScaledModel:
     """Return the model of a linearised flock, its neutral motions as a basis of states."""
     ensure_fits("A", flock.A_sparse.shape, "ask of fewer agents")
     k, d, pace = flock.stiffness.toarray(), flock.damping.toarray(), flock.second_order.pace
@@ -158,7 +158,7 @@ def scaled_model(flock: Linearisation) -> ScaledModel:
 
 
 @check_kinds
-def controllability(flock: Linearisation, informed: Any, *, horizon: float | None = None) -> Controllability:
+def controllability(flock: LinearFlock, informed: Any, *, horizon: float | None = None) -> Controllability:
     """Return what forces on the informed agents reach of a linearised flock.
 
     A pole is controllable if no left eigenvector of it is orthogonal to the inputs (Hautus); of a multiple one that

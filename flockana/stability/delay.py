@@ -29,7 +29,7 @@ from flockana.base.progress import progress_bar
 from flockana.stability.bases import NEUTRAL
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
-from flockana.stability.linearisation import Linearisation
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.rounding import eigenvalues
 from flockana.stability.zero_modes import ZERO, kernel_of
 
@@ -125,51 +125,10 @@ class DelayMargin:
         return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
-def delay_system(
-    law: Any,
-    q: Any,
-    *,
-    delayed: str = "all",
-    carries: str = "both",
-    links: Any = None,
-    strict: bool = True,
-) -> DelaySystem:
-    """Return the linearised flock whose interactions are delayed.
-
-    Parameters
-    ----------
-    law : Law
-        A law that `linearise` takes.
-    q : Equilibrium, Linearisation or array_like, shape (n, m)
-        As for `linearise`.
-    delayed : {"all", "pairs", "neighbours"}
-        Everything, an agent's own state included; what depends on differences from other agents, its own state in them
-        included; or only what it hears of other agents.
-    carries : {"both", "positions", "velocities"}
-        What is late of these.
-    links : array_like, shape (M, 2), optional
-        Pairs (i, j): only what agent i hears of agent j is late, of ``"pairs"`` or ``"neighbours"``; by default all.
-    strict : bool
-        Refuse a state that is no equilibrium.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> one = delay_system(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
-    >>> [block.tolist() for block in one.late], one.neutral
-    ([[[1.1]], [[2.0976176963403033]]], 0)
-    """
+def delayed_flock(flock: LinearFlock, delayed: str, carries: str, links: Any = None) -> DelaySystem:
+    """Return a linear flock whose interactions are delayed: see `delay_system`."""
     ensure_known("set of delayed terms", delayed, DELAYED)
     ensure_known("quantity that is late", carries, CARRIES)
-    from flockana.stability.delay_linearisation import DelayLinearisation
-    from flockana.stability.linearise import linearise  # it gives delayed laws what needs this module
-
-    flock: Any = linearise(law, q, allow_residual=not strict)
-    if isinstance(flock, DelayLinearisation):
-        return flock.system
-    if not isinstance(flock, Linearisation):
-        raise ArgumentError(f"{law.title} is a map: expected a continuous law; linearise(...) gives its map")
     ensure_fits("K", flock.stiffness.shape, "ask of fewer agents")
     k, d = flock.stiffness.toarray(), flock.damping.toarray()
     late_k, late_d = (late_part(part, flock.q.shape[1], delayed, links) for part in (k, d))

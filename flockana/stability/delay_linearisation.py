@@ -21,7 +21,7 @@ from flockana.stability.delay_roots import LatePart, error_of_root, rightmost
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from flockana.stability.linearisation import Linearisation
+    from flockana.stability.linear_flock import LinearFlock
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class DelayLinearisation(ShortRepr):
     """
 
     law: Law
-    instant: Linearisation = field(repr=False)
+    instant: LinearFlock = field(repr=False)
     parts: tuple[LatePart, ...] = field(repr=False)
 
     @property

@@ -26,7 +26,7 @@ from flockana.stability.controllability import (
 )
 
 if TYPE_CHECKING:
-    from flockana.stability.linearisation import Linearisation
+    from flockana.stability.linear_flock import LinearFlock
 
 CRITERIA = ("rank", "trace", "log det", "least reach")
 _SUBMODULAR = ("rank", "trace", "log det")
@@ -62,7 +62,7 @@ class InformedAgents:
 
 @check_kinds
 def agents_to_inform(
-    flock: Linearisation, count: int, *, criterion: str = "log det", horizon: float | None = None, most: int = 20_000
+    flock: LinearFlock, count: int, *, criterion: str = "log det", horizon: float | None = None, most: int = 20_000
 ) -> InformedAgents:
     """Return the agents on which forces reach most of a linearised flock.
 

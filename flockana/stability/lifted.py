@@ -5,8 +5,6 @@ these as further states one period is a matrix. Its neutral motions are known be
 eigenvalues are computed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import reduce
 from math import inf
@@ -20,7 +18,7 @@ from flockana.laws import Sampled
 from flockana.stability.bases import complement
 from flockana.stability.delay import kernels
 from flockana.stability.delay_roots import LatePart
-from flockana.stability.linearisation import Linearisation
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.maps import MapLinearisation
 from flockana.stability.signals import labels
 from flockana.stability.zero_modes import ZERO
@@ -121,7 +119,7 @@ def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
     return inf
 
 
-def lifted_map(law: Any, flow: Linearisation, parts: Sequence[LatePart], hold: Sampled) -> MapLinearisation:
+def lifted_map(law: Any, flow: LinearFlock, parts: Sequence[LatePart], hold: Sampled) -> MapLinearisation:
     """Return the linearisation of a sampled law with delays, or with clocks of the agents, over one period."""
     (n, m), size = flow.q.shape, flow.q.size
     clock = np.repeat(np.zeros(n) if hold.offsets is None else np.array(hold.offsets), m)

@@ -1,256 +1,247 @@
-"""Linearised dynamics of a flock near an equilibrium: matrices, eigenvalues, modes, python-control systems."""
+"""Linearised flock with what is studied of it: tables, margins, norms, responses, controllability, the plant."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
+from flockana.base.checks import ensure_fits, ensure_known, ensure_nonnegative, ensure_series
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
-from flockana.base.tables import facts_html, facts_text
-from flockana.laws import Law
-from flockana.measures.metrics import pairs_at_one_place
-from flockana.measures.nets import LinkArray
-from flockana.stability.modes import Mode, SecondOrder
-from flockana.stability.signals import structural_system, translational_system, whole_system
-from flockana.stability.studies import Studies
+from flockana.base.files import atomic_write
+from flockana.stability.damp_table import damp_table
+from flockana.stability.linear_flock import LinearFlock
 
 if TYPE_CHECKING:
-    import control
-    from scipy.sparse import csr_array
+    import os
 
-_FEW = 5  # modes that a table lists
-_MOST_SHOWN = 900  # coordinates up to which all poles are found for a table
+    from control import FrequencyResponseData, StateSpace
+    from pandas import DataFrame
+
+    from flockana.stability.controllability import Controllability
+    from flockana.stability.delay import DelayMargin
+    from flockana.stability.nets import Passivity, StringGains, TransientGrowth
+    from flockana.stability.packet_loss import LossMargin
+    from flockana.stability.robustness import RobustnessMargins
+    from flockana.stability.sampling import SamplingMargin
+
+_BESIDE, _FREQUENCIES = 30.0, 400  # times the fastest pole and a thirtieth of the slowest: the range of a response
 
 
-@dataclass(frozen=True, eq=False)
-class Linearisation(ShortRepr, Studies):
-    """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
+class ShapeNorms(NamedTuple):
+    """Norms from a force on each agent to the deviation of the shape, and the frequency of the largest gain."""
 
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Where it is linearised; every agent has the velocity of the frame.
-    t : float
-        When.
-    residual : float
-        How far the state is from an equilibrium, relative to the law's forces.
-    links : int array, shape (M, 2)
-        Links, whose lengths are outputs of `state_space`.
-    A_sparse : scipy.sparse.csr_array, shape (2nm, 2nm)
-        A of d(δq, δp)/dt = A (δq, δp), in the order ``(q.ravel(), p.ravel())``.
-    zero : float
-        What counts as a zero mode: a motion that K multiplies by less than this, relative to the row sums of the agents
-        that move.
+    h2: float
+    hinf: float
+    peak: float
 
-    Examples
-    --------
-    Two agents at their distance: a spring and a damper between them, and a plane to move in.
 
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.stability import linearise
-    >>> pair = linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
-    >>> [mode.name for mode in pair.zero_modes], pair.drifting
-    (['translation x', 'translation y', 'rotation'], ('translation x', 'translation y'))
-    >>> [(mode.name, round(mode.decay_rate, 4)) for mode in pair.modes]
-    [('breathing', 1.9637), ('rotation', 3.9275)]
-    """
+class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose fields it has
+    def damp(self, *, settled: float = 0.02) -> DataFrame:
+        """Return a table of all poles by rising natural frequency, as MATLAB's `damp` prints them.
 
-    law: Law
-    q: FloatArray = field(repr=False)
-    p: FloatArray = field(repr=False)
-    t: float
-    residual: float
-    links: LinkArray = field(repr=False)
-    A_sparse: csr_array = field(repr=False)
-    zero: float
-
-    def facts(self) -> dict[str, str]:
-        """Return what a table shows: sizes, zero modes, poles and the slowest modes."""
-        known = {
-            "law": self.law.title,
-            "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
-            "residual": f"{self.residual:.2g} of the law's forces",
-        }
-        if self.q.size > _MOST_SHOWN:
-            return {**known, "poles": f"{2 * self.q.size}; slowest_modes(...) finds a few of them"}
-        zero, modes = [mode.name for mode in self.zero_modes], self.modes
-        known |= {"zero modes": ", ".join(zero) if len(zero) <= _FEW else f"{len(zero)}", "poles": f"{2 * self.q.size}"}
-        if (doubtful := self._dense.kernel.doubtful(self.zero)).size:
-            known["zero modes in doubt"] = f"{doubtful.size}, of stiffness {doubtful[0]:.2g} of their agents' own"
-        known |= {"stable": "yes" if self.stable else "no"}
-        for k, mode in enumerate(modes[:_FEW], 1):
-            swing = f" ± {mode.frequency:.4g}i" if mode.frequency else ""
-            known[f"mode {k}"] = f"{mode.name}: λ = {mode.eigenvalue.real:.4g}{swing}, ζ = {mode.damping_ratio:.3g}"
-        return known | ({"further modes": f"{len(modes) - _FEW}"} if len(modes) > _FEW else {})
-
-    def __str__(self) -> str:
-        return facts_text("Linearisation", self.facts())
-
-    def _repr_html_(self) -> str:
-        return facts_html("Linearisation", self.facts())
-
-    @cached_property
-    def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
-        """The matrix as a dense array; refused where it would not fit in memory."""
-        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
-        return self.A_sparse.toarray()
-
-    @property
-    def stiffness(self) -> csr_array:
-        """K = −∂u/∂q, sparse."""
-        size = self.q.size
-        return -self.A_sparse[size:, :size]
-
-    @property
-    def damping(self) -> csr_array:
-        """D = −∂u/∂p, sparse."""
-        size = self.q.size
-        return -self.A_sparse[size:, size:]
-
-    @property
-    def coincident_pairs(self) -> int:
-        """Pairs of agents at the same place, where their force has no direction."""
-        return pairs_at_one_place(self.q)
-
-    @cached_property
-    def second_order(self) -> SecondOrder:
-        """The quadratic eigenproblem (λ² + λ D + K) v = 0."""
-        return SecondOrder(self.q, self.stiffness, self.damping, zero=self.zero)
-
-    @property
-    def _dense(self) -> SecondOrder:
-        ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
-        return self.second_order
-
-    @property
-    def eigenvalues(self) -> ComplexArray:
-        """All 2nm eigenvalues of A, the largest real part first; zero modes come out as exact zeros."""
-        return self._dense.eigenvalues
-
-    @property
-    def zero_modes(self) -> tuple[Mode, ...]:
-        """Motions that cost nothing, K v = 0: translations, rotations, then soft ones (hinges, loose parts)."""
-        return self._dense.invariant.zero
-
-    @property
-    def drifting(self) -> tuple[str, ...]:
-        """Names of the zero modes along which a velocity persists: no force, no damping, a Jordan block."""
-        return self._dense.invariant.drifting
-
-    @property
-    def semisimple(self) -> bool:
-        """Return whether the zero modes have no Jordan block, so that perturbations along them stay bounded."""
-        return self._dense.invariant.chains == 0
-
-    @property
-    def modes(self) -> tuple[Mode, ...]:
-        """Modes other than the zero modes, slowest first; one for each real eigenvalue or conjugate pair."""
-        return self._dense.modes
-
-    @property
-    def decay_rate(self) -> float:
-        """Slowest decay rate off the zero modes, per time unit; negative if something grows, NaN without modes."""
-        return min((mode.decay_rate for mode in self.modes), default=float("nan"))
-
-    @property
-    def stable(self) -> bool:
-        """Return whether every mode off the zero modes decays beyond rounding; True without such modes."""
-        return all(mode.decays for mode in self.modes)
-
-    @property
-    def structural_modes(self) -> tuple[Mode, ...]:
-        """`modes` of the shape alone, the centre of mass left out; raises where they do not separate."""
-        self.ensure_split()
-        centre = {id(mode) for mode in self._dense.invariant.translational}
-        return tuple(mode for mode in self.modes if id(mode) not in centre)
-
-    @property
-    def structural_decay_rate(self) -> float:
-        """`decay_rate` of the shape alone; raises where shape and centre do not separate."""
-        return min((mode.decay_rate for mode in self.structural_modes), default=float("nan"))
-
-    @property
-    def spectral_abscissa(self) -> float:
-        """Largest real part of the eigenvalues off the zero modes: minus `decay_rate`."""
-        return -self.decay_rate
-
-    def limit(self, dq: Any, dp: Any) -> FloatArray:
-        """Return the limit of a small perturbation along the manifold of equilibria, to first order.
-
-        The zero modes keep what their left eigenvectors measure, w·(D δq + δp); all else decays if `decay_rate` > 0.
-        Under Algorithms 1 and 2 the manifold is the orbit of the equilibrium under its symmetries.
+        Columns are pole, damping ratio, natural frequency, time constant and settling time; rows bear the names of the
+        modes. Zero modes come first, without a damping ratio.
 
         Parameters
         ----------
-        dq, dp : array_like, shape (n, m)
-            Perturbation of positions and velocities.
+        settled : float
+            Share of a deviation at which it counts as settled.
+        """
+        poles = [(mode.name, mode.eigenvalue) for mode in self.modes]
+        pairs = [(name, s.conjugate()) for name, s in poles if s.imag]
+        zeros = [(mode.name, 0j) for mode in self.zero_modes]
+        zeros += [("drift", 0j)] * (len(self.eigenvalues) - len(poles) - len(pairs) - len(zeros))
+        return damp_table([*zeros, *poles, *pairs], settled=settled)
+
+    def delay_margin(
+        self,
+        *,
+        delayed: str = "all",
+        carries: str = "both",
+        links: Any = None,
+        sampled: float | None = None,
+        progress: bool = False,
+    ) -> DelayMargin:
+        """Return the longest delay with which the flock is stable.
+
+        Parameters
+        ----------
+        delayed, carries, links
+            What is late: see `flockana.stability.delay_system`.
+        sampled : float, optional
+            Period of a zero-order hold by which the delayed input is sampled; then the margin is found by search.
+        progress : bool
+            Whether to show a bar of a long search.
+        """
+        from flockana.stability.delay import delay_margin, delayed_flock
+        from flockana.stability.sampled_delays import sampled_delay_margin
+
+        system = delayed_flock(self, delayed, carries, links)
+        return delay_margin(system, progress=progress) if sampled is None else sampled_delay_margin(system, sampled)
+
+    def sampling_margin(
+        self, *, delay: float = 0.0, delayed: str = "all", carries: str = "both", links: Any = None
+    ) -> SamplingMargin:
+        """Return the longest period of a zero-order hold with which the flock is stable.
+
+        Parameters
+        ----------
+        delay : float
+            Delay of the sampled input, whatever the period; then the margin is found by search.
+        delayed, carries, links
+            What is late: see `flockana.stability.delay_system`.
+        """
+        from flockana.stability.delay import delayed_flock
+        from flockana.stability.sampled_delays import delayed_sampling_margin
+        from flockana.stability.sampling import margin_of_flow
+
+        if ensure_nonnegative("delay", delay) == 0.0:
+            return margin_of_flow("hold", self)
+        return delayed_sampling_margin(delayed_flock(self, delayed, carries, links), delay)
+
+    def robustness(self) -> RobustnessMargins:
+        """Return gain, phase and disk margins of the loops broken at each agent's input."""
+        from flockana.stability.robustness import loop_margins
+
+        return loop_margins(self)
+
+    def loss_margin(self, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
+        """Return the largest packet loss borne in mean square: see `flockana.stability.loss_margin`.
+
+        Parameters
+        ----------
+        period : float
+            Sampling period.
+        lost, on_loss : str
+            What is lost at once, and what acts instead.
+        """
+        from flockana.stability.packet_loss import loss_margin
+
+        return loss_margin(self, period, lost=lost, on_loss=on_loss)
+
+    def string_gains(self, first: int = 0) -> StringGains:
+        """Return the H∞ norms from the motion of one agent to the others': see `flockana.stability.string_gains`.
+
+        Parameters
+        ----------
+        first : int
+            The agent that is moved.
+        """
+        from flockana.stability.nets import string_gains
+
+        return string_gains(self, first)
+
+    def transient_growth(self) -> TransientGrowth:
+        """Return how much a perturbation may grow before it decays: see `flockana.stability.transient_growth`."""
+        from flockana.stability.nets import transient_growth
+
+        return transient_growth(self)
+
+    def passivity(self) -> Passivity:
+        """Return whether forces on all agents only put energy in: see `flockana.stability.passivity`."""
+        from flockana.stability.nets import passivity
+
+        return passivity(self)
+
+    def norms(self) -> ShapeNorms:
+        """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out."""
+        from flockana.stability.blocks import blocks
+        from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
+
+        ensure_fits("A", self.A_sparse.shape, "ask of fewer agents")
+        system = disturbance_system(blocks(self.stiffness.toarray(), self.damping.toarray(), self.q))
+        return ShapeNorms(h2_norm(system), *hinf_norm(system))
+
+    def response(self, input: str, output: str, omega: Any = None) -> FrequencyResponseData:
+        """Return the frequency response from one named input to one named output of `state_space`.
+
+        Parameters
+        ----------
+        input, output : str
+            Such as "f0_x", a force on agent 0, or "qr_x", the γ-agent's place; and "qc_x", the centre, or "l0_1", the
+            length of a link.
+        omega : array_like, shape (F,), optional
+            Angular frequencies, in radians per time unit; by default around the poles.
+        """
+        import control
+
+        whole = self.state_space
+        ensure_known("input", input, whole.input_labels)
+        ensure_known("output", output, whole.output_labels)
+        one = whole[whole.output_labels.index(output), whole.input_labels.index(input)]
+        rates = np.abs(self.eigenvalues)
+        rates = rates[rates > 0.0] if rates.any() else np.ones(1)
+        grid = np.geomspace(rates.min() / _BESIDE, rates.max() * _BESIDE, _FREQUENCIES)
+        omega = grid if omega is None else ensure_series("omega", omega)
+        return control.frd(
+            np.ravel(one(1j * omega)), omega, inputs=[input], outputs=[output], name=f"{input} to {output}"
+        )
+
+    def controllability(self, informed: Any, *, horizon: float | None = None) -> Controllability:
+        """Return which motions forces on the informed agents reach: see `flockana.stability.controllability`.
+
+        Parameters
+        ----------
+        informed : sequence of int
+            Agents on which forces act.
+        horizon : float, optional
+            Time of the Gramian; by default for ever, off the motions that nothing brings back.
+        """
+        from flockana.stability.controllability import controllability
+
+        return controllability(self, informed, horizon=horizon)
+
+    def plant(self, inputs: Any = "all") -> StateSpace:
+        """Return the open loop for synthesis: the flock whose feedback to some inputs is taken away.
+
+        Parameters
+        ----------
+        inputs : "all", or sequence of int or str
+            Agents, or components of their inputs such as "u3_x". Their own law does not act; all others keep theirs.
 
         Returns
         -------
-        ndarray, shape (n, m)
-
-        Raises
-        ------
-        ArgumentError
-            If a zero mode drifts, so that there is no limit, or on bad arrays.
+        control.StateSpace
+            States and outputs q0_x, …, p0_x, …, all measured; inputs u0_x, …, the accelerations that are free. With
+            u = −F x and F the rows of [K D] for these inputs it is the flock again.
         """
-        dq, dp = ensure_state(dq, dp)
-        if dq.shape != self.q.shape:
-            raise ArgumentError(f"dq has shape {dq.shape}: expected {self.q.shape}, that of the equilibrium")
-        if not self.semisimple:
-            raise ArgumentError(
-                f"zero modes drift ({', '.join(self.drifting) or 'combined'}): there is no limit in this frame; "
-                "subtract the mean from dq and dp and look at `structural`"
-            )
-        zero = self._dense.invariant
-        kept = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time
-        return (zero.kernel @ np.linalg.solve(zero.cokernel.T @ (self.damping @ zero.kernel), kept)).reshape(dq.shape)
+        import control
 
-    def ensure_split(self) -> None:
-        """Raise unless the centre of mass and the shape move independently of each other, to first order.
+        from flockana.stability.controllability import ensure_agents
+        from flockana.stability.signals import labels
 
-        Raises
-        ------
-        ArgumentError
-            With the leak from the one to the other.
+        n, m = self.q.shape
+        names = labels("u", n, m)
+        if isinstance(inputs, str) and inputs == "all":
+            free = list(range(n * m))
+        elif np.size(inputs) and all(isinstance(one, str) for one in np.atleast_1d(inputs).tolist()):
+            given = np.atleast_1d(inputs).tolist()
+            free = [names.index(ensure_known("input", one, names)) for one in given]
+        else:
+            free = [i * m + c for i in ensure_agents("inputs", inputs, n) for c in range(m)]
+        a, b = self.A.copy(), np.zeros((2 * n * m, len(free)))
+        rows = n * m + np.array(free)
+        a[rows], b[rows, np.arange(len(free))] = 0.0, 1.0
+        states, chosen = labels("q", n, m) + labels("p", n, m), [names[k] for k in free]
+        read, blank = np.eye(2 * n * m), np.zeros((2 * n * m, len(free)))
+        return control.ss(a, b, read, blank, states=states, inputs=chosen, outputs=states, name="plant")
+
+    def to_mat(self, path: str | os.PathLike[str]) -> None:
+        """Write A, B, C, D of `state_space` and the names of its signals to a MATLAB file.
+
+        Parameters
+        ----------
+        path : str or path
+            File to write, ending in .mat.
         """
-        split = self.second_order.split
-        if not split.exact:
-            raise ArgumentError(
-                f"{self.law.title} does not split into shape and centre of mass here: {split.leak:.2g} of a "
-                "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
-                "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
-                "use modes and state_space"
-            )
+        from scipy.io import savemat
 
-    @cached_property
-    def state_space(self) -> control.StateSpace:
-        """Python-control system of all agents.
-
-        States q0_x, …, p0_x, …; inputs f0_x, … (a disturbance force on each agent) and qr_x, …, pr_x, … (the
-        γ-agent, if there is one); outputs qc_x, … (centre of mass), x0_x, … (deviations from it), l0_1, … (lengths of
-        links), all as differences from the equilibrium.
-        """
-        return whole_system(self)
-
-    @cached_property
-    def structural(self) -> control.StateSpace:
-        """Python-control system of the shape; raises where the split is not exact.
-
-        States x0_x, …, v0_x, … of all agents but the last, which is minus their sum; inputs f0_x, …; outputs x0_x, … of
-        all agents, l0_1, ….
-        """
-        return structural_system(self)
-
-    @cached_property
-    def translational(self) -> control.StateSpace:
-        """Python-control system of the centre; raises where the split is not exact.
-
-        States qc_x, …, pc_x, …; inputs f0_x, …, qr_x, …, pr_x, …; outputs qc_x, ….
-        """
-        return translational_system(self)
+        if not str(path).endswith(".mat"):
+            raise ArgumentError(f"path = {str(path)!r}: expected a name that ends in .mat")
+        system = self.state_space
+        parts: dict[str, Any] = {name: getattr(system, name) for name in "ABCD"}
+        for name in ("state", "input", "output"):
+            parts[f"{name}s"] = np.array(getattr(system, f"{name}_labels"), dtype=object)
+        with atomic_write(path) as partial:
+            savemat(partial, parts)

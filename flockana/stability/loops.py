@@ -1,7 +1,5 @@
 """Linear feedback of a wrapped law: what acts at once, what acts late, and how long the input is held."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import control
     from pandas import DataFrame
 
-    from flockana.stability.linearisation import Linearisation
+    from flockana.stability.linear_flock import LinearFlock
 
 _PARALLEL = 1e-9  # radians, or units of the law: headings that differ by no more are one, states that move less rest
 _WIDTH, _KINK = 1e-6, 1e-4  # of a difference, in units of the law; of two slopes, of the size of A
@@ -255,7 +255,7 @@ def moved_before(matrix: Any, m: int) -> Any:
     return entries.tocsr()
 
 
-def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
+def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
     """Linearisation of a map from that of the law that it steps: by `position_factor`, else by `stability_function`."""
     q, (n, m), size = flow.q, flow.q.shape, flow.q.size
     ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")

@@ -12,7 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.stability.linearisation import Linearisation
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.norms import Balanced, largest_gain
 
 _TOLERANCE = 1e-9  # relative, of a norm
@@ -45,7 +45,7 @@ class StringGains:
 
 
 @check_kinds
-def string_gains(flock: Linearisation, first: int = 0) -> StringGains:
+def string_gains(flock: LinearFlock, first: int = 0) -> StringGains:
     """Return the H∞ norms from the motion of one agent to those of all others, which follow it.
 
     Along a chain in which each hears the one before, the k-th gain is the k-th power of the first at one frequency: a
@@ -136,7 +136,7 @@ class StringStability:
 
 
 @check_kinds
-def string_stability(chain: Callable[[int], Linearisation], sizes: Sequence[int] = (3, 5, 9, 17)) -> StringStability:
+def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] = (3, 5, 9, 17)) -> StringStability:
     """Return whether what disturbs the first agent of a chain grows along it, from chains of several lengths.
 
     Where each agent hears the one before alone, with equal K and D, the gain over k links is at most the k-th power of
@@ -179,7 +179,7 @@ def string_stability(chain: Callable[[int], Linearisation], sizes: Sequence[int]
     )
 
 
-def _link_gain(flock: Linearisation, gain: float) -> float:
+def _link_gain(flock: LinearFlock, gain: float) -> float:
     """Return the gain that decides chains of every length, or NaN where the chain is of another form."""
     n, m = flock.q.shape
     parts = []
@@ -216,7 +216,7 @@ class TransientGrowth:
 
 
 @check_kinds
-def transient_growth(flock: Linearisation) -> TransientGrowth:
+def transient_growth(flock: LinearFlock) -> TransientGrowth:
     """Return how much a perturbation may grow before it decays: much, in a net that is far from normal.
 
     A perturbation is measured by its positions times the rate of the fastest motion, and its velocities, from the
@@ -283,7 +283,7 @@ class Passivity:
 
 
 @check_kinds
-def passivity(flock: Linearisation) -> Passivity:
+def passivity(flock: LinearFlock) -> Passivity:
     """Return whether a linearised flock is passive from forces on all agents to their velocities.
 
     Parameters

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan, inf, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
-from flockana.equilibria.solve import find_equilibrium
-from flockana.lattice import hexagonal_spiral
-from flockana.laws import Algorithm1, Algorithm2
 from flockana.stability.bases import complement
-from flockana.stability.blocks import Blocks, ensure_pairs_and_pull, law_blocks
+from flockana.stability.blocks import Blocks
 from flockana.stability.rounding import eigenvalues
 
 if TYPE_CHECKING:
@@ -40,7 +35,8 @@ def disturbance_system(flock: Blocks) -> StateSpace:
 
     Examples
     --------
-    >>> system = disturbance_system(law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]]))
+    >>> from flockana import Algorithm1, stability
+    >>> system = disturbance_system(stability.law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]]))
     >>> system.nstates, system.ninputs, system.noutputs
     (3, 4, 1)
     """
@@ -266,43 +262,3 @@ def largest_gain(system: Balanced, tol: float) -> tuple[float, float]:
             return max(best, peak)
         best = peak
     raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
-
-
-@dataclass(frozen=True)
-class NormTable:
-    """Norms of relaxed hexagonal flocks against their size."""
-
-    sizes: tuple[int, ...]
-    h2: FloatArray  # h2, hinf: shape (N,): norms from a force on each agent to the shape, in length over force
-    hinf: FloatArray
-    peak: FloatArray  # shape (N,): frequency of the largest gain, in radians per time unit
-    bounds: FloatArray  # shape (N, 2): closed-form bounds of `h2`
-
-
-@check_kinds
-def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
-    """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
-
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law, with one gain for all.
-    sizes : sequence of int
-        Numbers of agents.
-
-    Examples
-    --------
-    >>> table = norms_against_size(Algorithm1(), [3, 7])
-    >>> bool(table.h2[1] > table.h2[0] and np.all(table.bounds[:, 0] <= table.h2))
-    True
-    """
-    ensure_pairs_and_pull(law)
-    counts = tuple(ensure_count("sizes", n) for n in sizes)
-    alpha: Any = law.alpha
-    rows = []
-    for n in counts:
-        flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(n, alpha.d)).q)
-        system = disturbance_system(flock)
-        rows.append((h2_norm(system), *hinf_norm(system), *h2_bounds(flock)))
-    table = np.array(rows).reshape(-1, 5)
-    return NormTable(counts, table[:, 0], table[:, 1], table[:, 2], table[:, 3:])

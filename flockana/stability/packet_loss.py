@@ -11,7 +11,8 @@ from flockana.base.checks import FloatArray, ensure_known, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.stability.delay import late_part
-from flockana.stability.linearisation import Linearisation
+from flockana.stability.lifted import first_growth
+from flockana.stability.linear_flock import LinearFlock
 
 LOST, ON_LOSS = ("all", "agent", "link"), ("zero", "hold")
 MOST = 40  # states: E[A ⊗ A] has as many rows as their square
@@ -62,7 +63,7 @@ class _Step(NamedTuple):
 
 
 @check_kinds
-def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
+def loss_margin(flock: LinearFlock, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
     """Return the largest packet loss that a flock bears in mean square, sampled with a period.
 
     Losses are independent from sample to sample, and from agent to agent or link to link where these are lost singly.
@@ -94,8 +95,6 @@ def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_
     >>> loss_margin(linearise(law, [[0.0]]), 1.0).loss  # v⁺ = θ·0 + (1 − θ) v: any loss below 1
     1.0
     """
-    from scipy.optimize import brentq
-
     period = ensure_positive("period", period)
     ensure_known("what is lost", lost, LOST)
     ensure_known("what acts on a loss", on_loss, ON_LOSS)
@@ -105,15 +104,11 @@ def loss_margin(flock: Linearisation, period: float, *, lost: str = "agent", on_
     start = step.radius(0.0)
     if start >= 1.0:
         return LossMargin(0.0, start)
-    before = 0.0
-    for loss in (*np.linspace(0.0, 1.0, _LEVELS + 1)[1:-1].tolist(), 1.0 - 1e-6):
-        if step.radius(loss) >= 1.0:
-            return LossMargin(float(brentq(lambda x: step.radius(x) - 1.0, before, loss, xtol=1e-10)), start)
-        before = loss
-    return LossMargin(1.0, start)
+    trials = np.append(np.linspace(0.0, 1.0, _LEVELS + 1)[:-1], 1.0 - 1e-6)
+    return LossMargin(min(1.0, first_growth(step.radius, trials)), start)
 
 
-def _step(flock: Linearisation, period: float, lost: str, on_loss: str) -> _Step:
+def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
     """Return the steps of the flock off its neutral motions; inputs that are held are states too."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     size, basis, pace = n * m, off.basis, off.pace
@@ -141,7 +136,7 @@ def _step(flock: Linearisation, period: float, lost: str, on_loss: str) -> _Step
     return _Step(kept, tuple(new))
 
 
-def _links(flock: Linearisation) -> list[tuple[Any, FloatArray]]:
+def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:
     """Return for each directed link the rows of the agent that hears, and what it is pushed by off neutral motions."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []

@@ -21,9 +21,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.laws import Law
-from flockana.stability.linearisation import Linearisation
-from flockana.stability.linearise import linearise
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.modes import SecondOrder
 from flockana.stability.norms import Balanced, largest_gain
 
@@ -103,7 +101,7 @@ class RobustnessMargins:
 
 
 @check_kinds
-def open_loop(flock: Linearisation, agent: int, axis: int = 0) -> StateSpace:
+def open_loop(flock: LinearFlock, agent: int, axis: int = 0) -> StateSpace:
     """Return the loop broken at one component of an agent's input, as a `control.StateSpace`.
 
     Parameters
@@ -137,35 +135,7 @@ def open_loop(flock: Linearisation, agent: int, axis: int = 0) -> StateSpace:
     return control.ss(opened, unit, -feedback, 0.0)
 
 
-def robustness_margins(law: Law, equilibrium: Any) -> RobustnessMargins:
-    """Return gain, phase and disk margins and sensitivity peaks of the loops broken at each agent's input.
-
-    Parameters
-    ----------
-    law : Law
-        A law that `linearise` takes.
-    equilibrium : Equilibrium or array_like, shape (n, m)
-        As for `linearise`.
-
-    Raises
-    ------
-    ArgumentError
-        If the flock is not stable, or on what `linearise` refuses.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> from flockana.interactions import Gains
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> law = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=4.0), target=StaticTarget((0.0,)))
-    >>> found = robustness_margins(law, [[0.0]])
-    >>> found.gain, round(found.phase, 2)
-    ((0.0, inf), 76.35)
-    """
-    return loop_margins(linearise(law, equilibrium))
-
-
-def loop_margins(flock: Linearisation) -> RobustnessMargins:
+def loop_margins(flock: LinearFlock) -> RobustnessMargins:
     """Return the margins of the loops of a linearised flock, each broken at one agent's input."""
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")

@@ -20,12 +20,9 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_affordable, ensure_fits, ensure_nonnegative, ensure_positive
-from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.curvature import EPS
-from flockana.laws import DiscreteLaw
 from flockana.stability.growth import CLOSE, MOST, Growth, Steps, first_growth
-from flockana.stability.linearisation import Linearisation
-from flockana.stability.linearise import linearise
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.maps import moved_before, stepped_equation
 from flockana.stability.modes import SecondOrder
 
@@ -151,49 +148,11 @@ def _flip(k: float, d: float, factor: float) -> float:
     return 4.0 / (d + sqrt(square)) if a != 0.0 or d > 0.0 else inf
 
 
-def sampling_margin(law: Any, equilibrium: Any, *, limit: float = 600.0) -> SamplingMargin:
-    """Return the largest sampling period, or step of a map, for which a flock is stable near its equilibrium.
-
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        A continuous law, under a zero-order hold; or a map that steps one, whatever its own step.
-    equilibrium : Equilibrium or array_like, shape (n, m)
-        As for `linearise`.
-    limit : float
-        Seconds of estimated work from which on it is refused: intervals of steps are certified by dense matrices of
-        four times as many rows as there are states, 19 agents in seconds, 300 in a day.
-
-    Raises
-    ------
-    ArgumentError
-        On what `linearise` refuses, or if the work would take longer than the limit.
-
-    Examples
-    --------
-    One agent at its γ-agent, c1γ = 4 and c2γ = 1, is held stable for periods below 2 c2γ/c1γ:
-
-    >>> from flockana import ExplicitEuler, Gains, StaticTarget
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> one = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
-    >>> sampling_margin(one, [[0.0]]).period, sampling_margin(ExplicitEuler(one, 0.1), [[0.0]]).period
-    (0.5, 0.25)
-    """
-    name, factor, in_place = "hold", 0.5, False
-    if isinstance(law, DiscreteLaw):
-        if law.continuous is None or law.position_factor is None:
-            raise ArgumentError(f"law = {format_value(law)}: expected a continuous law, or a map that steps one")
-        name, factor, in_place = law.title, law.position_factor, law.in_place
-        law = law.continuous
-    flow = linearise(law, equilibrium)
-    ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
-    return margin_of_flow(name, flow, factor, in_place=in_place, limit=limit)
-
-
 def margin_of_flow(
-    name: str, flow: Linearisation, factor: float = 0.5, *, in_place: bool = False, limit: float = 600.0
+    name: str, flow: LinearFlock, factor: float = 0.5, *, in_place: bool = False, limit: float = 600.0
 ) -> SamplingMargin:
     """Return the sampling margin of a linearised flock under a hold, or of a map with a `factor` (see the module)."""
+    ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
     problem, sure = flow.second_order, flow.second_order.symmetric and not in_place
     ensure_affordable(
         f"the modes of {len(flow.q)} agents",
@@ -223,7 +182,7 @@ def margin_of_flow(
     return SamplingMargin(name, period, least if isnan(period) else min(least, period), tuple(kept))
 
 
-def _explicit(flow: Linearisation) -> tuple[float, list[ModePeriod]]:
+def _explicit(flow: LinearFlock) -> tuple[float, list[ModePeriod]]:
     """Margins of explicit Euler by eigenvalue: |1 + hλ| < 1 for h < −2 Re λ/|λ|²."""
     modes = []
     for mode in flow.modes:
@@ -233,7 +192,7 @@ def _explicit(flow: Linearisation) -> tuple[float, list[ModePeriod]]:
     return inf, modes
 
 
-def _symmetric(flow: Linearisation, k: FloatArray, d: FloatArray, factor: float) -> tuple[float, list[ModePeriod]]:
+def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -> tuple[float, list[ModePeriod]]:
     """(certified bound, modes) of symmetric K and D, rigid motions that nothing holds or damps set apart."""
     scale = float(np.abs(k).max() * np.abs(d).max())
     if scale == 0.0 or np.abs(k @ d - d @ k).max() <= _COMMUTE * scale:
@@ -296,7 +255,7 @@ def _least_damped(k: FloatArray, d: FloatArray) -> float:
 
 
 def _first_to_grow(
-    flow: Linearisation, factor: float, *, in_place: bool = False, stable_below: float = 0.0
+    flow: LinearFlock, factor: float, *, in_place: bool = False, stable_below: float = 0.0
 ) -> tuple[float, list[ModePeriod]]:
     """Return (certified bound, the mode that grows first) component by component; period NaN where it is not known."""
     problem, m = flow.second_order, flow.q.shape[1]

@@ -14,11 +14,11 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws import Algorithm2
 from flockana.measures.nets import links
-from flockana.stability.blocks import Blocks, law_blocks
-from flockana.stability.delay import delay_margin, delay_system
+from flockana.stability.blocks import Blocks
+from flockana.stability.delay import delay_margin
+from flockana.stability.law_studies import delay_system, law_blocks, sampling_margin
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_norm
-from flockana.stability.sampling import sampling_margin
 from flockana.stability.translational import CentreOfMass
 
 AT_LEAST = ("decay", "delay", "period")  # what is asked to be at least as large; the rest at most

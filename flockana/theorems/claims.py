@@ -316,7 +316,7 @@ def erratum(
     name: str,
     *,
     title: str = "",
-    source: str,
+    source: str = "",
     expected: Mapping[Status, str] = _EXPECTED,
     references: tuple[str, ...] = (),
     **fields: Any,
@@ -328,14 +328,15 @@ def erratum(
     Parameters
     ----------
     title, source : str
-        As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
+        As in `Theorem`; by default what is printed and where, as the source's ``errata.csv`` says.
     expected : mapping of str to str
         By expected status the names of claims, with blanks between; by default of "printed" and "corrected". The
         status of the whole follows from them.
     references : tuple of str
-        Keys of the bibliography; by default the source of the numbered errata of that letter.
+        Keys of the bibliography; by default those of ``errata.csv``.
     **fields
-        `author`, `corrected` and `ours`, as in `Theorem`; by default a claim of the name "corrected" is one.
+        `author`, `corrected` and `ours`, as in `Theorem`; by default a claim "corrected" is one, and the claim that
+        ``errata.csv`` has as the right statement of what is not confirmed, unless it is ours.
 
     Examples
     --------
@@ -347,17 +348,20 @@ def erratum(
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
     each = {claim: status for status, claims in expected.items() for claim in claims.split()}
+    row = erratum_of(name)
+    right = {row.right_claim[0]} if row and row.sort != "confirmed" else set()
+    corrected = each.keys() & ({"corrected"} | right) - {*fields.get("ours", ())}
 
     def made(check: Callable[[Tolerances], list[Claim]]) -> Theorem:
         item = Theorem(
             id=name,
             title=title or printed(name),
             statement=statement_of(check),
-            source=source,
+            source=source or f"{row.printer}, {row.where}" if row else source,
             kind="fixed",
             check=lambda tolerances: ([], check(tolerances)),
-            references=references or getattr(erratum_of(name), "references", ("olfati-saber-2006",)),
-            **{"corrected": tuple({"corrected"} & each.keys()), **fields},
+            references=references or (row.references if row else ("olfati-saber-2006",)),
+            **{"corrected": tuple(sorted(corrected)), **fields},
         )
         by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)
         return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})

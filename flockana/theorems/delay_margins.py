@@ -4,8 +4,9 @@ from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, scalar_margin
+from flockana.stability.delay import DelaySystem, delay_margin, scalar_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
+from flockana.stability.law_studies import delay_system
 from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, spectral
 
 _WHAT = {

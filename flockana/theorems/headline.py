@@ -1,7 +1,5 @@
 """The status of a verdict with counts, in one line, and its numbers as plain data."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from itertools import groupby

@@ -1,7 +1,5 @@
 """`verify`: check a theorem on a run, a recording, a tube, a configuration, or by itself."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any, TypedDict, Unpack, overload
 

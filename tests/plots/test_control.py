@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.plots import control as draw
-from flockana.stability.norms import NormTable
+from flockana.stability.law_studies import NormTable
 from flockana.stability.sweeps import MarginSweep, Sweep, centre_locus
 from flockana.stability.translational import CentreOfMass
 from tests.plots.artists import axes

@@ -12,8 +12,9 @@ from flockana import Algorithm1, Algorithm2, Delayed, Gains, MinimalFlocking, St
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.stability import crossings
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system, scalar_margin
+from flockana.stability.delay import DelaySystem, delay_margin, scalar_margin
 from flockana.stability.delay_roots import rightmost_roots
+from flockana.stability.law_studies import delay_system
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)

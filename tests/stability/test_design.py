@@ -9,10 +9,10 @@ import pytest
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, find_equilibrium
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.blocks import law_blocks
-from flockana.stability.delay import delay_margin, delay_system
+from flockana.stability.delay import delay_margin
 from flockana.stability.design import design_gains
 from flockana.stability.gain_problems import GainProblem, gain_problem
+from flockana.stability.law_studies import delay_system, law_blocks
 from flockana.stability.norms import disturbance_system, h2_norm
 from flockana.stability.specifications import Specifications
 

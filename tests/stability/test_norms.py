@@ -22,8 +22,9 @@ from flockana import (
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.blocks import blocks, law_blocks
-from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, norms_against_size, stationary_covariance
+from flockana.stability.blocks import blocks
+from flockana.stability.law_studies import law_blocks, norms_against_size
+from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, stationary_covariance
 
 ALPHA = AlphaInteraction()
 ORIGIN = StaticTarget((0.0, 0.0))

@@ -10,8 +10,9 @@ from scipy.sparse import csr_array
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
+from flockana.stability.law_studies import robustness_margins
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.robustness import SEARCHED, loop_margins, open_loop, robustness_margins
+from flockana.stability.robustness import SEARCHED, loop_margins, open_loop
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q

@@ -11,11 +11,11 @@ from scipy.linalg import expm
 from flockana import Algorithm1, Algorithm2, DeadZoneFlocking, Gains, StaticTarget, find_equilibrium, rescale
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.stability import linearise, slowest_modes
-from flockana.stability.blocks import law_blocks
 from flockana.stability.centre_path import centre_path
 from flockana.stability.decay import decay
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system
+from flockana.stability.delay import DelaySystem, delay_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
+from flockana.stability.law_studies import delay_system, law_blocks
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
 from flockana.stability.rounding import eigen, eigenvalues, slowest_first
 from flockana.stability.sweeps import gain_sweep

@@ -13,7 +13,8 @@ from flockana.lattice import hexagonal_spiral
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
-from flockana.stability.sampling import sampling_margin, scalar_period
+from flockana.stability.law_studies import sampling_margin
+from flockana.stability.sampling import scalar_period
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_spiral(10, 7.0)).q

@@ -9,8 +9,8 @@ import pytest
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.blocks import law_blocks
-from flockana.stability.delay import delay_margin, delay_system, scalar_margin
+from flockana.stability.delay import delay_margin, scalar_margin
+from flockana.stability.law_studies import delay_system, law_blocks
 from flockana.stability.sweeps import centre_locus, gain_sweep, margin_sweep
 
 LINE = StaticTarget((0.0,))

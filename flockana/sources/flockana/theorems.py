@@ -12,8 +12,8 @@ from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.isola_2024 import MSNDiscretisation
 from flockana.sources.jond_2025 import MinimalFlocking
 from flockana.stability.growth import CLOSE
+from flockana.stability.law_studies import sampling_margin
 from flockana.stability.linearise import linearise
-from flockana.stability.sampling import sampling_margin
 from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, spectral
 
 _MSN = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)

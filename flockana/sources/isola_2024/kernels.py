@@ -1,7 +1,5 @@
 """One step of a map that moves the agents one after the other, each seeing those before it already moved."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.jit import kernel

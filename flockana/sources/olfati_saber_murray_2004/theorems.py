@@ -12,8 +12,9 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.nets import laplacian
 from flockana.stability.consensus import consensus_root, consensus_system
-from flockana.stability.delay import DelaySystem, delay_margin, delay_system
+from flockana.stability.delay import DelaySystem, delay_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
+from flockana.stability.law_studies import delay_system
 from flockana.theorems.from_tube import decided
 from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, erratum, of_state, spectral
 

@@ -7,11 +7,7 @@ from flockana.sources.geschwender_2016.theorems.claims_on_energy import PROOF, r
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
-@erratum(
-    "E1",
-    source="slides, collective dynamics",
-    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
-)
+@erratum("E1", expected={"refuted": "printed printed-state printed-run", "verified": "corrected"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½."""
     from flockana.symbolic import algorithm1_identity, e1_counterexample, e1_identity

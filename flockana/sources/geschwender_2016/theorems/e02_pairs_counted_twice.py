@@ -8,11 +8,7 @@ from flockana.sources.geschwender_2016.theorems.energy_printed import pair_energ
 from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
-@erratum(
-    "E2",
-    source="slides, Algorithm 3",
-    expected={"refuted": "printed printed-state printed-run", "verified": "corrected"},
-)
+@erratum("E2", expected={"refuted": "printed printed-state printed-run", "verified": "corrected"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½."""
     from flockana.symbolic.theorem6 import e2_counterexample, e2_identity, theorem6_identity

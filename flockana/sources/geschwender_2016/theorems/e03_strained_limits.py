@@ -141,11 +141,7 @@ def _compressed(tolerances: Tolerances) -> Claim:
     )
 
 
-@erratum(
-    "E3",
-    source="slides, Theorems 1(i) and 3(ii) and their summaries",
-    expected={"refuted": "double-agent smallest strained algorithm-2"},
-)
+@erratum("E3", expected={"refuted": "double-agent smallest strained algorithm-2"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. But a strict
     local minimum of V, modulo rigid motions, attracts an open set of starts even where it is not an α-lattice; and

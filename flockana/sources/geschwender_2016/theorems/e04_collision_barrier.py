@@ -132,7 +132,6 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
 
 @erratum(
     "E4",
-    source="slides, Theorem 1(iii)",
     expected={"verified": "printed found vacuous barrier together"},
     ours=("found", "vacuous", "barrier", "together"),
 )

@@ -99,7 +99,6 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
 
 @erratum(
     "E5",
-    source="Lecture slides, Theorem 5",
     expected={"refuted": "printed-13 printed-8", "verified": "uncrossed-13 uncrossed-8 six"},
     corrected=("uncrossed-13", "uncrossed-8"),
     ours=("six",),

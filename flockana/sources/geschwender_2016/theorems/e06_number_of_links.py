@@ -16,7 +16,6 @@ def link_counts() -> dict[int, tuple[int, int, int]]:
 
 @erratum(
     "E6",
-    source="Lecture slides, Theorem 5",
     references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
     expected={"refuted": "printed", "verified": "corrected sharp"},
     ours=("sharp",),

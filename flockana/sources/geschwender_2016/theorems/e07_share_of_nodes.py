@@ -26,11 +26,7 @@ def _share(name: str, share: float, count: int, of: int, witness: str, detail: s
     return claim.described(computed=share, stated=stated, witness=witness, detail=detail)
 
 
-@erratum(
-    "E7",
-    source="slides, 'more accurate measure of connectivity'",
-    expected={"refuted": "printed", "verified": "corrected connectivity-1 connectivity-2 share-2"},
-)
+@erratum("E7", expected={"refuted": "printed", "verified": "corrected connectivity-1 connectivity-2 share-2"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents have
     no edges, so that formula gives 1; the example counts nodes. C = 95/99 there and for five components of 20 agents,

@@ -3,7 +3,7 @@
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
-@erratum("E10", source="slides, bump functions")
+@erratum("E10")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides say that with h = 1 the bump becomes an indicator function and stays differentiable."""
     # One-sided limits at the end of the bump, by sympy: for every h < 1, and for h = 1.

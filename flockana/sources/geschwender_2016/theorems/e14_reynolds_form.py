@@ -57,10 +57,7 @@ def _state() -> Claim:
 
 
 @erratum(
-    "E14",
-    source="slides, Algorithm 1 against Reynolds' rules",
-    expected={"refuted": "printed translation", "verified": "corrected state"},
-    corrected=("corrected", "state"),
+    "E14", expected={"refuted": "printed translation", "verified": "corrected state"}, corrected=("corrected", "state")
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive

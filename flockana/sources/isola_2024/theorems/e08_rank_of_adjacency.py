@@ -16,7 +16,7 @@ def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Clai
     )
 
 
-@erratum("E8", source="MSN project, data collection", references=("isola-2024", "olfati-saber-2006"))
+@erratum("E8")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A
     path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1.

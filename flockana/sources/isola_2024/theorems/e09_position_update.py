@@ -47,11 +47,7 @@ def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
 
 
 @erratum(
-    "E9",
-    source="MSN project, update of the kinematics",
-    references=("isola-2024",),
-    expected={"refuted": "printed", "verified": "corrected excess"},
-    ours=("excess",),
+    "E9", references=("isola-2024",), expected={"refuted": "printed", "verified": "corrected excess"}, ours=("excess",)
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The MSN project takes v' = v + u dt first and then q' = q + v' dt + ½ u dt². Under a constant u the displacement

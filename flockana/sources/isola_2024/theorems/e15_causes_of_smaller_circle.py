@@ -110,8 +110,7 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
 
 @erratum(
     "E15",
-    source="MSN project, conclusion, case 4",
-    references=("isola-2024", "olfati-saber-2006"),
+    corrected=(),
     expected={
         "refuted": "printed-start printed-speed",
         "verified": "predicted faster faster-as-run first-grows condition",

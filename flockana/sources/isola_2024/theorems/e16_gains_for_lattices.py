@@ -45,13 +45,7 @@ def _pair_ratio(strain: float) -> float:
     return float(-2.0 * _ALPHA.phi_alpha(_ALPHA.sigma_norm(s)) / sqrt(1.0 + _ALPHA.eps * s**2))
 
 
-@erratum(
-    "E16",
-    source="MSN project, Alpha Agent and Gamma Agent",
-    references=("isola-2024", "olfati-saber-2006"),
-    expected={"verified": "necessary insufficient"},
-    ours=("insufficient",),
-)
+@erratum("E16", expected={"verified": "necessary insufficient"}, ours=("insufficient",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The MSN project says that the α coefficients "must be greater than the gamma coefficients for algorithm 2 to work
     correctly" (Alpha Agent). Where they are not, no flock that was tried rests as a lattice. It does not suffice: at

@@ -1,7 +1,5 @@
 """Candidates near an agent, in the order of indices, so that sums over them equal sums over all agents exactly."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 An edge is (j, i): j is seen, i sees it. Here `tail` holds the j and `head` the i.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers of agents in each other's zones, and of components of the flock, at each instant of a run."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

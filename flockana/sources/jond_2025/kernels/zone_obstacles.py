@@ -5,8 +5,6 @@ across it. It is a body of revolution about the heading, so that against balls a
 axial and the lateral coordinate. Segments are rows (x0, y0, x1, y1), the counter-clockwise boundary of a polygon.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 from flockana.jit import kernel

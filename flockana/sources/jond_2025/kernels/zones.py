@@ -6,8 +6,6 @@ cells and summed in the order of their indices, so that the sums are those over 
 counts no references, which for ten agents takes as long as what it computes.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt, tanh
 from typing import NamedTuple
 

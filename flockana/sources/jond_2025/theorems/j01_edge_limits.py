@@ -42,7 +42,7 @@ def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
     return trees
 
 
-@erratum("J1", source="Jond, bearing-distance flocking, Theorem 1, (36)")
+@erratum("J1")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Theorem 1 says that the edge vectors x and their rates converge to zero. x = 0 is a collision and contradicts the
     goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference.

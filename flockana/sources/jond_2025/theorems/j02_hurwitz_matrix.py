@@ -35,12 +35,7 @@ def _positive_definite() -> Claim:
     )
 
 
-@erratum(
-    "J2",
-    source="Jond, bearing-distance flocking, Theorem 1, proof",
-    expected={"refuted": "hurwitz positive-definite", "verified": "outside"},
-    corrected=("outside",),
-)
+@erratum("J2", expected={"refuted": "hurwitz positive-definite", "verified": "outside"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The proof assumes that the edge matrices are positive definite and A_cl is Hurwitz. W^s = diag(μ(1 - αr/|x|)) is
     negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i r_i on every edge.

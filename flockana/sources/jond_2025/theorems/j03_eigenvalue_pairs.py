@@ -45,12 +45,7 @@ def _pairing(mu: float) -> tuple[float, float]:
     return best, float(true.real.max())
 
 
-@erratum(
-    "J3",
-    source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
-    expected={"refuted": "printed hurwitz", "verified": "trees"},
-    corrected=("trees",),
-)
+@erratum("J3", expected={"refuted": "printed hurwitz", "verified": "trees"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees both are
     triangular in one order, and it is right; on an undirected path it is not, and A_cl can be unstable though every

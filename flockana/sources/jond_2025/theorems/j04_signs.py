@@ -38,12 +38,7 @@ def _loop() -> Claim:
     )
 
 
-@erratum(
-    "J4",
-    source="Jond, bearing-distance flocking, section 4, (28) to (35)",
-    expected={"refuted": "28 identity", "verified": "34 loop"},
-    corrected=("loop",),
-)
+@erratum("J4", expected={"refuted": "28 identity", "verified": "34 loop"}, corrected=("loop",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: together
     they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds D_in Dᵀ, where D_in

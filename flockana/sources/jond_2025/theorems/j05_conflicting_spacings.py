@@ -37,12 +37,7 @@ def _rate(law: MinimalFlocking) -> float:
     return -float(np.sort(modes.real)[-2])  # the last is 0
 
 
-@erratum(
-    "J5",
-    source="Jond, bearing-distance flocking, section 4, assumptions",
-    expected={"refuted": "printed", "verified": "runaway"},
-    ours=("runaway",),
-)
+@erratum("J5", expected={"refuted": "printed", "verified": "runaway"}, ours=("runaway",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """With α_i r_i = |N_i| neighbours of different degree desire different lengths of their edge, and with equal radii
     perception is mutual, so that no graph is a directed tree. On a fixed path of three agents the ends come to coincide

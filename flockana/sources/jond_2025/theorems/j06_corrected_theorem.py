@@ -31,7 +31,6 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
 @erratum(
     "J6",
     title="Theorem 1 as it can be saved",
-    source="Jond, bearing-distance flocking, section 4, Theorem 1; corrected by us",
     expected={"verified": "directed-2 directed-3 undirected-2 undirected-3"},
     author="corrected",
 )

@@ -23,13 +23,7 @@ def _late_speeds(law: ZoneFlocking) -> list[float]:
     return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs_from_random_starts(law)]
 
 
-@erratum(
-    "J7",
-    source="Jond, bearing-distance flocking, (10)",
-    expected={"verified": "step clip", "refuted": "reachable speed"},
-    corrected=("clip",),
-    ours=("step",),
-)
+@erratum("J7", expected={"verified": "step clip", "refuted": "reachable speed"}, ours=("step",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """(10) passes the velocity through v^max tanh(|v|/v^max) in every step. That is a drag: 3 m/s become 2.54, and with
     |u| <= 2 no speed above 2.01 lasts, so that v^d = 3 is out of reach. The paper presumably means a plain clip.

@@ -26,12 +26,7 @@ def _forms(tolerances: Tolerances) -> Claim:
     )
 
 
-@erratum(
-    "J8",
-    source="Jond, bearing-distance flocking, (17) and Remark 3",
-    expected={"verified": "forms measured", "refuted": "equivalent holds-together"},
-    corrected=("measured",),
-)
+@erratum("J8", expected={"verified": "forms measured", "refuted": "equivalent holds-together"}, corrected=("measured",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Remark 3 calls the bearing form with the estimate (17) equivalent. (17) leaves out the global speed term and both
     bounds: estimates drift away from the velocities, and the flock disperses.

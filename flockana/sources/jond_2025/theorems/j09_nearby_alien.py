@@ -26,11 +26,7 @@ def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
     return float((20.0 - head_on.q[:, 0, 0]).min()), nearest
 
 
-@erratum(
-    "J9",
-    source="Jond, bearing-distance flocking, definition of N_i^s",
-    expected={"refuted": "printed flock", "verified": "corrected"},
-)
+@erratum("J9", expected={"refuted": "printed flock", "verified": "corrected"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """N_i^s contains the aliens at a_i < d <= s_i: one that comes closer exerts no force and passes through the flock.
     With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss.

@@ -46,9 +46,7 @@ def _weights_cancel() -> Claim:
 
 @erratum(
     "J10",
-    source="Jond, bearing-distance flocking, section 5.1",
     expected={"refuted": "distances order weights", "verified": "unordered-still recommended"},
-    corrected=("recommended",),
     ours=("unordered-still",),
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:

@@ -60,7 +60,6 @@ def _recommended(m: int) -> Claim:
 
 @erratum(
     "J11",
-    source="Jond, bearing-distance flocking, section 5, minimal model",
     expected={"refuted": "aligned-2d aligned-3d cohesive-2d", "verified": "recommended-2d recommended-3d"},
     corrected=("recommended-2d", "recommended-3d"),
 )

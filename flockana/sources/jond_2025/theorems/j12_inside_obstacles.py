@@ -66,12 +66,7 @@ def _stand_offs() -> tuple[float, dict[str, list[float]]]:
     return max(abs(a - b) for a, b in rows.values()), rows
 
 
-@erratum(
-    "J12",
-    source="Jond, bearing-distance flocking, (8) and section 5",
-    expected={"refuted": "printed contact", "verified": "corrected stand-off"},
-    ours=("stand-off",),
-)
+@erratum("J12", expected={"refuted": "printed contact", "verified": "corrected stand-off"}, ours=("stand-off",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes an agent deeper in. Outside, where weights
     damp the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes to

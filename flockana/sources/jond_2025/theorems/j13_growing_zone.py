@@ -102,10 +102,7 @@ def _slow() -> Claim:
 
 
 @erratum(
-    "J13",
-    source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
-    expected={"refuted": "letter clamped", "verified": "reaching stand-off"},
-    corrected=("reaching", "stand-off"),
+    "J13", expected={"refuted": "letter clamped", "verified": "reaching stand-off"}, corrected=("reaching", "stand-off")
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i when

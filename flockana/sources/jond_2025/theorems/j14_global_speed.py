@@ -63,7 +63,6 @@ def _speeds(informed: int) -> list[float]:
 
 @erratum(
     "J14",
-    source="Jond, bearing-distance flocking, section 2.1 and (5)",
     expected={"verified": "one-informed none-informed two-of-ten none-of-ten"},
     ours=("none-informed", "none-of-ten"),
 )

@@ -75,7 +75,6 @@ def _pair() -> list[Claim]:
 
 @erratum(
     "J15",
-    source="Jond, bearing-distance flocking, (6)",
     expected={"refuted": "printed flock", "verified": "rest sliding alone"},
     corrected=("rest", "sliding"),
     ours=("alone",),

@@ -107,9 +107,7 @@ def _pairs() -> Claim:
 
 
 @erratum(
-    "J16",
-    source="Jond, bearing-distance flocking, Remark 2",
-    expected={"refuted": "at-walls fragments", "inconclusive": "circling", "verified": "growing"},
+    "J16", corrected=(), expected={"refuted": "at-walls fragments", "inconclusive": "circling", "verified": "growing"}
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Remark 2 says that in a confined environment separated agents eventually reunite, and that otherwise radii of

@@ -31,7 +31,7 @@ def first_step(happens: npt.NDArray[np.bool_]) -> float:
     return float(np.argmax(happens)) if happens.any() else float("nan")
 
 
-@erratum("J17", source="Jond, bearing-distance flocking, section 5.2", expected={"verified": "delay none nearer"})
+@erratum("J17", expected={"verified": "delay none nearer"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed
     reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer.

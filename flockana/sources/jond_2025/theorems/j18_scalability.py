@@ -38,12 +38,7 @@ def _flocks(n: int, ends: FloatArray) -> Claim:
     ).described(witness={"least C": float(ends[:, 0].min()), "least distance": float(ends[:, 2].min())})
 
 
-@erratum(
-    "J18",
-    source="Jond, bearing-distance flocking, abstract and conclusions",
-    expected={"verified": "flock-10 flock-100 flock-500 local any-direction"},
-    ours=("any-direction",),
-)
+@erratum("J18", expected={"verified": "flock-10 flock-100 flock-500 local any-direction"}, ours=("any-direction",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The behaviour is said to be scalable. At the density of section 5.1, 10, 100 and 500 agents order, hold together
     and keep apart, and an agent has as many neighbours whatever the size. The text does not say for which initial

@@ -23,12 +23,7 @@ def globally_reachable(graph: Any) -> set[int]:
     return {i for i in graph if len(networkx.ancestors(graph, i)) == len(graph) - 1}
 
 
-@erratum(
-    "J19",
-    source="Jond, bearing-distance flocking, section 4, definitions on graphs",
-    expected={"refuted": "root star", "verified": "corrected"},
-    corrected=("corrected",),
-)
+@erratum("J19", expected={"refuted": "root star", "verified": "corrected"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """An edge (j, i) leads from j to i, and node i is called globally reachable if edges lead to it from all others,
     which is to be the root of a spanning tree; a graph is connected if it has such a node. In a tree that leads away

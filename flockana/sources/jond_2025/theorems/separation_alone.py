@@ -99,8 +99,6 @@ def _close_encounter() -> Claim:
 
 @erratum(
     "zone-separation",
-    source="Jond, bearing-distance flocking, section 4",
-    references=("jond-2025",),
     expected={"verified": "alone energy chain", "refuted": "close-encounters"},
     ours=("energy", "chain"),
 )

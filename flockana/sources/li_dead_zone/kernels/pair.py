@@ -6,8 +6,6 @@ force jumps between them; `zone_forces` continues each piece smoothly beyond its
 needs.
 """
 
-from __future__ import annotations
-
 from math import inf, log, log1p, sqrt
 
 import numpy as np

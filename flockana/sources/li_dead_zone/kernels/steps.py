@@ -1,7 +1,5 @@
 """Semi-implicit Euler steps of the dead-zone law, many in one loop."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

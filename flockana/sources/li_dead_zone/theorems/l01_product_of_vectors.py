@@ -12,7 +12,7 @@ _SAME = 1e-9  # relative: two forces that differ by less are the same
 _ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
 
 
-@erratum("L1", source="Li, Yuan and Liu, (7) and (9)")
+@erratum("L1")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product of
     two vectors is undefined; by components it depends on the axes. The paper presumably means the scalar force once and

@@ -9,7 +9,7 @@ from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
 _ROUNDING = 1e-12  # relative, of a force of two agents
 
 
-@erratum("L2", source="Li, Yuan and Liu, (6)-(8)")
+@erratum("L2")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into
     each other. The paper presumably means q_j - q_i throughout.

@@ -4,7 +4,7 @@ from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
 from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
-@erratum("L3", source="Li, Yuan and Liu, section III")
+@erratum("L3")
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only
     logarithmically, because n ~ ρ.

@@ -22,12 +22,7 @@ def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0)
     return count
 
 
-@erratum(
-    "L4",
-    source="Li, Yuan and Liu, Theorem 1, first claim",
-    expected={"refuted": "printed", "verified": "wide-starts"},
-    ours=("wide-starts",),
-)
+@erratum("L4", expected={"refuted": "printed", "verified": "wide-starts"}, ours=("wide-starts",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """No leader appears in (9), and nothing keeps the net connected: two agents 14 m apart that leave each other at 12
     m/s separate, and from wide starts the share of connected flocks falls towards 0.

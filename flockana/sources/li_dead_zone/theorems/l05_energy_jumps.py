@@ -11,7 +11,6 @@ from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, judged,
 
 @erratum(
     "L5",
-    source="Li, Yuan and Liu, Theorem 1, energy",
     expected={"refuted": "printed", "verified": "corrected across-the-switch"},
     corrected=("corrected", "across-the-switch"),
 )

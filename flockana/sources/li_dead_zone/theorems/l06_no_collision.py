@@ -14,9 +14,7 @@ _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 _ATTAINED = 1e-3  # relative: so near the bound is attained
 
 
-@erratum(
-    "L6", source="Li, Yuan and Liu, Theorem 1, third claim", expected={"verified": "printed bound"}, ours=("bound",)
-)
+@erratum("L6", expected={"verified": "printed bound"}, ours=("bound",))
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """True for distinct starts and k_r > 0: the distance stays above an explicit bound, which is exponentially small in
     the energy, and attained without damping.

@@ -28,7 +28,6 @@ def _chatter(law: DeadZoneFlocking, dt: float) -> float:
 
 @erratum(
     "L7",
-    source="Li, Yuan and Liu, Theorem 1, second claim",
     expected={"refuted": "printed", "verified": "components chatter sliding ramp"},
     corrected=("components", "ramp"),
     ours=("chatter", "sliding"),

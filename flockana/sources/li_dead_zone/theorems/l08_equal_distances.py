@@ -7,12 +7,7 @@ from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, spectra
 _ROUNDING = 1e-11  # m: of the root of a force
 
 
-@erratum(
-    "L8",
-    source="Li, Yuan and Liu, (1) and the principles of section III",
-    expected={"refuted": "printed balance-distance", "verified": "contact"},
-    corrected=("contact",),
-)
+@erratum("L8", expected={"refuted": "printed balance-distance", "verified": "contact"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - δ,
     not at the balance distance r_b.

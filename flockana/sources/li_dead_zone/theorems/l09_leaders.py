@@ -102,7 +102,7 @@ def _fraction() -> Claim:
 
 @erratum(
     "L9",
-    source="Li, Yuan and Liu, sections IV and VI",
+    corrected=(),
     expected={
         "refuted": "printed fraction",
         "verified": "energy one-leader different-leaders acceleration acceleration-needed",

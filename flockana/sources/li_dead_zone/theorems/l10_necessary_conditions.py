@@ -55,7 +55,6 @@ def _necessary() -> Claim:
 
 @erratum(
     "L10",
-    source="Li, Yuan and Liu, section VI",
     expected={"refuted": "printed-sufficient printed-necessary", "verified": "sufficient not-necessary"},
     ours=("sufficient", "not-necessary"),
 )

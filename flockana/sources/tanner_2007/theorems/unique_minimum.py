@@ -21,10 +21,8 @@ def _own_block() -> Any:
 
 @erratum(
     "tanner-minimum",
-    source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
     references=("tanner-2007", "flockana"),
     expected={"refuted": "printed", "verified": "corrected second-order"},
-    corrected=("corrected", "second-order"),
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The theorem on fixed networks says that the flock approaches a state that minimises the potentials of all agents.
