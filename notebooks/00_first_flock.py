@@ -43,7 +43,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import figures, grade, is_own
 
 times = np.linspace(0.0, 6.0, 400)
 two = fl.simulate(fl.Algorithm1(), [[0.0], [6.7]], [[0.0], [0.0]], (0.0, 6.0), t_eval=times)
@@ -251,11 +251,14 @@ print(connectivity(fragments.q[0], fragments.law.alpha.r), float(fragments.metri
 # %% tags=["check"]
 grade(
     connectivity,
-    lambda f: np.allclose(
-        [f(np.array([[0.0, 0.0], [3.0, 4.0], [x, 0.0], [x + 4.0, 0.0], [9.0, 9.0]]), 5.0) for x in (2.0, 4.0, 7.0)]
-        + [f(np.array([[2.0 * k, 0.0] for k in (0, 3, 1, 4, 2, 5)]), 2.5)],
-        [0.75, 0.75, 0.25, 1.0],
-        atol=1e-12,
+    lambda f: (
+        is_own(f)
+        and np.allclose(
+            [f(np.array([[0.0, 0.0], [3.0, 4.0], [x, 0.0], [x + 4.0, 0.0], [9.0, 9.0]]), 5.0) for x in (2.0, 4.0, 7.0)]
+            + [f(np.array([[2.0 * k, 0.0] for k in (0, 3, 1, 4, 2, 5)]), 2.5)],
+            [0.75, 0.75, 0.25, 1.0],
+            atol=1e-12,
+        )
     ),
     form="function",
     hint="try three agents in a row by hand, of which the outer two are out of range; and two exactly r apart",

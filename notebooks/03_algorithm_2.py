@@ -493,17 +493,17 @@ lag = [2 * np.sqrt(1.1) * 3 * (1 - share) / 1.1 for share in (0.0, 0.5, 1.0)]
 grade(lag, [5.7207755, 2.86038777, 0.0], digits=4, hint="which two forces on the centre balance?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point, experiment) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Settle
-# them, and answer `True` or `False`.
+# **4.** ★ (1 point, experiment) At $c_1^\gamma/c_1^\alpha = 3$ some of nineteen agents share a place. How near are the
+# nearest two of seven? Settle them. (Three significant digits.)
 
 # %% tags=["answer"]
-coincide = ...
+nearest = ...
 
 # %% tags=["solution"]
-coincide = bool(fl.min_distance(settle(patch[:7], 3.0).q) < 1e-6)
+nearest = fl.min_distance(settle(patch[:7], 3.0).q)
 
 # %% tags=["check"]
-grade(coincide, False, hint="fl.min_distance(settle(patch[:7], 3.0).q)")
+grade(nearest, 5.45931, digits=3, hint="fl.min_distance(settle(patch[:7], 3.0).q)")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, design) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that every start

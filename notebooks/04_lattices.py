@@ -379,17 +379,17 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point, derivation) The slides print (ii) for all $n$, without $n \ge 3$. Does the bound $3n - 6$ hold
-# for the lattice of 2 agents? (`True` or `False`.)
+# **4.** ★ (1 point, derivation) The slides print (ii) for all $n$, without $n \ge 3$. How many links has the
+# lattice of 2 agents, and how many does $3n - 6$ allow? Give the list of both.
 
 # %% tags=["answer"]
-bound_holds_for_two = ...
+links_of_two = ...
 
 # %% tags=["solution"]
-bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 6)
+links_of_two = [len(lattice.links(lattice.line(2, d), r)), 3 * 2 - 6]
 
 # %% tags=["check"]
-grade(bound_holds_for_two, False, hint="count the links of two agents at the distance d")
+grade(links_of_two, [1, 0], hint="count the links of two agents at the distance d")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, counterexample) Counterexample hunt: give four agents in the plane, an array of shape (4, 2),
@@ -405,7 +405,10 @@ crossing = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]  # the diagonals are
 grade(
     crossing,
     lambda x: (
-        np.shape(x) == (4, 2) and len(lattice.crossings(np.array(x, float), lattice.links(np.array(x, float), 8.4))) > 0
+        np.shape(x) == (4, 2)
+        and fl.min_distance(np.array(x, float)) > 0.0
+        and np.linalg.matrix_rank(np.subtract(x, x[0])) == 2
+        and len(lattice.crossings(np.array(x, float), lattice.links(np.array(x, float), 8.4))) > 0
     ),
     form="list",
     hint="which links could cross in a square?",

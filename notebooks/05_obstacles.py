@@ -155,7 +155,7 @@ run.player(height=520)
 
 # %% [markdown]
 # **Figure 5.3.** Thirty-seven agents pass a sphere beside a wall; the γ-agent flies through the sphere. The flock
-# splits, into three components about $t = 20$, and rejoins.
+# splits about $t = 20$, and rejoins.
 #
 # How close did anyone come to an obstacle? Samples alone could miss the moment. The library bounds the distance
 # along the whole path between the samples: `reached` was attained, and `lower` is certainly not undercut.

@@ -549,21 +549,21 @@ grade(delay, 0.647409203, digits=4, hint="two real equations, for ω and for τ"
 # depends on the start.
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Play the motion of the slowest structural mode. How do the six agents of the inner ring
-# and the twelve of the outer ring move? Answer with one word: `together` (all outwards at once) or `against` (one
-# ring outwards while the other goes inwards).
+# **7.** ★ (1 point, player) Play the motion of the slowest structural mode. How many times as far outwards as an
+# agent of the inner ring does one of the outer ring move, on the average of its ring? (Two significant digits;
+# `slow.shape` holds the displacements.)
 
 # %% tags=["answer"]
-breathing = ...
+ring_ratio = ...
 
 # %% tags=["solution"]
 radial = np.sum(slow.shape.real * rest.q, axis=1)  # positive: outwards
 outside = np.linalg.norm(rest.q, axis=1)
 inner, outer = (outside > 3.0) & (outside < 8.0), outside >= 8.0
-breathing = "together" if radial[inner].mean() * radial[outer].mean() > 0.0 else "against"
+ring_ratio = (radial[outer] / outside[outer]).mean() / (radial[inner] / outside[inner]).mean()
 
 # %% tags=["check"]
-grade(breathing, "together", hint="watch one agent of each ring")
+grade(ring_ratio, 1.43712, digits=2, hint="the part of the displacement along the radius; watch one agent of each ring")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, counterexample) Counterexample hunt: "If every agent by itself is damped, more friction makes

@@ -479,18 +479,19 @@ grade(
 
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Show `early.player()`. How many times does one agent pass another? (A whole number.)
+# **7.** ★ (1 point, player) Show `early.player()`. At which times does one agent pass another? Give the list, each
+# to within 0.003.
 
 # %% tags=["answer"]
-passes = ...
+passing = ...
 
 # %% tags=["solution"]
 early.player()
 order = np.argsort(early.q[:, :, 0], axis=1)
-passes = int(np.any(np.diff(order, axis=0) != 0, axis=1).sum())
+passing = early.t[1:][np.any(np.diff(order, axis=0) != 0, axis=1)]
 
 # %% tags=["check"]
-grade(passes, 2, hint="one agent is fast: whom does it overtake?")
+grade(passing, [0.0095, 0.0284], within=0.003, hint="one agent is fast: whom does it overtake?")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, proof) Prove the certificate that does not go vacuous: if $H(0)$ is below the barrier

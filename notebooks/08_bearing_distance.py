@@ -505,19 +505,19 @@ grade(threshold, 1.33333333, digits=4, hint="the sign of the discriminant")
 
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Show `tree.player()` and watch the end. Do the agents come to rest? Answer `True` or
-# `False`, and look at the root for the reason.
+# **7.** ★ (1 point, player) Show `tree.player()` and watch the end. How fast do the agents move there, all alike?
+# (Three significant digits. Look at the root for the reason.)
 
 # %% tags=["answer"]
-at_rest = ...
+end_speed = ...
 
 # %% tags=["solution"]
 tree.player()
 print(np.linalg.norm(tree.p[-1], axis=1).round(3))  # all have the velocity of the root, which feels no force
-at_rest = bool(np.linalg.norm(tree.p[-1], axis=1).max() < 0.01)
+end_speed = np.linalg.norm(tree.p[-1], axis=1).mean()
 
 # %% tags=["check"]
-grade(at_rest, False, hint="tree.p[-1] holds the velocities at the end")
+grade(end_speed, 0.955949, digits=3, hint="tree.p[-1] holds the velocities at the end")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★★ (3 points, proof) One edge whose parent moves uniformly: $\ddot x = -w_0(1 - d/\|x\|)\,x - \dot x$ in

@@ -537,17 +537,18 @@ grade(nearest, [1.79401084, 1.15723845], digits=4, hint="the formula is above; k
 
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Play the film of the pair at the jump to its end. Which of the three curves comes to
-# rest? Answer with one word of its name, `jump` or `ramp`.
+# **7.** ★ (1 point, player) Play the film of the pair at the jump to its end. At which distance does the pair with the
+# ramp come to rest? Give it to within 0.05.
 
 # %% tags=["answer"]
-rests = ...
+rest_distance = ...
 
 # %% tags=["solution"]
-rests = "ramp"
+rest_distance = curves["ramp, steps of 0.05"][1][-1]
+print(rest_distance)
 
 # %% tags=["check"]
-grade(rests, "ramp", hint="look at the last quarter of the film")
+grade(rest_distance, 3.49973, within=0.05, hint="look at the last quarter of the film")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★★ (3 points, proof) Let no pair have a negative potential, and let $\bar H$ never rise. (a) Derive the bound

@@ -462,19 +462,20 @@ grade(runs_for_one, 299, hint="ask for the probability of none")
 
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Show `found.run().player()`, the counterexample of the search. At how many places do the
-# five agents stand at the end? (A whole number.)
+# **7.** ★ (1 point, player) Show `found.run().player()`, the counterexample of the search. At which time have the two
+# agents that end in one place come within 0.1 of each other? Give it to within 0.5.
 
 # %% tags=["answer"]
-places = ...
+met_at = ...
 
 # %% tags=["solution"]
 ended = found.run()
 ended.player()
-places = len({tuple(x) for x in ended.q[-1].round(2)})
+met_at = next(t for t, q in zip(ended.t, ended.q, strict=True) if fl.min_distance(q) < 0.1)
+print(met_at)
 
 # %% tags=["check"]
-grade(places, 4, hint="two agents share a place: zoom in, or round the positions")
+grade(met_at, 2.39971, within=0.5, hint="fl.min_distance of the positions at each sample, or zoom in")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, proof) A claim is tested by $N$ independent random starts and never fails. Prove that one may

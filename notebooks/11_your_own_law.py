@@ -101,7 +101,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import grade, is_own
 
 warnings.simplefilter("ignore", fl.PairLawWarning)  # we look at faults ourselves here: law.faults
 
@@ -451,11 +451,12 @@ grade(
     formula,
     lambda text: next(
         not law.faults
-        and (law.force(np.linspace(0.1, 0.95, 50)) > 0).all()
-        and (law.force(np.linspace(1.05, 2.999, 400)) < 0).all()
+        and len(law.facts.zeros) == 1
+        and (law.force(np.linspace(0.01, 0.99, 5000)) > 0).all()
+        and (law.force(np.linspace(1.01, 2.99, 5000)) < 0).all()
         for law in [fl.pair_law(text, adjacency=0, range=3.0, length=1.0)]
     ),
-    form="word",
+    form="formula",
     hint="what must force and stiffness do at both ends of the range, and at the length?",
 )
 
@@ -539,10 +540,9 @@ grade(
     capstone,
     lambda parts: (
         parts[0].id not in (*fl.theorems(), "cucker-smale")
-        and type(parts[1].law).__module__.partition(".")[0] not in ("flockana", "own_law")
+        and is_own(parts[0].check, type(parts[1].law), type(parts[1].law).flow, parts[2].steps)
         and fl.verify(parts[0], parts[1]).status == "verified"
         and [step.holds for step in parts[2].steps()] == [True] * max(1, len(list(parts[2].steps())))
-        and getattr(parts[2], "id", "") != "cucker-smale"
     ),
     form="list",
     hint="theorem, law and proof are to be your own; fl.verify(theorem, run) must be verified, and each step hold",
@@ -568,19 +568,19 @@ grade(
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★ (1 point, player) Show `run.player()` for the run of Cucker and Smale's law, and watch the size of the
-# group. Is the largest distance of two agents at the end more than twice that at the start? Answer `True` or
-# `False`.
+# group. How many times as large as at the start is the largest distance of two agents at the end? (Two significant
+# digits.)
 
 # %% tags=["answer"]
-spreads = ...
+spread = ...
 
 # %% tags=["solution"]
 run.player()
 print(fl.diameter(run.q[0]), fl.diameter(run.q[-1]))
-spreads = bool(fl.diameter(run.q[-1]) > 2.0 * fl.diameter(run.q[0]))
+spread = fl.diameter(run.q[-1]) / fl.diameter(run.q[0])
 
 # %% tags=["check"]
-grade(spreads, True, hint="velocities agree in the end, but until then the agents part; fl.diameter")
+grade(spread, 2.60816, digits=2, hint="velocities agree in the end, but until then the agents part; fl.diameter")
 
 # %% [markdown] tags=["exercise"]
 # **9.** ★★★ (3 points, proof) Prove the theorem of this lecture from its last displayed line: derive the identity

@@ -435,20 +435,20 @@ grade(wait, 17.2693882, digits=4, hint="mind the factor 2")
 # all time, without collisions; other starts and parameters remain open.
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★ (1 point, player) Play the run of three agents. Does the triangle that it ends in have the orientation of
-# the equilibrium `rest`, to within a thousandth of a radian? Decide by the angle of agent 0 as seen from the centre;
-# answer `True` or `False`.
+# **6.** ★ (1 point, player) Play the run of three agents. By how many degrees is the triangle that it ends in turned
+# against the equilibrium `rest`, counterclockwise? Take the angle of agent 0 as seen from the centre. (Two significant
+# digits.)
 
 # %% tags=["answer"]
-same_angle = ...
+turned = ...
 
 # %% tags=["solution"]
 angles = [np.arctan2(*(q[0] - q.mean(axis=0))[::-1]) for q in (run.q[-1], rest.q)]
 print(angles)
-same_angle = bool(abs(angles[0] - angles[1]) < 1e-3)
+turned = np.degrees(angles[0] - angles[1])
 
 # %% tags=["check"]
-grade(same_angle, False, hint="the orbit has many points; compare the angles at the end and of rest")
+grade(turned, 9.02977, digits=2, hint="the orbit has many points; compare the angles at the end and of rest")
 
 # %% [markdown] tags=["exercise"]
 # **7.** ★★★ (3 points, proof) The scalar equation $\dot x = -x^3$ starts in $[x] = [0.9, 1]$. Prove with the

@@ -478,20 +478,19 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★ (1 point, player) Play the flock that is shaken. Does the hexagon keep its orientation to within a degree,
-# from start to end? Answer `True` or `False`.
+# **5.** ★ (1 point, player) Play the flock that is shaken. Through how many degrees does the hexagon turn, from its
+# least to its largest angle? Give it to within 1 degree.
 
 # %% tags=["answer"]
-keeps_direction = ...
+turned = ...
 
 # %% tags=["solution"]
 arm = shaken.q[:, 1] - shaken.q.mean(axis=1)
 turned = np.degrees(np.ptp(np.unwrap(np.arctan2(arm[:, 1], arm[:, 0]))))
 print(turned)
-keeps_direction = bool(turned < 1.0)
 
 # %% tags=["check"]
-grade(keeps_direction, False, hint="follow one outer agent")
+grade(turned, 4.348, within=1.0, hint="follow one outer agent")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) A colleague damps the shaking of a sampled formation by raising $c_2^\alpha$, and it

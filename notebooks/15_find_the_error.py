@@ -53,7 +53,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import grade, is_own
 from flockana.course.unknown import unknown_program
 
 law = fl.Algorithm1()
@@ -493,10 +493,13 @@ flawed = without_friction
 # %% tags=["check"]
 grade(
     flawed,
-    lambda f: all(
-        np.allclose(f(q, p), fl.Algorithm1().acceleration(0.0, q, 0.0 * p), atol=1e-9)
-        for q in (np.array([[0.0, 0.0], [6.0, 0.0]]), np.array([[0.0, 0.0], [7.5, 0.0], [3.0, 6.0]]))
-        for p in (np.ones_like(q), q**2 / 9.0)
+    lambda f: (
+        is_own(f)
+        and all(
+            np.allclose(f(q, p), fl.Algorithm1().acceleration(0.0, q, 0.0 * p), atol=1e-9)
+            for q in (np.array([[0.0, 0.0], [6.0, 0.0]]), np.array([[0.0, 0.0], [7.5, 0.0], [3.0, 6.0]]))
+            for p in (np.ones_like(q), q**2 / 9.0)
+        )
     ),
     form="function",
     hint="which argument does friction need?",
@@ -519,21 +522,21 @@ grade(unknown_gain, 6.3, digits=3, hint="fl.compare(unknown_program(), law) prin
 
 # %% [markdown] tags=["exercise"]
 # **4.** ★ (1 point, player) A `Recording` has no player, a `Trajectory` has. Simulate `law` from the start of the
-# log "sign" for 1 time unit, show its player, and compare with Figure 15.1: does the right program calm down, so
-# that the mean speed about the centre at the end is below its start? Answer `True` or `False`.
+# log "sign" for 1 time unit, show its player, and compare with Figure 15.1: to which part of its start does the
+# mean speed about the centre fall under the right program? (Two significant digits.)
 
 # %% tags=["answer"]
-calms = ...
+calmed = ...
 
 # %% tags=["solution"]
 right = fl.simulate(law, logs["sign"][1][0], logs["sign"][2][0], (0.0, 1.0))
 right.player()
 about = np.linalg.norm(right.p - right.p.mean(axis=1, keepdims=True), axis=2).mean(axis=1)
 print(about[[0, -1]])
-calms = bool(about[-1] < about[0])
+calmed = about[-1] / about[0]
 
 # %% tags=["check"]
-grade(calms, True, hint="look at the arrows, or compute the mean speeds")
+grade(calmed, 0.179147, digits=2, hint="look at the arrows, or compute the mean speeds")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★ (2 points, counterexample) Counterexample hunt: "If gains fit exactly and the residual is 0, the program

@@ -81,17 +81,18 @@ for run in runs.values():
 grade(
     figures,
     lambda f: all(
-        len(axes) >= 6 and any(shows(ax, points) for ax in axes)
-        for run in [fl.simulate(fl.Algorithm1(), [[0, 0], [6, 0], [3, 5]], [[0, 0], [0, 1], [1, 0]], (0, 1))]
-        for axes in [list(np.ravel(f(run)))]
-        for points in (
-            run.q[0],
-            run.q[-1],
-            [*run.q[0], *run.q[-1]],
-            [[run.t[k], np.hypot(*run.p[k, 1])] for k in (0, -1)],
-            [[run.t[k], run.metrics().connectivity.values[k]] for k in (0, -1)],
-            [run.q[k].mean(axis=0) for k in (0, -1)],
+        shows(
+            np.ravel(f(run)),
+            (
+                run.q[0],
+                run.q[-1],
+                [*run.q[0], *run.q[-1]],
+                [[run.t[k], np.hypot(*run.p[k, 1])] for k in (0, -1)],
+                [[run.t[k], run.metrics().connectivity.values[k]] for k in (0, -1)],
+                [run.q[k].mean(axis=0) for k in (0, -1)],
+            ),
         )
+        for run in [fl.simulate(fl.Algorithm1(), [[0, 0], [6, 0], [3, 5]], [[0, 0], [0, 1], [1, 0]], (0, 1))]
     ),
     form="function",
     hint="six axes, both labelled: each of the six quantities is looked for, at its first and last instant",

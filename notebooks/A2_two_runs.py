@@ -39,7 +39,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import grade, is_own
 
 first, second = (fl.scenario(f"notebook-algorithm{k}").run() for k in (1, 2))
 figure, axes = plots.subplots(1, 2, size=(11, 4.6))
@@ -82,12 +82,15 @@ action = by_formula
 # %% tags=["check"]
 grade(
     action,
-    lambda f: np.allclose(
-        [float(f(z)) for z in (0.0, 0.5, 1.0, 1.66, 2.5, 3.3, 3.4, 6.0)],
-        fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0).phi_alpha(
-            np.array([0.0, 0.5, 1.0, 1.66, 2.5, 3.3, 3.4, 6.0])
-        ),
-        atol=1e-9,
+    lambda f: (
+        is_own(f)
+        and np.allclose(
+            [float(f(z)) for z in (0.0, 0.5, 1.0, 1.66, 2.5, 3.3, 3.4, 6.0)],
+            fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0).phi_alpha(
+                np.array([0.0, 0.5, 1.0, 1.66, 2.5, 3.3, 3.4, 6.0])
+            ),
+            atol=1e-9,
+        )
     ),
     form="function",
     hint="three pieces of the bump; φ is taken at z − d_α; both scales are σ-norms",

@@ -1,8 +1,8 @@
 """The course: lectures as notebooks, answers that are graded, exports for graders. Nothing of the library needs it.
 
-Grading needs no more than numpy; writing notebooks needs what ``pip install 'flockana[course]'`` installs.
+Grading needs no more than numpy and scipy; writing notebooks needs what ``pip install 'flockana[course]'`` installs.
 """
 
-from flockana.course.grading import Grade, answered, form_of, grade, shows
+from flockana.course.grading import Grade, answered, form_of, grade, is_own, shows
 
-__all__ = ["Grade", "answered", "form_of", "grade", "shows"]
+__all__ = ["Grade", "answered", "form_of", "grade", "is_own", "shows"]

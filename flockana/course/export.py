@@ -15,7 +15,7 @@ from flockana.course import build
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.pages import number_of
 
-_IMPORTS = "from flockana.course import answered, grade, shows\n\n"
+_IMPORTS = "from flockana.course import answered, grade, is_own, shows\n\n"
 _NBGRADER_CONFIG = """c = get_config()
 c.ClearSolutions.code_stub = {"python": "# your code here"}
 c.ClearSolutions.text_stub = "*Your answer:*"

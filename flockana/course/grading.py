@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import maximum_bipartite_matching
 
 from flockana.base.errors import ArgumentError
 
@@ -54,8 +56,8 @@ def grade(
     handed = answered(answer, form or form_of(right))
     if handed.status != "handed in":
         return handed
-    if isinstance(right, str) and _WORD.fullmatch(right) and not _WORD.fullmatch(answer.strip()):
-        return Grade("not yet", f"one word is asked for, without blanks or marks around it; got {answer!r}")
+    if isinstance(right, list | tuple | set | np.ndarray) and len(answer) != len(right):
+        return Grade("not yet", f"a list of {len(right)} is asked for; got {len(answer)}")
     try:
         if isinstance(right, Callable):  # type: ignore[arg-type]
             good = bool(right(answer))
@@ -78,7 +80,11 @@ def answered(answer: Any, form: str) -> Grade:
         return Grade("not answered")
     if not form:
         return Grade("handed in")
-    return Grade("handed in", f"a {form}") if _FORMS[form](answer) else Grade("not yet", f"a {form} is asked for")
+    if not _FORMS[form](answer):
+        return Grade("not yet", f"a {form} is asked for")
+    if form == "word" and not _WORD.fullmatch(answer.strip()):
+        return Grade("not yet", f"one word is asked for, without blanks or marks around it; got {answer!r}")
+    return Grade("handed in", f"a {form}")
 
 
 def form_of(right: Any) -> str:
@@ -94,17 +100,23 @@ def form_of(right: Any) -> str:
     return next(name for name, fits in _FORMS.items() if fits(right))
 
 
-def shows(ax: Any, points: Any) -> bool:
-    """Return whether labelled axes draw all the points, as part of a curve or as markers.
+def shows(axes: Any, sets: Any) -> bool:
+    """Return whether each set of points is drawn, as part of a curve or as markers, in labelled axes of its own.
 
     Examples
     --------
     >>> from flockana.plots import subplots
     >>> _, ax = subplots()
     >>> _ = ax.plot([0.0, 1.0], [2.0, 3.0]), ax.set(xlabel="t (s)", ylabel="x (m)")
-    >>> shows(ax, [[1.0, 3.0]]), shows(ax, [[1.0, 2.0]])
-    (True, False)
+    >>> shows([ax], [[[1.0, 3.0]]]), shows([ax], [[[1.0, 2.0]]]), shows([ax], [[[1.0, 3.0]], [[0.0, 2.0]]])
+    (True, False, False)
     """
+    drawn = np.array([[_draws(ax, points) for ax in axes] for points in sets])
+    own = maximum_bipartite_matching(csr_matrix(drawn), perm_type="column")
+    return bool((own >= 0).all())
+
+
+def _draws(ax: Any, points: Any) -> bool:
     if not (ax.get_xlabel() and ax.get_ylabel()):
         return False
     drawn = [np.asarray(line.get_xydata(), float) for line in ax.lines]
@@ -114,6 +126,17 @@ def shows(ax: Any, points: Any) -> bool:
     wanted = np.asarray(points, float).reshape(-1, 2)
     near = 1e-6 * max(1.0, float(np.abs(wanted).max()))
     return all(np.any(np.abs(found - each).max(axis=1) <= near) for each in wanted)
+
+
+def is_own(*things: Any) -> bool:
+    """Return whether functions and classes are defined neither in the library nor in a file beside the lectures.
+
+    Examples
+    --------
+    >>> is_own(np.linspace), is_own(shows)
+    (True, False)
+    """
+    return not any(each.__module__.partition(".")[0] in ("flockana", "own_law") for each in things)
 
 
 def _number(x: Any) -> bool:
@@ -128,6 +151,7 @@ def _number(x: Any) -> bool:
 _FORMS: dict[str, Callable[[Any], bool]] = {
     "truth value": lambda x: isinstance(x, bool | np.bool_),
     "word": lambda x: isinstance(x, str),
+    "formula": lambda x: isinstance(x, str),
     "function": callable,
     "list": lambda x: (
         isinstance(x, list | tuple | set | frozenset | range) or (isinstance(x, np.ndarray) and x.ndim > 0)

@@ -11,7 +11,7 @@ import pytest
 import flockana as fl
 from flockana import lattice
 from flockana.base.errors import ArgumentError
-from flockana.course import build, grade, shows
+from flockana.course import build, grade, is_own, shows
 from flockana.course.pages import number_of
 from tests.course.answers import ANSWERS, connectivity
 
@@ -43,7 +43,7 @@ def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
     assert not tree.body  # it stands alone: one call, on constants
 
     def status(answer):
-        known = {"grade": grade, "shows": shows, "np": np, "fl": fl, "lattice": lattice}
+        known = {"grade": grade, "is_own": is_own, "shows": shows, "np": np, "fl": fl, "lattice": lattice}
         return eval(expression, known | {name: answer}).status
 
     assert len(wrong) >= 3

@@ -59,6 +59,11 @@ def test_a_word_in_another_form_is_told_so(answer):
     assert grade("refuted", "vacuous", hint="read the hypotheses").hint == "read the hypotheses"
 
 
+def test_a_list_of_another_length_is_told_so():
+    assert grade([1.0], [1.0, 2.0], hint="add").hint == "a list of 2 is asked for; got 1"
+    assert grade([1.0, 3.0], [1.0, 2.0], hint="add").hint == "add"
+
+
 def test_one_precision_at_a_time():
     assert [grade(x, 5.0, within=0.1).status for x in (5.1, 5.11)] == ["right", "not yet"]
     with pytest.raises(ArgumentError, match=r"digits = 2 and within = 0\.1"):
@@ -76,6 +81,8 @@ def test_one_precision_at_a_time():
         ((3, 4), "list", "handed in"),
         (..., "list", "not answered"),
         (object(), "", "handed in"),
+        ("vacuous.", "word", "not yet"),
+        ("s**2", "formula", "handed in"),
     ],
 )
 def test_a_students_copy_looks_at_the_form_only(answer, form, status):
