@@ -21,7 +21,16 @@ from flockana.base.errors import ArgumentError
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.grading import form_of
 from flockana.course.numbers import give_own_numbers, variants
-from flockana.course.pages import course_map, header, map_page, notation_page, number_of, references
+from flockana.course.pages import (
+    course_map,
+    entry_of,
+    header,
+    map_page,
+    notation_page,
+    number_of,
+    number_statements,
+    references,
+)
 
 _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
@@ -90,7 +99,8 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
     if student:
         give_own_numbers(book.cells, number_of(source), variants(source.parent)[number_of(source)], student)
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
-    entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
+    entry = entry_of(source)
+    number_statements(book.cells, entry)
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
     lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
     hidden = {"tags": ["install"], "jupyter": {"source_hidden": True}}

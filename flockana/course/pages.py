@@ -4,13 +4,16 @@ import csv
 import re
 import tomllib
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.base.references import cite
 
+_STATEMENT = re.compile(r"^> \*\*((?:Theorem|Lemma|Proposition|Corrected)[^*]*)\*\*", re.MULTILINE)
 _FIELD = re.compile(r"(\w+)\s*=\s*\{((?:[^{}]|\{[^{}]*\})*)\}")
 
 _ACCENTS = {'"': "\u0308", "'": "\u0301"}
@@ -26,6 +29,7 @@ class Lecture:
     minutes: int  # for reading and running it, exercises apart
     references: tuple[str, ...]  # references, further: what it rests on, and what to read next, as text
     further: tuple[str, ...]
+    theorems: Mapping[str, str]  # those of its statements, by number, that the library has
 
 
 def number_of(source: Path) -> str:
@@ -55,8 +59,14 @@ def course_map(folder: Path) -> list[Lecture]:
         if title is None:
             raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
         after, further = tuple(entry["after"]), tuple(entry["further"])
-        found.append(Lecture(number, title[1], after, entry["minutes"], references, further))
+        theorems = entry.get("theorems", {})
+        found.append(Lecture(number, title[1], after, entry["minutes"], references, further, theorems))
     return found
+
+
+def entry_of(source: Path) -> Lecture:
+    """Return a lecture's entry in the map of the course."""
+    return next(each for each in course_map(source.parent) if each.number == number_of(source))
 
 
 def as_text(bibtex: str) -> str:
@@ -101,6 +111,20 @@ def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
     for row in table:
         if number == "all" or row["lectures"] == "all" or number in row["lectures"].split():
             yield f"| {row['symbol']} | {row['meaning']} | {row['unit']} |"
+
+
+def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], str] = "`{}`".format) -> None:
+    """Number theorems, lemmas and propositions in a lecture's cells, and mark those that the library has."""
+    places = count(1)
+
+    def numbered(found: re.Match[str]) -> str:
+        place = f"{re.sub(r'^0(?=.)', '', lecture.number)}.{next(places)}"
+        name = lecture.theorems.get(place)
+        return f"> **{place} {found[1]}**" + (f" {mark(name)}" if name else "")
+
+    for cell in cells:
+        if cell.cell_type == "markdown":
+            cell.source = _STATEMENT.sub(numbered, cell.source)
 
 
 def header(lecture: Lecture, folder: Path) -> str:

@@ -5,6 +5,7 @@ import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.course import build, pages
+from flockana.theorems.catalogue import catalogue
 
 FOLDER = build.lectures()
 _GREEK = (
@@ -30,6 +31,18 @@ def letters(formula):
     greek = set(re.findall(_GREEK, formula))
     plain = re.sub(r"\\[a-zA-Z]+|\w{2,}", lambda found: "" if found[0][0] == "\\" else found[0], formula)
     return greek | set(re.findall(r"[A-Za-z]", plain)) - _DUMMY
+
+
+def test_statements_are_numbered_and_those_of_the_library_exist():
+    for source in build.sources():
+        book, entry = build.notebook(source, "student"), pages.entry_of(source)
+        text = "\n".join(cell.source for cell in book.cells if cell.cell_type == "markdown")
+        places = re.findall(r"^> \*\*(\w+\.\d+) (?:Theorem|Lemma|Proposition|Corrected)", text, re.MULTILINE)
+        number = re.sub(r"^0(?=\d)", "", entry.number)
+        assert places == [f"{number}.{k + 1}" for k in range(len(places))]
+        marked = dict(re.findall(r"^> \*\*(\w+\.\d+) [^*]*\*\* `([\w-]+)`", text, re.MULTILINE))
+        assert marked == entry.theorems
+        assert set(marked.values()) <= set(catalogue())
 
 
 def test_the_map_holds_every_lecture_after_those_that_it_builds_on():

@@ -11,6 +11,7 @@ import pytest
 
 import flockana
 from flockana import plots, scenario, symbolic
+from flockana.course import build
 from flockana.report.stills import stills
 from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
@@ -43,6 +44,20 @@ def test_every_theorem_and_erratum_has_a_page_with_what_it_says(proved, tmp_path
         assert all(f"`{claim}`" in text for claim in item.claims)
         assert all(f"(../scenarios/{name}.md)" in text for name in scenarios.checked_on(item.id))
         assert f"({item.id}.md)" in (tmp_path / "theorems" / "index.md").read_text(encoding="utf-8")
+
+
+def test_lectures_and_theorems_lead_to_each_other(proved):
+    led = 0
+    for source in build.sources():
+        text = "\n".join(cell.source for cell in lectures.lecture(source).cells if cell.cell_type == "markdown")
+        for name in set(re.findall(r"\(\.\./theorems/([\w-]+)\.md(?:#proof)?\)", text)):
+            page = theorems.page(catalogue()[name], verdicts.Verdicts(), images=False, report=False)
+            assert f"](../lectures/{source.stem}.ipynb)" in page
+            assert "\n## Proof\n" in page
+            led += 1
+    assert led >= 25
+    stated = theorems.page(catalogue()["os-3"], verdicts.Verdicts(), images=False, report=False)
+    assert "[Lecture 03, 3.2](../lectures/03_algorithm_2.ipynb)" in stated
 
 
 def test_every_scenario_has_a_page_that_leads_to_its_theorems(tmp_path):

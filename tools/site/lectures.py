@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,8 @@ import jupytext
 import nbformat
 
 from flockana.course import build, slides
-from flockana.course.pages import number_of
+from flockana.course.pages import entry_of, number_of, number_statements
+from flockana.theorems.catalogue import catalogue
 from tools.site.cache import ROOT
 from tools.site.words import contents
 
@@ -24,6 +26,11 @@ def lecture(source: Path) -> Any:
         {"kernelspec": {"name": "python3", "language": "python", "display_name": "Python"}}
     )
     book.cells = [cell for cell in book.cells if "answer" not in cell.metadata.get("tags", ())]
+    number_statements(
+        book.cells, entry_of(source), "[`{0}`](../theorems/{0}.md), [proof](../theorems/{0}.md#proof)".format
+    )
+    links = " · ".join(f"[{name}](../theorems/{name}.md)" for name in catalogue_entries(source))
+    book.cells += [nbformat.v4.new_markdown_cell(f"## In the library\n\n{links}")] if links else []
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:2]}-{number:03d}"
         tags = list(cell.metadata.get("tags", ()))
@@ -32,6 +39,22 @@ def lecture(source: Path) -> Any:
         elif "solution" in tags or "check" in tags:
             cell.metadata["tags"] = [*tags, "hide-cell"]
     return book
+
+
+def catalogue_entries(source: Path) -> list[str]:
+    """The entries of the catalogue that a lecture states, or asks about a run."""
+    found = re.findall(r'(?:verify|theorem|falsify)\(\s*"([\w-]+)"', source.read_text(encoding="utf-8"))
+    return [name for name in dict.fromkeys([*entry_of(source).theorems.values(), *found]) if name in catalogue()]
+
+
+def back_links(name: str) -> str:
+    """Links to the lectures in which an entry of the catalogue is stated, with its numbers, or asked."""
+    parts = []
+    for source in (each for each in build.sources() if name in catalogue_entries(each)):
+        entry = entry_of(source)
+        places = [place for place, of in entry.theorems.items() if of == name]
+        parts.append(f"[{', '.join(['Lecture ' + entry.number, *places])}](../lectures/{source.stem}.ipynb)")
+    return " · ".join(parts) or "No lecture speaks of it."
 
 
 def write(folder: Path) -> None:

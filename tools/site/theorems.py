@@ -16,6 +16,7 @@ from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import BYLINES
 from flockana.theorems.of_schemes import scheme_note
+from tools.site.lectures import back_links
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail
 from tools.site.verdicts import Verdicts
@@ -47,6 +48,8 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
         _proofs(item.id),
         "## Checked on",
         _scenarios(item, verdicts, images=images, report=report),
+        "## Lectures",
+        back_links(item.id),
         "## References",
         *(f"```bibtex\n{cite(key)}\n```" for key in item.references),
     ]
