@@ -1,10 +1,11 @@
 """Execute every lecture as it is delivered: written by `flockana course` to a clean folder, and run there.
 
 `python tools/run_notebooks.py [--wheel] [--student | --solutions] [NUMBER...]` runs those whose names begin so; by
-default all, of both versions, two at a time. With `--wheel` everything runs in the environment of `make wheel`, to
-which the wheel's extra is added, with no checkout on the path. A cell that fails or warns, and a check that does not
-say what it should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over 90 s of
-processor time, its worker processes included, is pointed out: that does not depend on what else runs.
+default all, of both versions, two at a time. With `--wheel` the students' version runs (a wheel has no solutions), in
+the environment of `make wheel`, to which the wheel's extra is added, with no checkout on the path. A cell that fails or
+warns, and a check that does not say what it should, fail the run: "right" with our solutions, "not answered" without. A
+lecture that takes over 90 s of processor time, its worker processes included, is pointed out: that does not depend on
+what else runs.
 """
 
 from __future__ import annotations
@@ -92,7 +93,7 @@ def run_from_wheel(arguments: list[str]) -> int:
 def main(arguments: list[str]) -> int:
     """Run them; return the exit status."""
     if "--wheel" in arguments:
-        return run_from_wheel([each for each in arguments if each != "--wheel"])
+        return run_from_wheel([each for each in arguments if each != "--wheel"] + ["--student"])
     numbers = [each for each in arguments if not each.startswith("--")]
     versions = [version for version in _SAYS if f"--{version}" in arguments] or list(_SAYS)
     return run(versions, numbers)

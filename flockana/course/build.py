@@ -95,6 +95,10 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
     """
     ensure_choice("version", version, VERSIONS)
     book = jupytext.read(source)
+    if version == "solutions" and not any("solution" in tags(cell) for cell in book.cells):
+        raise ArgumentError(
+            f"{source.name} has no solutions: an installed flockana ships none; use a checkout of its code"
+        )
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL} | ({"student": student} if student else {}))
     if student:
         give_own_numbers(book.cells, number_of(source), variants(source.parent)[number_of(source)], student)
