@@ -65,6 +65,22 @@ def test_the_report_is_accessible_and_as_wide_as_its_window(visit, report, dark,
     assert violations(tab) == []
 
 
+def test_on_a_phone_each_number_has_its_name_and_paper_leaves_what_is_closed(visit, report):
+    tab = visit(report, width=390)
+    name = "getComputedStyle(document.querySelector('.summary tbody:not(:first-of-type) .number'), '::before').content"
+    assert tab.evaluate(name) == '"margin "'
+    assert "none" in visit(report).evaluate(name)
+    tab.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert tab.locator("section.scenario > details[open]").count() == 0
+
+
+def test_sections_are_drawn_when_a_link_opens_them(visit, report):
+    tab = visit(report)
+    assert not tab.locator("#fixed ~ *, .by-itself").first.is_visible()
+    tab.locator("nav a[href='#fixed']").click()
+    assert tab.locator(".by-itself").first.is_visible()
+
+
 def test_the_report_is_filtered(visit, report):
     tab = visit(report)
     count = tab.locator("#filter output")

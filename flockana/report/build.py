@@ -25,7 +25,7 @@ from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, scenario_id, verdict_id
 from flockana.report.figures import Picture
-from flockana.report.front import front_findings
+from flockana.report.front import front_findings, most_telling, opening_sentence
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, Page, ScenarioPage
@@ -166,6 +166,9 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
         .get_template("template.html.j2")
         .render(
             run=run,
+            opening=opening_sentence([finding for _, finding, _ in shown]),
+            folded=whole,
+            telling=most_telling(pages),
             scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
             fixed=[page for page in pages if isinstance(page, FixedPage)],
             lattices=lattice_section(pages),

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from flockana.report.coverage.anchors import verdict_id
-from flockana.report.pages import ScenarioPage
+from flockana.report.pages import Finding, ScenarioPage
 
 FINDINGS = (
     ("hexagon", "os-1", "Seven agents settle on a hexagon, and stay: Theorem 1 holds, certified for t → ∞."),
@@ -13,6 +13,9 @@ FINDINGS = (
     ("dead-zone-wide-start", "dead-zone-1-printed", "From a wide start the dead-zone flock stays in pieces."),
     ("zone-tree", "zone-1-printed", "On a tree, edges take their desired lengths and do not vanish, as was printed."),
 )
+
+
+_TELLING = ("refuted", "verified", "inconclusive", "vacuous")
 
 
 class FrontFinding(NamedTuple):
@@ -35,3 +38,27 @@ def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
             address = verdict_id(scenario, theorem)
             found.append(FrontFinding(text, verdicts[0].verdict.status, address, page.thumbnail))
     return tuple(found)
+
+
+def opening_sentence(findings: Iterable[Finding]) -> str:
+    """Return how many printed claims were found false as expected, and how many theorems hold; empty if none were."""
+    expected = [f.verdict for f in findings if f.as_expected]
+    false = sum(each.status == "refuted" and each.author == "source" for each in expected)
+    held = sum(each.status == "verified" for each in expected)
+    claims = "1 printed claim was" if false == 1 else f"{false} printed claims were"
+    return f"{claims} found false on these cases, as expected; verified as expected: {held}." if false else ""
+
+
+def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Finding]]]:
+    """Return scenarios with their findings: surprises first, then those of the first screen, then what is refuted."""
+    front = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
+
+    def rank(page: ScenarioPage, finding: Finding) -> tuple[bool, bool, int]:
+        shown = (page.name, finding.verdict.theorem) in front
+        return not finding.surprises, not shown, _TELLING.index(finding.verdict.status)
+
+    ranked = []
+    for page in (page for page in pages if isinstance(page, ScenarioPage)):
+        findings = sorted(page.findings, key=lambda finding: rank(page, finding))
+        ranked.append((page, findings, rank(page, findings[0]) if findings else (not page.surprises, True, 9)))
+    return [(page, findings) for page, findings, _ in sorted(ranked, key=lambda entry: entry[2])]

@@ -25,27 +25,33 @@ function follow() {  // an address within a folded section opens it
 addEventListener("hashchange", follow);
 follow();
 
-const form = document.getElementById("filter");
+const form = document.getElementById("filter"), more = document.getElementById("all-rows"), FIRST = 40;
+let whole = document.querySelectorAll(".summary tr[data-status]").length <= 1.5 * FIRST;
 function filter() {
   const { words, source, status, rigour } = Object.fromEntries(new FormData(form));
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean), shown = new Set();
+  const asked = whole || source || status || rigour || wanted.length;
   let count = 0, all = 0;
   for (const body of document.querySelectorAll(".summary tbody")) {
-    let any = false;
+    let any = false, early = false;
     for (const row of body.querySelectorAll("tr[data-status]")) {
       const text = `${body.dataset.name} ${row.textContent} ${row.dataset.words}`.toLowerCase(), data = row.dataset;
       const fits = (!source || data.source === source) && (!status || data.status === status)
         && (!rigour || data.rigour === rigour) && wanted.every((word) => text.includes(word));
       row.hidden = !fits;
-      if (fits) { any = true; count++; shown.add(data.subject); }
+      row.classList.toggle("later", !asked && count >= FIRST);
+      if (fits) { any = true; early ||= asked || count < FIRST; count++; shown.add(data.subject); }
       all++;
     }
     body.hidden = !any;
+    body.classList.toggle("later", !early);
   }
   for (const section of document.querySelectorAll("section.scenario"))
     section.hidden = !shown.has(section.dataset.name);
+  more.hidden = Boolean(asked);
   form.querySelector("output").textContent = `${count} of ${all} verdicts`;
 }
+more.addEventListener("click", () => { whole = true; filter(); });
 form.hidden = false;
 form.addEventListener("input", filter);
 form.addEventListener("submit", (event) => event.preventDefault());
@@ -58,13 +64,6 @@ function reachable() {  // what scrolls in itself can have the focus
 reachable();
 addEventListener("resize", reachable);
 document.addEventListener("toggle", reachable, true);
-
-let closed = [];  // on paper everything is open
-addEventListener("beforeprint", () => {
-  closed = [...document.querySelectorAll("details:not([open])")];
-  closed.forEach((details) => { details.open = true; });
-});
-addEventListener("afterprint", () => { closed.forEach((details) => { details.open = false; }); closed = []; });
 
 const openAll = document.getElementById("open-all");
 if (openAll) {

@@ -3,8 +3,9 @@ from dataclasses import replace
 import pytest
 
 from flockana import scenario, theorem
-from flockana.report.front import FINDINGS, front_findings
-from flockana.report.pages import scenario_page
+from flockana.report.front import FINDINGS, front_findings, most_telling, opening_sentence
+from flockana.report.pages import Finding, ScenarioPage, scenario_page
+from flockana.theorems import Claim, Verdict
 
 
 @pytest.mark.parametrize(("name", "id_"), [(name, id_) for name, id_, _ in FINDINGS])
@@ -27,3 +28,26 @@ def test_a_finding_has_its_verdict_its_place_and_a_picture():
     assert max(x) - min(x) > 0.85 * width  # the flock at the end fills the picture
     other = tuple(replace(finding, expected={"os-1": "refuted"}) for finding in made.findings)
     assert len(front_findings([replace(made, findings=other)])) <= 1
+
+
+def test_the_report_opens_with_what_was_found_false_and_lists_it_first():
+    def finding(theorem, status, expected=True, by="source"):
+        verdict = Verdict(theorem, (), (Claim("x", status, by=by),), author=by)
+        return Finding(verdict, "", "", "", {theorem: "verified"}, () if expected else ("differs",))
+
+    quiet, loud = finding("os-1", "verified"), finding("energy", "refuted")
+    ours, odd = finding("os-3", "refuted", by="flockana"), finding("os-4", "vacuous", expected=False)
+    said = opening_sentence([quiet, loud, loud, ours, odd, finding("os-5", "refuted", expected=False)])
+    assert said == "2 printed claims were found false on these cases, as expected; verified as expected: 1."
+    assert opening_sentence([quiet]) == ""
+    shown = finding("E11", "verified")
+    pages = [
+        ScenarioPage(name, "", "", (), findings)
+        for name, findings in (("a", (quiet,)), ("b", (quiet, loud)), ("c", (quiet, odd)), ("collapse", (loud, shown)))
+    ]
+    assert [(page.name, findings[0].verdict.theorem) for page, findings in most_telling(pages)] == [
+        ("c", "os-4"),
+        ("collapse", "E11"),
+        ("b", "energy"),
+        ("a", "os-1"),
+    ]
