@@ -27,19 +27,21 @@ import numpy as np
 
 from flockana.base.garbage import relaxed_gc
 from flockana.base.interrupts import origin_of
+from flockana.base.progress import show_part
 
 try:
     import fcntl
 except ImportError:  # Windows: there every process compiles what it needs
     fcntl = None  # type: ignore[assignment]
 
-COMPILES = "flockana compiles for this machine, which happens once and takes up to a minute ..."
+COMPILES = "flockana compiles for this machine, which happens once and takes up to a minute; first {} ..."
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
 _PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
 _FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
 _SILENT = 3.0  # seconds of compiling that go without a word
 _UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
 _ONE = RLock()  # one thread compiles at a time
+_ANNOUNCED: list[str] = []  # the kernel that was named as compiled
 _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is compiled
 
 
@@ -96,7 +98,7 @@ class Kernel:
         numba, made = load_numba(), self.dispatcher
         if hasattr(made, "compile"):  # else NUMBA_DISABLE_JIT is set
             types = tuple(map(numba.typeof, arguments))
-            with compiling(_mark(self.function, types) if self.kept else None):
+            with compiling(_mark(self.function, types) if self.kept else None, self.function.__name__):
                 _opened(made).compile(types)
             _ensure_plain(self.function.__name__, made.overloads[types].signature.return_type)
         self._compiled = made
@@ -154,7 +156,7 @@ def callback(kernel: Kernel, signature: Any) -> Any:
     """
     if load_numba().config.DISABLE_JIT:
         return kernel.function
-    with compiling(_mark(kernel.function, signature)):
+    with compiling(_mark(kernel.function, signature), kernel.function.__name__):
         options = {"error_model": "numpy", "nogil": True}
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
 
@@ -247,9 +249,9 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
 
 
 @contextmanager
-def compiling(mark: Path | None = None) -> Iterator[None]:
+def compiling(mark: Path | None = None, name: str = "kernels") -> Iterator[None]:
     """Let one thread of one process compile; others wait and load the result."""
-    with _ONE, relaxed_gc(), _announced():
+    with _ONE, relaxed_gc(), _announced(name):
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         free = folder is None or fcntl is None or (mark is not None and mark.exists())
         with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]
@@ -273,22 +275,24 @@ def compiling(mark: Path | None = None) -> Iterator[None]:
 
 
 @contextmanager
-def _announced() -> Iterator[None]:
+def _announced(name: str) -> Iterator[None]:
     """Say that kernels are compiled, or waited for, once that takes long."""
-    timer = Timer(_SILENT, _announce)
+    show_part(f"compiling {name}")  # beside a bar of tasks
+    timer = Timer(_SILENT, _announce, [name])
     timer.daemon = True
     timer.start()
     try:
         yield
     finally:
         timer.cancel()
+        show_part("")
 
 
-@cache
-def _announce() -> None:
+def _announce(name: str) -> None:
     """Write one line in a process, if a person reads it: on a terminal or in a notebook, not in worker processes."""
-    if (sys.stderr.isatty() or "ipykernel" in sys.modules) and parent_process() is None:
-        logging.getLogger("flockana").warning(COMPILES)
+    if (sys.stderr.isatty() or "ipykernel" in sys.modules) and parent_process() is None and not _ANNOUNCED:
+        _ANNOUNCED.append(name)
+        logging.getLogger("flockana").warning(COMPILES.format(name))
 
 
 @cache

@@ -331,11 +331,10 @@ def test_long_compiling_is_announced_once_on_a_terminal(terminal, monkeypatch, c
     monkeypatch.setattr(jit, "_SILENT", 0.01)
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
     monkeypatch.delitem(sys.modules, "ipykernel", raising=False)  # another test may have loaded it
-    jit._announce.cache_clear()
+    monkeypatch.setattr(jit, "_ANNOUNCED", [])
     for _ in range(2):
-        with jit.compiling():
+        with jit.compiling(name="step"):
             until = time.monotonic() + (10.0 if terminal else 0.05)
             while not caplog.messages and time.monotonic() < until:  # however busy the machine is
                 time.sleep(0.02)
-    assert caplog.messages == [jit.COMPILES] * terminal
-    jit._announce.cache_clear()
+    assert caplog.messages == [jit.COMPILES.format("step")] * terminal

@@ -29,12 +29,16 @@ def progress_bar(
     with _bar(console, counted, steady) as bar:
         task = bar.add_task("starting", total=total)
 
+        shown = ""
+
         def advance(done: float, text: str) -> None:
+            nonlocal shown
             elapsed = bar.tasks[0].elapsed
             rate = f", {done / elapsed:.3g}/s" if counted and steady and elapsed else ""
-            bar.update(task, completed=done, description=text + rate)
+            shown = text + rate
+            bar.update(task, completed=done, description=shown)
 
-        before = _PART.set(lambda text: bar.update(task, description=text))
+        before = _PART.set(lambda text: bar.update(task, description=", ".join(filter(None, (shown, text)))))
         try:
             yield advance
         finally:
@@ -42,7 +46,7 @@ def progress_bar(
 
 
 def show_part(text: str) -> None:
-    """Show which part of a task is under way, beside the bar of the tasks on a terminal."""
+    """Show which part of a task is under way, beside the bar of the tasks on a terminal; nothing once it is done."""
     _PART.get()(text)
 
 

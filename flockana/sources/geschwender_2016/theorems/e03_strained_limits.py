@@ -151,7 +151,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     law, (n, seed) = Algorithm1(), _STRAINED
     limits: dict[int, list[_Limit]] = {size: [] for size in _SIZES}
     for size, start in product(_SIZES, range(_STARTS)):
-        show_part(f"E3: flow {start + 1} of {_STARTS} of {size} agents")
+        show_part(f"flow {start + 1} of {_STARTS} of {size} agents")
         limits[size].append(_limit(law, size, start))
     return [
         _shares(law, limits, tolerances),
