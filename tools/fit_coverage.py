@@ -1,19 +1,24 @@
 """How often 95 % intervals of `fit` hold the truth, by kinds of recordings, and how wide they are.
 
-    python -m tools.fit_coverage 200 > table.md        # seeds of each kind; a kind may follow
+    python -m tools.fit_coverage 200 outcomes.jsonl        # seeds of each kind; kinds may follow
+
+Outcomes are kept in the file, so that a run that was interrupted goes on.
 
 Widths are compared with those of an oracle that knows the noise: the deviations of least squares at the truth.
 """
 
+import json
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import flockana as fl
 from flockana.recorded.fit import fit
-from flockana.recorded.shooting import Problem, matched
+from flockana.recorded.parameters import FreeParameters
+from flockana.recorded.shooting import NormalEquations, Problem
 from flockana.recorded.windows import usual_window, windows
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
@@ -22,8 +27,9 @@ LED = fl.Algorithm2(gains=TRUE, target=fl.StaticTarget((10.0, 10.0)))
 
 
 class Case(NamedTuple):
-    """A recording with the law that made it, what is fitted, how, and the true deviations of its numbers, (T, w)."""
+    """A recording with its run, the law, what is fitted, how, and the true deviations of its numbers, (T, w)."""
 
+    made: fl.Trajectory
     rec: fl.Recording
     law: Any
     free: tuple[str, ...]
@@ -51,7 +57,12 @@ def bound_with_velocities(rng: np.random.Generator) -> Case:
     q, p = (x + rng.uniform(-b, b, x.shape) / np.sqrt(2.0) for x in (made.q, made.p))
     rec = fl.Recording(made.t, q, p, bound=b, p_bound=b)
     return Case(
-        rec, LED, ("c1_alpha", "c1_gamma"), columns(rec, b / np.sqrt(6.0), b / np.sqrt(6.0)), {"independent": True}
+        made,
+        rec,
+        LED,
+        ("c1_alpha", "c1_gamma"),
+        columns(rec, b / np.sqrt(6.0), b / np.sqrt(6.0)),
+        {"independent": True},
     )
 
 
@@ -59,7 +70,7 @@ def sd_positions(rng: np.random.Generator) -> Case:
     """Positions alone with Gaussian errors; 4 agents."""
     made, sd = run(rng, LED, 4, 1.5, 0.05), 10 ** rng.uniform(-2.5, -1.2)
     rec = fl.Recording(made.t, made.q + rng.normal(0.0, sd, made.q.shape), sd=sd)
-    return Case(rec, LED, ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"), columns(rec, sd), {})
+    return Case(made, rec, LED, ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"), columns(rec, sd), {})
 
 
 def sd_with_velocities(rng: np.random.Generator) -> Case:
@@ -67,7 +78,7 @@ def sd_with_velocities(rng: np.random.Generator) -> Case:
     made, sd = run(rng, LED, 4, 1.0, 0.05), 10 ** rng.uniform(-2.5, -1.0)
     q, p = made.q + rng.normal(0.0, sd, made.q.shape), made.p + rng.normal(0.0, 5.0 * sd, made.p.shape)
     rec = fl.Recording(made.t, q, p, sd=sd, p_sd=5.0 * sd)
-    return Case(rec, LED, ("c1_alpha", "c2_alpha"), columns(rec, sd, 5.0 * sd), {})
+    return Case(made, rec, LED, ("c1_alpha", "c2_alpha"), columns(rec, sd, 5.0 * sd), {})
 
 
 def few_frames(rng: np.random.Generator) -> Case:
@@ -75,7 +86,7 @@ def few_frames(rng: np.random.Generator) -> Case:
     t = np.linspace(0.0, 1.0, 9)
     made = fl.simulate(PAIR, [[0.0], [rng.uniform(5.5, 8.0)]], rng.normal(0.0, 1.0, (2, 1)), (0.0, 1.0), t_eval=t)
     rec = fl.Recording(t, made.q + rng.normal(0.0, 0.02, made.q.shape), sd=0.02)
-    return Case(rec, PAIR, ("c1_alpha", "c2_alpha"), columns(rec, 0.02), {})
+    return Case(made, rec, PAIR, ("c1_alpha", "c2_alpha"), columns(rec, 0.02), {})
 
 
 def collinear(rng: np.random.Generator) -> Case:
@@ -84,14 +95,14 @@ def collinear(rng: np.random.Generator) -> Case:
     t = np.arange(41) * 0.05
     made = fl.simulate(law, [[0.0], [rng.uniform(5.5, 6.5)]], rng.normal(0.0, 0.3, (2, 1)), (0.0, 2.0), t_eval=t)
     rec = fl.Recording(t, made.q + rng.normal(0.0, 0.02, made.q.shape), sd=0.02)
-    return Case(rec, law, ("c1_alpha", "c2_alpha"), columns(rec, 0.02), {})
+    return Case(made, rec, law, ("c1_alpha", "c2_alpha"), columns(rec, 0.02), {})
 
 
 def heavy_tails(rng: np.random.Generator) -> Case:
     """Errors of Student's t with 3 degrees of freedom, their deviation stated; the oracle weighs them by likelihood."""
     made, sd = run(rng, LED, 4, 1.5, 0.05), 0.03
     rec = fl.Recording(made.t, made.q + sd / np.sqrt(3.0) * rng.standard_t(3, made.q.shape), sd=sd)
-    return Case(rec, LED, ("c1_alpha", "c1_gamma"), columns(rec, sd / np.sqrt(3.0) * np.sqrt(6.0 / 4.0)), {})
+    return Case(made, rec, LED, ("c1_alpha", "c1_gamma"), columns(rec, sd / np.sqrt(3.0) * np.sqrt(6.0 / 4.0)), {})
 
 
 def touch_once(rng: np.random.Generator) -> Case:
@@ -100,7 +111,7 @@ def touch_once(rng: np.random.Generator) -> Case:
     q0, p0 = [[-9.0, 0.0], [9.0, rng.uniform(4.0, 6.0)]], [[6.0, 0.0], [-6.0, 0.0]]
     made = fl.simulate(law, q0, p0, (0.0, 3.0), t_eval=t)
     rec = fl.Recording(t, made.q + rng.normal(0.0, 0.03, made.q.shape), sd=0.03)
-    return Case(rec, law, ("c1_alpha",), columns(rec, 0.03), {})
+    return Case(made, rec, law, ("c1_alpha",), columns(rec, 0.03), {})
 
 
 def gaps(rng: np.random.Generator) -> Case:
@@ -111,7 +122,7 @@ def gaps(rng: np.random.Generator) -> Case:
         a = int(rng.integers(2, len(q) - 8))
         q[a : a + 6, i] = np.nan
     rec = fl.Recording(made.t, q, sd=sd)
-    return Case(rec, LED, ("c1_alpha", "c2_alpha", "c1_gamma"), columns(rec, sd), {})
+    return Case(made, rec, LED, ("c1_alpha", "c2_alpha", "c1_gamma"), columns(rec, sd), {})
 
 
 def constant_offsets(rng: np.random.Generator) -> Case:
@@ -120,7 +131,7 @@ def constant_offsets(rng: np.random.Generator) -> Case:
     shift = rng.uniform(-b, b, (1, 4, 2)) / np.sqrt(2.0)
     noise = rng.normal(0.0, 0.002, made.q.shape)
     rec = fl.Recording(made.t, made.q + shift + noise, bound=b + 0.01)
-    return Case(rec, LED, ("c1_alpha", "c1_gamma"), columns(rec, 0.002), {}, b / np.sqrt(6.0))
+    return Case(made, rec, LED, ("c1_alpha", "c1_gamma"), columns(rec, 0.002), {}, b / np.sqrt(6.0))
 
 
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
@@ -138,45 +149,55 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 
 def oracle(case: Case) -> Any:
     """Widths of the intervals of least squares that knows the noise, at the truth."""
-    from flockana.recorded.parameters import FreeParameters
-
-    free = FreeParameters.of(case.law, case.free)
-    parts = windows(case.rec, usual_window(case.rec, case.law), case.sd)
+    free, parts = FreeParameters.of(case.law, case.free), windows(case.rec, usual_window(case.rec, case.law), case.sd)
     spread = np.full(parts[0].y.shape[1], case.spread) if case.spread else None
-    known = matched(Problem(parts, free.with_values, free.values, spread))
-    return 2.0 * 1.96 * np.sqrt(np.diag(known.covariance)[: len(case.free)])
+    at = [int(np.searchsorted(case.rec.t, part.t[0])) for part in parts]
+    starts = [np.concatenate([case.made.q[k].ravel(), case.made.p[k].ravel()]) for k in at]
+    values = np.concatenate([free.values, np.zeros(0 if spread is None else len(spread))])
+    slopes = Problem(parts, free.with_values, free.values, spread).slopes(values, starts, 4, 0.1)
+    return 2.0 * 1.96 * np.sqrt(np.diag(NormalEquations.of(slopes, len(values), 0.0).covariance)[: len(case.free)])
 
 
-def row(name: str, seeds: int) -> str:
+def outcome(name: str, seed: int) -> dict[str, Any]:
+    """Ends of the intervals of one case, its truth, the oracle's widths, and the parameters called unidentifiable."""
+    case = KINDS[name](np.random.default_rng([list(KINDS).index(name), seed]))
+    result = fit(case.rec, case.law, free=case.free, **case.how)
+    return {
+        "kind": name,
+        "seed": seed,
+        "ends": [result.intervals[x] for x in case.free],
+        "truth": [getattr(case.law.gains, x) for x in case.free],
+        "oracle": oracle(case).tolist(),
+        "untold": [any(x in text for text in result.unidentifiable) for x in case.free],
+    }
+
+
+def row(name: str, found: list[dict[str, Any]]) -> str:
     """A line of the table: coverage of the least and of all parameters, widths over the oracle's, what is open."""
-    number = list(KINDS).index(name)
-    inside, ratios, untold, wrongly = [], [], 0, 0
-    for seed in range(seeds):
-        case = KINDS[name](np.random.default_rng([number, seed]))
-        found, best = fit(case.rec, case.law, free=case.free, **case.how), oracle(case)
-        ends = np.array([found.intervals[x] for x in case.free])
-        truth = np.array([getattr(case.law.gains, x) for x in case.free])
-        inside.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))
-        ratios.append(np.median((ends[:, 1] - ends[:, 0]) / best))
-        untold += len(found.unidentifiable)
-        wrongly += sum(
-            width < 2.0 * value and any(x in text for text in found.unidentifiable)
-            for x, width, value in zip(case.free, best, truth, strict=True)
-        )
-    shares = np.mean(inside, axis=0)
-    return f"| {name} | {shares.min():.3f} | {np.mean(inside):.3f} | {np.median(ratios):.2f} | {untold} | {wrongly} |"
+    ends, truth, best, untold = (np.array([one[key] for one in found]) for key in ("ends", "truth", "oracle", "untold"))
+    inside, width = (ends[..., 0] <= truth) & (truth <= ends[..., 1]), np.ptp(ends, axis=2)
+    ratio, wrongly = np.median(np.median(width / best, axis=1)), untold & (best < 2.0 * truth)
+    least = f"{inside.sum(axis=0).min()} of {len(found)}"
+    return f"| {name} | {least} | {inside.mean():.1%} | {ratio:.2f} | {untold.sum()} | {wrongly.sum()} |"
 
 
 def main() -> None:
-    """Print the table."""
-    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    """Print the table, from outcomes that a file holds and those that are lacking there, which are added to it."""
+    seeds, store = int(sys.argv[1]), Path(sys.argv[2])
+    found = [json.loads(line) for line in store.read_text().splitlines()] if store.exists() else []
+    have = {(one["kind"], one["seed"]) for one in found}
+    for seed, name in ((seed, name) for seed in range(seeds) for name in sys.argv[3:] or KINDS):
+        if (name, seed) not in have:
+            found.append(outcome(name, seed))
+            with store.open("a") as file:
+                file.write(json.dumps(found[-1]) + "\n")
     sys.stdout.write(
-        "| kind | least covered | covered | width over the oracle's | not told | of these told by the oracle |" + "\n"
+        "| kind | intervals that hold the truth, of the worst parameter | of all | width over the oracle's | "
+        "called unidentifiable | of these told by the oracle |\n|---|---|---|---|---|---|\n"
     )
-    sys.stdout.write("|---|---|---|---|---|---|" + "\n")
-    for name in sys.argv[2:] or KINDS:
-        sys.stdout.write(row(name, seeds) + "\n")
-        sys.stdout.flush()
+    for name in KINDS:
+        if rows := [one for one in found if one["kind"] == name and one["seed"] < seeds]:
+            sys.stdout.write(row(name, rows) + "\n")
 
 
 if __name__ == "__main__":

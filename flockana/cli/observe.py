@@ -47,6 +47,11 @@ def observe_command(
     box: Annotated[
         str | None, typer.Option(metavar="L[,L..]", help="Periods of positions, which are unwrapped.")
     ] = None,
+    jitter: Annotated[float | None, typer.Option(help="Stamps within this of each other are one instant.")] = None,
+    interpolate: Annotated[
+        float | None,
+        typer.Option(help="Largest acceleration, to interpolate agents sampled at other times; 0 leaves gaps."),
+    ] = None,
     window: Annotated[str | None, typer.Option(metavar="T0,T1", help="First and last time that count.")] = None,
     clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
     page: Annotated[Path | None, output("HTML page to write, with a player.")] = None,
@@ -72,6 +77,8 @@ def observe_command(
         columns=_columns(columns),
         axes=axes,
         box=None if box is None else _numbers("--box", box),
+        jitter=jitter,
+        interpolate=interpolate or (None if interpolate is None else False),
         dt=dt,
         clock=clock,
         bound=bound,

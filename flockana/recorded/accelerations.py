@@ -17,7 +17,8 @@ _FEWEST = 4  # samples for splines
 class Accelerations(NamedTuple):
     """Accelerations u of shape (K, n, m) with their errors, and the states (t, q, p) that they belong to.
 
-    `basis` is "accelerations", at the samples; "steps", means from sample to sample; or "splines".
+    `basis` is "accelerations", at the samples; "steps", means from sample to sample; "map", those of a map's steps; or
+    "splines".
     """
 
     basis: str
@@ -48,15 +49,15 @@ def accelerations(rec: Recording) -> Accelerations:
         return _of_splines(rec)
     if len(rec.t) < 2:
         raise ArgumentError("one sample without accelerations shows no law: expected two or more, or u=")
-    steps = _of_steps(rec, rec.p)
+    steps = mean_accelerations(rec, rec.p)
     if rec.sd is None or not np.max(rec.sd) > 0.0 or len(rec.t) < _FEWEST:
         return steps
     splines = _of_splines(rec)
     return steps if np.median(steps.error) <= np.median(splines.error) else splines
 
 
-def _of_steps(rec: Recording, p: FloatArray) -> Accelerations:
-    """Mean accelerations from sample to sample, by recorded velocities."""
+def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
+    """Return the mean accelerations from sample to sample, by recorded velocities."""
     h = np.diff(rec.t)
     u = np.diff(p, axis=0) / h[:, None, None]
     wide: Any = rec.accuracy.speed

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError
 from flockana.base.shown import ShortRepr
 from flockana.base.vectors import lengths
-from flockana.laws.discrete import ensure_law
+from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
 from flockana.recorded.findings import Share, explained
+from flockana.recorded.maps import map_steps
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.steps import scheme_by_law
 
@@ -28,8 +28,9 @@ class Comparison(ShortRepr):
     ----------
     law : Law
         The law.
-    basis : {"accelerations", "steps", "splines"}
-        What is compared: recorded accelerations, mean accelerations from sample to sample, or those of splines.
+    basis : {"accelerations", "steps", "map", "splines"}
+        What is compared: recorded accelerations, mean accelerations from sample to sample, those of the steps of a map,
+        or those of splines.
     t : ndarray, shape (K,)
         Times.
     recorded, residual : ndarray, shape (K, n, m)
@@ -57,16 +58,6 @@ class Comparison(ShortRepr):
     findings: tuple[str, ...] = ()
     noise: float = 0.0
     ids: tuple[str, ...] = field(default=(), repr=False)
-
-    @property
-    def share(self) -> str:
-        """Explained share in words; a residual larger than the accelerations explains nothing."""
-        return f"{self.explained:.4%}" if self.explained > 0.0 else "nothing"
-
-    @property
-    def share_of_own(self) -> str:
-        """Explained share to a hundredth of a percent, with the law's own gains; "nothing" below 0."""
-        return f"{self.explained:.2%}" if self.explained > 0.0 else "nothing"
 
     @property
     def caution(self) -> str:
@@ -99,11 +90,12 @@ class Comparison(ShortRepr):
 
     def __str__(self) -> str:
         name = self.law.title
-        lines = [f"{name} explains {self.share} of the recorded accelerations (from {self.basis})"]
+        lines = [f"{name} explains {share_text(self.explained)} of the recorded accelerations (from {self.basis})"]
         for one in self.shares:
             known = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
             lines.append(
-                f"  {one.share:8.2%}  {one.text}: {one.symbol} = {one.found:.5g}{known}, {one.stated:.5g} in the law"
+                f"  {_percent(one.share):>8}  {one.text}: {one.symbol} = {one.found:.4g}{known}, "
+                f"{one.stated:.4g} in the law"
             )
         lines += [f"  finding: {text}" for text in self.findings]
         lines += [f"  caution: {self.caution}"] if self.caution else []
@@ -122,24 +114,41 @@ class Comparison(ShortRepr):
         } | {name: getattr(self, name) for name in kept}
 
 
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.4g}%"
+
+
+def share_text(explained: float) -> str:
+    """Return an explained share in words; a residual larger than the accelerations explains nothing.
+
+    Examples
+    --------
+    >>> share_text(0.98765432), share_text(-4e7), share_text(1.0 - 1e-9)
+    ('98.77%', 'nothing', '100%')
+    """
+    return _percent(explained) if explained > 0.0 else "nothing"
+
+
 def compare(rec: Recording, law: Any) -> Comparison:
     """Return a comparison of a recording with a law.
 
     Recorded accelerations are compared if there are any; else the mean ones from sample to sample, if velocities were
     recorded, or those of a scheme that positions and velocities tell; else those of smoothing splines. Where noise is
-    stated, the one of the two that is known better is compared; under strong noise `Comparison.caution` says so.
+    stated, the one of the two that is known better is compared; under strong noise `Comparison.caution` says so. A map,
+    such as Vicsek's, is led on from each sample to the next, which must be whole steps of it apart.
 
     Parameters
     ----------
     rec : Recording
         The recording; the accuracy that it states gives the weights.
-    law : Law or Scheme
-        The law; of a scheme, the law that it steps.
+    law : Law, Scheme or DiscreteLaw
+        The law; of a scheme, the law that it steps; or a map.
 
     Raises
     ------
     ArgumentError
-        If the recording has gaps (except where splines carry them), or the law is not for such a flock.
+        If the recording has gaps (except where splines carry them), or the law is not for such a flock; under a map if
+        velocities are lacking, or the interval between samples is not its dt or a multiple.
 
     Examples
     --------
@@ -151,32 +160,36 @@ def compare(rec: Recording, law: Any) -> Comparison:
     True
     """
     ensure_recording(rec)
-    given = ensure_law(law)
+    given, own, scheme, notes = ensure_law(law), rec.measured, None, list[str]()
+    given.check_dimension(rec.m)
+    given.check_agents(rec.n)
     continuous = given.continuous
-    if continuous is None:
-        raise ArgumentError(f"{law.title} steps no continuous law: expected a law, or a scheme such as TaylorStep")
-    continuous.check_dimension(rec.m)
-    continuous.check_agents(rec.n)
-    data = accelerations(rec)
-    found = explained(data, continuous)
-    scheme = data.scheme
-    if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
-        scheme = scheme_by_law(rec, continuous)
-    steps = () if scheme is None else (f"steps are {scheme} of {rec.interval:.6g}",)
-    own, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
-    clock = _clock_finding(rec)
-    texts, noise = (clock,) if clock else (*steps, *found.findings), float(np.nanmedian(data.error))
+    of_own = isinstance(given, DiscreteLaw) and not given.approximates and own.p is not None
+    if continuous is None or of_own:
+        data, steps, led, said = map_steps(own, given)
+        found, off = explained(data, steps), _position_finding(own, led, f"steps of {given.title}")
+        notes += [said] if said else []
+        found = found._replace(findings=()) if said else found  # what is left may be the noise
+    else:
+        data = accelerations(rec)
+        found, off = explained(data, continuous), ""
+        scheme = data.scheme
+        if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
+            scheme = scheme_by_law(rec, continuous)
+        notes += [] if scheme is None else [f"steps are {scheme} of {rec.interval:.4g}"]
+        if own.p is not None and len(rec.t) > 2:
+            led = 0.5 * (own.p[1:] + own.p[:-1]) * np.diff(rec.t)[:, None, None]
+            off = _position_finding(own, led, "velocities and times")
+    by_law, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
+    texts, noise = (off,) if off else (*notes, *found.findings), float(np.nanmedian(data.error))
     return Comparison(
-        law, data.basis, data.t, data.u, found.residual, own, refitted, found.shares, texts, noise, tuple(rec.ids)
+        law, data.basis, data.t, data.u, found.residual, by_law, refitted, found.shares, texts, noise, tuple(rec.ids)
     )
 
 
-def _clock_finding(rec: Recording) -> str:
-    """Return by which factor positions move otherwise than with velocities and clock; empty if they move with them."""
-    if rec.p is None or rec.smoothed or len(rec.t) < 3:
-        return ""
+def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
+    """Return by which factor positions move otherwise than they are led; empty if they move so."""
     moved = np.diff(rec.q, axis=0)
-    led = 0.5 * (rec.p[1:] + rec.p[:-1]) * np.diff(rec.t)[:, None, None]
     known = ~np.isnan(moved + led)
     moved, led = moved[known], led[known]
     if not (moved @ moved > 0.0 and led @ led > 0.0):
@@ -186,6 +199,6 @@ def _clock_finding(rec: Recording) -> str:
     if abs(factor - 1.0) <= max(_OFF_CLOCK, 3.0 * np.sqrt(left)) * max(1.0, abs(factor)):
         return ""
     return (
-        f"positions move by {factor:.4g} times what velocities and times say: expected 1; mend units of times or "
-        "velocities first, then compare terms"
+        f"positions move by {factor:.4g} times what {by} say: expected 1; mend units, times or speeds first, then "
+        "compare terms"
     )

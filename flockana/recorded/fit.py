@@ -72,11 +72,12 @@ class Fit(ShortRepr):
         size = f"{self.misfit:.3g} times the accuracy" if isfinite(self.misfit) else "as large as the noise, not stated"
         lines = [f"{self.law.title} fitted; residual {size}"]
         for name, (low, high) in self.intervals.items():
-            lines.append(f"  {name} = {self.values[name]:.4g}, {_between(low, high)} (95 %)")
+            lines.append(f"  {name} = {self.values[name]:.4g}, {interval_text(low, high)} (95 %)")
         return "\n".join([*lines, *(f"  {text}" for text in (*self.unidentifiable, *self.doubts))])
 
 
-def _between(low: float, high: float) -> str:
+def interval_text(low: float, high: float) -> str:
+    """Return an interval in words, which say where it is open."""
     if not isfinite(high):
         return "open" if not low > 0.0 else f"above {low:.4g}, open"
     return f"between {low:.4g} and {high:.4g}" if isfinite(low) else f"below {high:.4g}, open"
@@ -301,7 +302,7 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
     errors = np.where(best.identifiable[:count], np.sqrt(np.maximum(np.diag(covariance), 0.0)), inf)
     scale = np.where(np.isfinite(errors) & (errors > 0.0), errors, 1.0)
     untold = [
-        f"the data do not tell {name}: {value:.4g}, {_between(*end)}"
+        f"the data do not tell {name}: {value:.4g}, {interval_text(*end)}"
         for name, value, end in zip(names, values, ends, strict=True)
         if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * abs(value)
     ]

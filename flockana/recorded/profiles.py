@@ -40,9 +40,9 @@ def _end(problem: Problem, best: MatchResult, k: int, side: float, level: float,
     floor = 1e-6 * problem.first[k] if positive else -inf
     farthest = _FARTHEST * max(abs(value), error)
     inside, outside, off, last = 0.0, inf, level * error, _Trial(0.0, best.values, best.starts)
-    for _ in range(_TRIALS):
+    for number in range(_TRIALS):
         at = max(value + side * off, floor)
-        trial = _rise(problem, best, k, at, last)
+        trial = _rise(problem, best, k, at, last, known=number == 0)
         height = inf if trial is None else sqrt(max(trial.rise / unit, 0.0))
         if trial is not None and trial.rise < -_LOWER * unit:
             raise LowerMinimumError(trial.result, k, at)
@@ -78,8 +78,11 @@ class _Trial:
         return self._result
 
 
-def _rise(problem: Problem, best: MatchResult, k: int, at: float, last: _Trial) -> _Trial | None:
-    """Return the fit with a parameter fixed, begun on a line from the last one; None if none is found."""
+def _rise(problem: Problem, best: MatchResult, k: int, at: float, last: _Trial, *, known: bool) -> _Trial | None:
+    """Return the fit with a parameter fixed, begun on a line from the last one; None if none is found.
+
+    Slopes are at first those of the best fit, if these are `known` to serve.
+    """
     by, normal = at - float(last.values[k]), best.normal
     others = np.delete(np.arange(len(best.values)), k)
     along = np.zeros(len(best.values))
@@ -99,7 +102,13 @@ def _rise(problem: Problem, best: MatchResult, k: int, at: float, last: _Trial) 
     for begin in (starts, last.starts):
         try:
             result = matched(
-                fixed, starts=begin, values=np.delete(values, k), finer=best.finer, block=_FINE, rounds=_FEW
+                fixed,
+                starts=begin,
+                values=np.delete(values, k),
+                finer=best.finer,
+                block=_FINE,
+                rounds=_FEW,
+                normal=normal.without(k) if known else None,
             )
         except FlockanaError:
             continue

@@ -9,10 +9,11 @@ from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
 from flockana.recorded.boxes import unwrapped
+from flockana.recorded.clocks import ensure_one_clock, interpolated
 from flockana.recorded.reading.arrays import dataset_arrays, mat_arrays, named_arrays, netcdf_arrays, npz_arrays
 from flockana.recorded.reading.lammps import read_dump
 from flockana.recorded.reading.names import Columns
-from flockana.recorded.reading.table import table_arrays
+from flockana.recorded.reading.table import AGENTS, table_arrays
 from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
 
@@ -32,6 +33,7 @@ def read_recording(
     axes: Any = None,
     jitter: float | None = None,
     box: Any = None,
+    interpolate: float | bool | None = None,
     bound: Any = None,
     sd: Any = None,
     p_bound: Any = None,
@@ -64,6 +66,10 @@ def read_recording(
         Stamps of a table within this of each other are one instant; by default those that differ by rounding.
     box : float or sequence of float, optional
         Periods of the positions along each axis, inf where there is none; positions are unwrapped.
+    interpolate : float or False, optional
+        Largest acceleration of an agent, by which agents of a table that were sampled at other times are interpolated
+        to common instants, each position with an error that covers every such motion; False leaves gaps instead. By
+        default such a table is refused.
     bound, sd, p_bound, p_sd : float or array_like, optional
         Accuracy, as in `Recording`; by default what a file of `Recording.save` states.
 
@@ -95,7 +101,10 @@ def read_recording(
             f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, an xarray "
             "dataset, or arrays by name"
         )
-    return rec if box is None else unwrapped(rec, box)
+    rec = rec if box is None else unwrapped(rec, box)
+    if interpolate is None and any(text.startswith(AGENTS) for text in rec.read_as):
+        ensure_one_clock(rec)
+    return interpolated(rec, ensure_positive("interpolate", interpolate)) if interpolate else rec
 
 
 class _How(NamedTuple):

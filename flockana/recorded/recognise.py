@@ -6,7 +6,7 @@ from typing import Any
 
 from flockana.base.errors import ArgumentError, FlockanaError, format_value
 from flockana.laws.candidates import candidates
-from flockana.recorded.compare import Comparison, compare
+from flockana.recorded.compare import Comparison, compare, share_text
 from flockana.recorded.recording import Recording, ensure_recording
 
 _FITS = 0.99  # share explained, the gains as the recording has them, from which a law fits
@@ -35,7 +35,7 @@ class Recognition:
 
     def __str__(self) -> str:
         lines = [
-            f"{one.explained_refitted:9.2%} ({one.share_of_own} with its own gains)  {name}"
+            f"{share_text(one.explained_refitted):>9} ({share_text(one.explained)} with its own gains)  {name}"
             for name, one in self.ranked
         ]
         lines += [f"        -  {name}: {reason}" for name, reason in self.refused.items()]

@@ -142,6 +142,11 @@ class NormalEquations:
         """Covariance of the parameters for noise of deviation 1."""
         return inverse(self.reduced)
 
+    def without(self, k: int) -> Self:
+        """Return the equations with one parameter fixed."""
+        count = len(self.reduced)
+        return self.of([np.delete(x, x.shape[1] - count + k, axis=1) for x in self.slopes], count - 1, self.damping)
+
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
         """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
         count, starts, gained = len(self.reduced), [], 0.0
@@ -174,10 +179,12 @@ def matched(
     finer: int | None = None,
     block: float = _COARSE,
     rounds: int = _ROUNDS,
+    normal: NormalEquations | None = None,
 ) -> MatchResult:
     """Return the parameters, and starts of windows, for which solutions of a law fit the samples best.
 
-    Slopes are kept as long as steps gain what these promise: most rounds cost solutions alone.
+    Slopes, at first those of `normal`, are kept as long as steps gain what they promise: most rounds cost solutions
+    alone.
     """
     theta, damping = _first(problem, values), 0.0
     starts = _with_prior(problem, [part.start for part in problem.parts] if starts is None else list(starts))
@@ -187,7 +194,7 @@ def matched(
     now = problem.residuals(theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    normal, size = None, problem.size
+    size = problem.size
     for _ in range(rounds):
         if normal is None:
             since, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)

@@ -35,7 +35,8 @@ def led(
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
             raise ArgumentError(
-                f"samples are {h:g} apart at t = {t:g}: expected whole steps of {law.title}, dt = {law.dt:g}"
+                f"samples are {h:g} apart at t = {t:g}: expected whole steps of {law.title}, dt = {law.dt:g}; "
+                "give the map that dt, or take other samples by select(samples=)"
             )
         memory = law.start(q, p)
         for k in range(steps):

@@ -16,6 +16,7 @@ from flockana.recorded.velocities import motions
 _TIMES = 8.0  # of the law, which a window of samples is as long as
 _FEWEST = 40  # samples in a window
 _NUDGE = 1e-5  # relative change of a parameter for slopes
+_SMALL = 16  # coordinates of a flock whose slopes are differences
 _STEP = 0.4  # of the law's time, which a step of the integration is at most
 
 Neighbour = tuple[Any, Any, float]  # laws with a parameter increased and decreased, and by how much
@@ -174,17 +175,19 @@ def rescaled(parts: list[Window], factors: FloatArray) -> list[Window]:
 
 
 def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(∂u/∂q, ∂u/∂p), by differences where the law has none."""
-    try:
-        a, b = law.derivatives(t, q, p)
-        return a.toarray(), b.toarray()
-    except (FlockanaError, NotImplementedError):
-        return differences(lambda x: law.flow(t, x, p)[0], q), differences(lambda x: law.flow(t, q, x)[0], p)
+    """(∂u/∂q, ∂u/∂p), by differences where the law has none, or the flock is so small that these cost less."""
+    if q.size > _SMALL:
+        try:
+            a, b = law.derivatives(t, q, p)
+            return a.toarray(), b.toarray()
+        except (FlockanaError, NotImplementedError):
+            pass
+    return differences(lambda x: law.flow(t, x, p)[0], q), differences(lambda x: law.flow(t, q, x)[0], p)
 
 
 def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) -> FloatArray:
     """Return the slopes of a function by central differences, one column for each coordinate."""
-    unit, columns = _NUDGE * (float(np.abs(x).max()) or 1.0), []
+    unit, columns = _NUDGE * (float(np.ptp(x)) or float(np.abs(x).max()) or 1.0), []
     for k in range(x.size):
         nudge: FloatArray = np.zeros(x.shape)
         nudge[np.unravel_index(k, x.shape)] = unit

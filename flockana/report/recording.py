@@ -15,8 +15,8 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.player.page import played, style, text_of
 from flockana.player.scene import scene
 from flockana.plots.recording import recorded_measure, residuals
-from flockana.recorded.compare import Comparison
-from flockana.recorded.fit import Fit
+from flockana.recorded.compare import Comparison, share_text
+from flockana.recorded.fit import Fit, interval_text
 from flockana.recorded.recording import Recording
 from flockana.theorems import Verdict
 
@@ -56,8 +56,7 @@ def recording_page(
     if comparison is not None:
         parts += _compared(comparison)
     if fitted is not None:
-        ends = {name: f"{low:.5g} to {high:.5g}" for name, (low, high) in fitted.intervals.items()}
-        rows = [(name, f"{fitted.values[name]:.5g}", interval) for name, interval in ends.items()]
+        rows = [(name, f"{fitted.values[name]:.4g}", interval_text(*ends)) for name, ends in fitted.intervals.items()]
         parts.append("<h2>Fit</h2>" + html_table(rows, ("parameter", "value", "95 % interval")))
         parts += [f"<p>{escape(text)}</p>" for text in (*fitted.unidentifiable, *fitted.doubts)]
     for verdict in verdicts:
@@ -81,13 +80,14 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
 
 def _compared(comparison: Comparison) -> list[str]:
     name = type(comparison.law).__name__
+    own, refitted = share_text(comparison.explained), share_text(comparison.explained_refitted)
     parts = [
-        f"<h2>Against {escape(name)}</h2><p>It explains {comparison.share} of the recorded accelerations "
-        f"(from {comparison.basis}), and {comparison.explained_refitted:.2%} with gains as the recording has them.</p>"
+        f"<h2>Against {escape(name)}</h2><p>It explains {own} of the recorded accelerations "
+        f"(from {comparison.basis}), and {refitted} with gains as the recording has them.</p>"
     ]
     if comparison.findings:
         parts.append("<ul>" + "".join(f"<li>{escape(text)}</li>" for text in comparison.findings) + "</ul>")
-    rows = [(s.text, s.symbol, f"{s.found:.5g}", f"{s.stated:.5g}", f"{s.share:.1%}") for s in comparison.shares]
+    rows = [(s.text, s.symbol, f"{s.found:.4g}", f"{s.stated:.4g}", f"{s.share:.1%}") for s in comparison.shares]
     parts.append(html_table(rows, ("part", "gain", "here", "in the law", "share")))
     parts.append(_figure("Residual by agent and time", lambda figure: residuals(comparison, ax=figure.subplots())))
     return parts

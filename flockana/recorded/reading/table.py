@@ -12,6 +12,7 @@ from flockana.recorded.reading.names import MEANINGS, Columns, Layout, layout_of
 from flockana.recorded.reading.text import numbers, row_name
 from flockana.recorded.reading.words import AXES, Unit
 
+AGENTS = "agents from "  # begins what is said of a column of agents
 _LARGEST = 2e8  # numbers that a recording holds at most, gaps among them
 _ROUNDINGS = 16.0  # of the largest stamp, by which stamps of one instant may differ
 _EPOCHS = ((1e17, 1e-9, "nanoseconds"), (1e14, 1e-6, "microseconds"), (1e11, 1e-3, "milliseconds"))  # since 1970
@@ -109,7 +110,7 @@ def _described(layout: Layout, dt: float | None) -> list[str]:
     else:
         texts.append("t from the rows times dt" if dt is not None else "one instant")
     if layout.agent is not None:
-        texts.append(f"agents from {layout.agent!r}")
+        texts.append(f"{AGENTS}{layout.agent!r}")
     elif not layout.wide:
         texts.append("one agent")
     if layout.wide:

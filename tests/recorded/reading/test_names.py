@@ -158,3 +158,27 @@ def test_many_visitors_at_common_times_are_read(tmp_path):
     rows = [f"{4 * i + k},{i},{k}" for i in range(60) for k in range(4)]
     rec = fl.read_recording(table(tmp_path / "it.csv", "t,ped,x", *rows))
     assert (rec.n, len(rec.t), rec.gaps) == (60, 240, 60 * 236)
+
+
+def test_agents_on_other_clocks_are_refused_or_interpolated_with_an_error_that_holds(tmp_path):
+    """Positions sin(t + i) at 0.1 k + 0.03 i; one agent is hidden for a second, which stays a gap."""
+    steps = [(i, 0.1 * k + 0.03 * i) for i in range(3) for k in range(40) if i != 1 or not 10 <= k < 20]
+    path = table(tmp_path / "it.csv", "t,id,x", *(f"{t:.4f},{i},{np.sin(t + i):.9f}" for i, t in steps))
+    with pytest.raises(
+        FlockanaError, match=r"agents 0 and 1 are sampled at other times: of 39 and 29 samples .* 0 are"
+    ):
+        fl.read_recording(path, bound=1e-8)
+    assert fl.read_recording(path, bound=1e-8, interpolate=False).gaps == 3 * 110 - 110
+    rec = fl.read_recording(path, bound=1e-8, interpolate=1.0)
+    assert rec.t == pytest.approx(0.1 * np.arange(40))
+    assert rec.present.sum(axis=0).tolist() == [40, 28, 39]
+    off = np.abs(rec.q[:, :, 0] - np.sin(rec.t[:, None] + np.arange(3)))
+    assert (off <= rec.bound)[rec.present].all()
+    largest = 0.5 * 0.03 * 0.07  # of a chord: a half times the distances to both samples
+    assert rec.bound[rec.present].max() == pytest.approx(largest, rel=0.15)
+    assert "interpolated to 40 instants of one agent: errors are 0.001" in repr(rec)
+    slower = [(0, 0.1 * k) for k in range(40)] + [(1, 0.3 * k) for k in range(12)]  # some instants of the other
+    path = table(tmp_path / "it.csv", "t,id,x", *(f"{t:.4f},{i},{t}" for i, t in slower))
+    assert fl.read_recording(path).gaps == 40 - 12
+    with pytest.raises(FlockanaError, match="interpolate = True: expected"):
+        fl.read_recording(path, interpolate=True)

@@ -1,0 +1,50 @@
+"""Agents that were sampled at other times than others: refused, left with gaps, or interpolated to common instants."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.recorded.recording import Recording
+from flockana.recorded.velocities import pieces_of
+
+_SHARED = 0.25  # of the fewer samples of two agents: fewer at one instant are those of two clocks
+_ENOUGH = 5  # samples of each while both are seen, from which on this is judged
+_MOST = 200  # agents that are judged, those with most samples
+
+
+def ensure_one_clock(rec: Recording) -> None:
+    """Raise if two agents are seen at the same time, but hardly ever at one instant."""
+    most = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
+    seen: FloatArray = rec.present[:, most].astype(np.float64)
+    there = np.maximum.accumulate(seen, axis=0) * np.maximum.accumulate(seen[::-1], axis=0)[::-1]
+    while_both, shared = seen.T @ there, seen.T @ seen
+    fewer = np.minimum(while_both, while_both.T)
+    apart = (fewer >= _ENOUGH) & (shared < _SHARED * fewer)
+    if apart.any():
+        i, j = (int(x) for x in np.argwhere(apart)[0])
+        one, other = (rec.ids[most[k]] for k in (i, j))
+        counts = f"{while_both[i, j]:.0f} and {while_both[j, i]:.0f}"
+        raise ArgumentError(
+            f"agents {one} and {other} are sampled at other times: of {counts} samples while both are seen, "
+            f"{shared[i, j]:.0f} are at one instant; expected common instants: give jitter=, within which stamps are "
+            "one; or interpolate=, the largest acceleration an agent can have; or interpolate=False, which leaves "
+            "gaps, for fit and with_velocities"
+        )
+
+
+def interpolated(rec: Recording, most_acceleration: float) -> Recording:
+    """Return a recording at the instants of the agent with most samples, to which all others are interpolated.
+
+    The error of each position covers every motion whose accelerations are at most as large as stated; gaps stay.
+    """
+    full, between = rec.filled(most_acceleration=most_acceleration), (pieces_of(rec) >= 0)[:, :, None]
+    arrays = {name: np.where(between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
+    full = replace(full, **arrays).select(samples=rec.present[:, int(np.argmax(rec.present.sum(axis=0)))])
+    error = np.broadcast_to(full.sd if full.bound is None else full.bound, full.present.shape)
+    note = (
+        f"interpolated to {len(full.t)} instants of one agent: errors are {error[full.present].max():.4g} at most, "
+        f"with accelerations up to {most_acceleration:.4g}"
+    )
+    return replace(full, read_as=(*full.read_as, note))
