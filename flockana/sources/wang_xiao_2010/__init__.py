@@ -1,0 +1,5 @@
+"""Wang and Xiao (2010): velocities that agree in a finite time over an undirected net."""
+
+from flockana.base.lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
