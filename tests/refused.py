@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import pytest
@@ -9,16 +10,19 @@ import pytest
 from flockana.base.errors import ArgumentError
 
 
-def refused(*cases: tuple[Any, str], make: Callable[..., Any] | None = None, exact: bool = False) -> Any:
-    """Return a test that each call, or `make` with each dictionary of options, is refused with its message.
+def refused(*cases: Any, make: Callable[..., Any] | None = None, exact: bool = False, kind: Any = ArgumentError) -> Any:
+    """Return a test that each call is refused with its message: `(call, message)` or `(call, message, its kind)`.
 
+    With `make`, which is called with each dictionary of options or with each value, cases hold these instead of calls.
     `exact` takes a message as it stands, else it is a regular expression.
     """
 
-    @pytest.mark.parametrize(("case", "message"), cases, ids=[message for _, message in cases])
-    def test(case: Any, message: str) -> None:
-        with pytest.raises(ArgumentError, match=re.escape(message) if exact else message) as caught:
-            case() if make is None else make(**case)
+    @pytest.mark.parametrize("row", cases, ids=[row[1] for row in cases])
+    def test(row: Any) -> None:
+        case, message, error = (*row, kind)[:3]
+        call = case if make is None else partial(make, **case) if isinstance(case, dict) else partial(make, case)
+        with pytest.raises(error, match=re.escape(message) if exact else message) as caught:
+            call()
         assert "\n" not in str(caught.value)
 
     return test

@@ -10,6 +10,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, FlockanaError, UnknownNameError
+from tests.refused import refused
 
 LAW = fl.Algorithm1(gains={"c1_alpha": 4.0, "c2_alpha": 2.0})
 PAIR = [[0.0, 0.0], [8.0, 0.0]]
@@ -158,14 +159,10 @@ def test_gif_lasts_as_long_as_asked(tmp_path):
     assert total == 1000
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"scenario": "hexagom"}, "hexagon"),
-        ({"scenario": "hexagon", "port": 10**30}, "port = 1.*: expected a whole number from 0"),
-        ({"scenario": "hexagon", "browser": "no"}, "browser"),
-    ],
+test_what_cannot_be_explored_is_refused_before_a_page_is_served = refused(
+    ({"scenario": "hexagom"}, "hexagon"),
+    ({"scenario": "hexagon", "port": 10**30}, "port = 1.*: expected a whole number from 0"),
+    ({"scenario": "hexagon", "browser": "no"}, "browser"),
+    make=fl.explore,
+    kind=FlockanaError,
 )
-def test_what_cannot_be_explored_is_refused_before_a_page_is_served(given, message):
-    with pytest.raises(FlockanaError, match=message):
-        fl.explore(**given)

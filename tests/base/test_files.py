@@ -4,6 +4,7 @@ import pytest
 
 from flockana.base.errors import FileError
 from flockana.base.files import atomic_write, ensure_target, read_text_file
+from tests.refused import refused
 
 
 def write(target, text, *, error=None, **options):
@@ -46,8 +47,7 @@ def test_where_nothing_can_be_written_is_told_with_the_remedy(name, tmp_path):
     assert os.listdir(tmp_path) == ["folder"]
 
 
-def test_a_device_is_neither_read_nor_written():
-    with pytest.raises(FileError, match="it is no regular file; choose another file"):
-        ensure_target(os.devnull)
-    with pytest.raises(FileError, match="it is no regular file; expected a file"):
-        read_text_file(os.devnull)
+test_a_device_is_neither_read_nor_written = refused(
+    (lambda: ensure_target(os.devnull), "it is no regular file; choose another file", FileError),
+    (lambda: read_text_file(os.devnull), "it is no regular file; expected a file", FileError),
+)

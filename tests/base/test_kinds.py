@@ -9,27 +9,19 @@ import flockana as fl
 from flockana import plots, stability
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from tests.refused import refused
 
 WALL = fl.Wall((0.0, 0.0), (1.0, 0.0))
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: plots.obstacles(None), r"items = None: expected a sequence"),
-        (lambda: plots.obstacles([WALL, "wall"]), r"items\[1\] = 'wall': expected an obstacle, such as Sphere"),
-        (lambda: plots.side_by_side([1]), r"outcomes\[0\] = 1: expected one of what scenarios.one_start.compare"),
-        (lambda: plots.velocity_diameters([None]), r"outcomes\[0\] = None: expected one of what"),
-        (lambda: plots.save("figure", "it.pdf"), r"drawing = 'figure': expected a figure or Axes of matplotlib"),
-        (
-            lambda: stability.norms_against_size([1], [3]),
-            r"expected Algorithm1 or Algorithm2, pairs",
-        ),
-    ],
+test_another_kind_of_object_is_named = refused(
+    (lambda: plots.obstacles(None), r"items = None: expected a sequence"),
+    (lambda: plots.obstacles([WALL, "wall"]), r"items\[1\] = 'wall': expected an obstacle, such as Sphere"),
+    (lambda: plots.side_by_side([1]), r"outcomes\[0\] = 1: expected one of what scenarios.one_start.compare"),
+    (lambda: plots.velocity_diameters([None]), r"outcomes\[0\] = None: expected one of what"),
+    (lambda: plots.save("figure", "it.pdf"), r"drawing = 'figure': expected a figure or Axes of matplotlib"),
+    (lambda: stability.norms_against_size([1], [3]), r"expected Algorithm1 or Algorithm2, pairs"),
 )
-def test_another_kind_of_object_is_named(call, message):
-    with pytest.raises(ArgumentError, match=message):
-        call()
 
 
 @check_kinds

@@ -3,6 +3,7 @@ import pytest
 
 from flockana.base.errors import FileError
 from flockana.base.seals import checksum, digest, with_digest, without_digest
+from tests.refused import refused
 
 DATA = {"a": [1.0, -0.0, 1e-300], "b": {"c": None, "d": "e"}, "f": float("nan")}
 
@@ -16,11 +17,14 @@ def test_every_change_is_seen(change):
         without_digest(with_digest(DATA) | change)
 
 
-def test_a_file_whose_digest_was_taken_out_or_that_holds_more_is_refused():
-    with pytest.raises(FileError, match="it has no digest, which every file is written with"):
-        without_digest(DATA)
-    with pytest.raises(FileError, match="it holds f: expected a, b and digest, nothing else"):
-        without_digest(with_digest(DATA), keys=["a", "b"])
+test_a_file_whose_digest_was_taken_out_or_that_holds_more_is_refused = refused(
+    (lambda: without_digest(DATA), "it has no digest, which every file is written with", FileError),
+    (
+        lambda: without_digest(with_digest(DATA), keys=["a", "b"]),
+        "it holds f: expected a, b and digest, nothing else",
+        FileError,
+    ),
+)
 
 
 def test_the_order_of_names_does_not_matter_and_that_of_items_does():

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Disturbed, certify, simulate, ultimate_bound
-from flockana.base.errors import ArgumentError
 from tests.adversarial import truth
+from tests.refused import refused
 
 PAIR = certify([[0.0], [7.0]], law=Algorithm1())
 
@@ -52,14 +52,8 @@ def test_runs_keep_within_the_bound(frequency):
     assert away[run.t > 20.0].max() == pytest.approx(amplitude, rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: ultimate_bound(PAIR, -0.1), "disturbance = -0.1"),
-        (lambda: ultimate_bound("basin", 0.1), "basin = 'basin': expected a basin"),
-        (lambda: ultimate_bound(replace(PAIR, rate=Fraction(9)), 0.1), "a basin as certify returned it"),
-    ],
+test_bad_input = refused(
+    (lambda: ultimate_bound(PAIR, -0.1), "disturbance = -0.1"),
+    (lambda: ultimate_bound("basin", 0.1), "basin = 'basin': expected a basin"),
+    (lambda: ultimate_bound(replace(PAIR, rate=Fraction(9)), 0.1), "a basin as certify returned it"),
 )
-def test_bad_input(call, message):
-    with pytest.raises(ArgumentError, match=message):
-        call()

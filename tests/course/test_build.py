@@ -14,6 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.course import build, grade, is_own, shows
 from flockana.course.pages import number_of
 from tests.course.answers import ANSWERS, connectivity
+from tests.refused import refused
 
 SOURCES = build.sources()
 
@@ -260,14 +261,9 @@ def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
     assert found.stdout.strip() == "True"
 
 
-@pytest.mark.parametrize(
-    ("check", "expected"),
-    [
-        ("x = 1", "expected one call grade"),
-        ("grade(x, right(), hint='')", "give a constant, or form="),
-        ("import math\ngrade(x, 2)", "expected one call grade"),
-    ],
+test_a_check_that_cannot_be_exported_is_refused = refused(
+    ("x = 1", "expected one call grade"),
+    ("grade(x, right(), hint='')", "give a constant, or form="),
+    ("import math\ngrade(x, 2)", "expected one call grade"),
+    make=build.asked,
 )
-def test_a_check_that_cannot_be_exported_is_refused(check, expected):
-    with pytest.raises(ArgumentError, match=expected):
-        build.asked(check)

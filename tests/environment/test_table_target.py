@@ -55,10 +55,7 @@ test_what_is_no_table_is_refused = refused(
     (lambda: fl.TableTarget([0.0, 1.0], [[1.0]]), "t has 2 times and q 1 positions"),
     (lambda: fl.TableTarget([1.0, 0.0], [[1.0], [2.0]]), "expected rising times"),
     (lambda: fl.TableTarget([0.0, 1.0], [[1.0], [np.nan]]), "expected finite numbers"),
-    (
-        lambda: fl.TableTarget([0.0, 1.0], [[1.0], [2.0]], [[1.0]]),
-        r"p has shape \(1, 1\): expected \(2, 1\)",
-    ),
+    (lambda: fl.TableTarget([0.0, 1.0], [[1.0], [2.0]], [[1.0]]), r"p has shape \(1, 1\): expected \(2, 1\)"),
 )
 
 

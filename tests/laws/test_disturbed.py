@@ -141,10 +141,7 @@ def test_units():
 test_bad_input = refused(
     (lambda: Disturbed(LAW, intensity=-1.0), "intensity = -1"),
     (lambda: Disturbed(LAW, force="wind"), "force = 'wind': expected finite components"),
-    (
-        lambda: Disturbed(LAW, force=lambda t: "wind").push(1.5),
-        r"force\(1.5\) = 'wind': expected finite components",
-    ),
+    (lambda: Disturbed(LAW, force=lambda t: "wind").push(1.5), r"force\(1.5\) = 'wind': expected finite components"),
     (lambda: simulate(Disturbed(LAW, force=lambda t: (t,)), Q, Q, (0, 1)), "force has 1 components, the agents 2"),
     (lambda: Disturbed(LAW, times=(0.0, 1.0)), "times has 2 numbers and table 0 rows: expected the same"),
     (lambda: Disturbed(LAW, times=(1.0, 0.0), table=((0.0, 0.0), (1.0, 1.0))), "expected rising times"),
@@ -155,10 +152,7 @@ test_bad_input = refused(
     (lambda: Disturbed(3), "law = 3: expected a continuous law"),
     (lambda: simulate(Disturbed(LAW, force=(1.0,)), Q, Q, (0.0, 1.0)), "force has 1 components, the agents 2"),
     (lambda: simulate(Disturbed(LAW, force=[[1.0, 0.0]]), Q, Q, (0.0, 1.0)), "force has 1 rows and there are 7"),
-    (
-        lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0)),
-        "dt = None: Disturbed is run in fixed steps",
-    ),
+    (lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0)), "dt = None: Disturbed is run in fixed steps"),
     (
         lambda: simulate(Disturbed(LAW, intensity=1.0), Q, Q, (0.0, 1.0), dt=0.1, method="RK4"),
         "RK4: Disturbed draws random numbers; expected a solver that takes noise",

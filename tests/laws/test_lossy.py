@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Gains, Lossy, Sampled, TaylorStep, simulate
-from flockana.base.errors import ArgumentError
+from tests.refused import refused
 
 LAW = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.5))
 PAIR, STILL = np.array([[0.0], [8.0]]), np.zeros((2, 1))
@@ -24,7 +24,6 @@ def test_messages_are_lost_by_their_probability_and_each_way_by_itself():
     assert (arrived[:, 0] != arrived[:, 1]).mean() == pytest.approx(2 * 0.7 * 0.3, abs=0.03)
 
 
-@pytest.mark.parametrize(("loss", "message"), [(-0.1, "loss = -0.1"), (1.1, "loss = 1.1: expected a probability")])
-def test_bad_input(loss, message):
-    with pytest.raises(ArgumentError, match=message):
-        Lossy(LAW, loss)
+test_bad_input = refused(
+    (-0.1, "loss = -0.1"), (1.1, "loss = 1.1: expected a probability"), make=lambda loss: Lossy(LAW, loss)
+)

@@ -35,8 +35,5 @@ test_copies_must_be_as_many_as_agents = refused(
         "the copies have 2 components",
     ),
     (lambda: PeerToPeer(3), "copies = 3: expected Copies"),
-    (
-        lambda: PeerToPeer(DIFFERENT, gains=Gains(c1_gamma=(1.0, 2.0))).acceleration(0.0, Q, P),
-        "c1_gamma has 2 gains",
-    ),
+    (lambda: PeerToPeer(DIFFERENT, gains=Gains(c1_gamma=(1.0, 2.0))).acceleration(0.0, Q, P), "c1_gamma has 2 gains"),
 )

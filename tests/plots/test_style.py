@@ -5,14 +5,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from flockana import plots
-from flockana.base.errors import ArgumentError
-from flockana.plots.style import (
-    colour_bar,
-    finish,
-    finish_over_time,
-    write_title,
-)
+from flockana.plots.style import colour_bar, finish, finish_over_time, write_title
 from tests.plots.artists import a_run
+from tests.refused import refused
 
 
 @pytest.fixture
@@ -101,7 +96,6 @@ def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_wher
         assert (1 <= len(data) <= 3, bare, options["ax"], "axes" in options) == (True, True, None, False), name
 
 
-@pytest.mark.parametrize(("grid", "message"), [((0,), "rows = 0: expected"), ((1, "x"), "columns = 'x': expected")])
-def test_a_grid_has_rows_and_columns(grid, message):
-    with pytest.raises(ArgumentError, match=message):
-        plots.subplots(*grid)
+test_a_grid_has_rows_and_columns = refused(
+    ((0,), "rows = 0: expected"), ((1, "x"), "columns = 'x': expected"), make=lambda grid: plots.subplots(*grid)
+)

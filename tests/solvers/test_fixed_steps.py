@@ -75,8 +75,5 @@ test_bad_input = refused(
     (lambda: fl.simulate(LAW, Q, P, (0.0, 1.0), method=fl.RK4(0.1), dt=0.1), "brings its step; expected no other"),
     (lambda: fl.simulate(LAW, Q, P, (0.0, 1.0), method="RK4"), "method RK4 needs a fixed step, such as dt=0.005"),
     (lambda: fl.simulate(LAW, Q, P, (0.0, 1.0), method=4), "expected a solver such as RK4"),
-    (
-        lambda: fl.simulate(fl.Delayed(LAW, 0.1), Q, P, (0.0, 1.0), method=fl.RK45()),
-        "Delayed is run in fixed steps",
-    ),
+    (lambda: fl.simulate(fl.Delayed(LAW, 0.1), Q, P, (0.0, 1.0), method=fl.RK45()), "Delayed is run in fixed steps"),
 )

@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, TaylorStep, find_equilibrium, linearise, simulate
-from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.stability.law_studies import sampling_margin
 from flockana.stability.sampling import scalar_period
+from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_spiral(10, 7.0)).q
@@ -115,21 +115,14 @@ def test_what_is_not_damped_has_no_margin_and_drift_is_set_apart():
     assert sampling_margin(free, [[0.0]]).first is None
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: sampling_margin(HeadingAveraging(), REST), "or a map that steps one"),
-        (lambda: sampling_margin("law", REST), "law = 'law': expected a law"),
-        (lambda: sampling_margin(LAW, 1.1 * REST), "the state is no equilibrium"),
-        (lambda: scalar_period(-1.0, 1.0), "k = -1"),
-        (lambda: sampling_margin(LAW, REST).times(0.0), "dt = 0"),
-    ],
+test_bad_input_is_refused = refused(
+    (lambda: sampling_margin(HeadingAveraging(), REST), "or a map that steps one"),
+    (lambda: sampling_margin("law", REST), "law = 'law': expected a law"),
+    (lambda: sampling_margin(LAW, 1.1 * REST), "the state is no equilibrium"),
+    (lambda: scalar_period(-1.0, 1.0), "k = -1"),
+    (lambda: sampling_margin(LAW, REST).times(0.0), "dt = 0"),
+    (
+        lambda: sampling_margin(LAW, REST, limit=0.001),
+        r"10 agents, 40 states in one component, would take about .* s and .* MB",
+    ),
 )
-def test_bad_input_is_refused(call, message):
-    with pytest.raises(ArgumentError, match=message):
-        call()
-
-
-def test_long_work_is_refused_with_an_estimate_before_it_begins():
-    with pytest.raises(ArgumentError, match=r"10 agents, 40 states in one component, would take about .* s and .* MB"):
-        sampling_margin(LAW, REST, limit=0.001)

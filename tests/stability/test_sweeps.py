@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium
-from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.delay import delay_margin, scalar_margin
 from flockana.stability.law_studies import delay_system, law_blocks
 from flockana.stability.sweeps import centre_locus, gain_sweep, margin_sweep
+from tests.refused import refused
 
 LINE = StaticTarget((0.0,))
 ORIGIN = StaticTarget((0.0, 0.0))
@@ -76,20 +76,14 @@ def test_margins_over_a_gain():
     assert prompt.margins[0] == np.inf  # alone, it hears nobody
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: gain_sweep(Algorithm1(), [[0.0]], "c1_gamma", [1.0]), "unknown gain 'c1_gamma'"),
-        (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), "nown: c1_gamma, c2_gamma"),
-        (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), "expected rising gains"),
-        (lambda: centre_locus(Gains(), "c1_gamma", []), "expected rising gains"),
-        (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), "given per agent"),
-        (lambda: centre_locus(3, "c1_gamma", [1.0]), "gains = 3: expected Gains"),
-        (lambda: gain_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
-        (lambda: margin_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
-        (lambda: margin_sweep(Algorithm1(), [[0.0]], "c3", [1.0]), "unknown gain 'c3'"),
-    ],
+test_refusals = refused(
+    (lambda: gain_sweep(Algorithm1(), [[0.0]], "c1_gamma", [1.0]), "unknown gain 'c1_gamma'"),
+    (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), "nown: c1_gamma, c2_gamma"),
+    (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), "expected rising gains"),
+    (lambda: centre_locus(Gains(), "c1_gamma", []), "expected rising gains"),
+    (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), "given per agent"),
+    (lambda: centre_locus(3, "c1_gamma", [1.0]), "gains = 3: expected Gains"),
+    (lambda: gain_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
+    (lambda: margin_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
+    (lambda: margin_sweep(Algorithm1(), [[0.0]], "c3", [1.0]), "unknown gain 'c3'"),
 )
-def test_refusals(call, message):
-    with pytest.raises(ArgumentError, match=message):
-        call()

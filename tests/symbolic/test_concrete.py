@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import UnknownNameError
 from flockana.symbolic import AlphaSymbols, ConcreteFlock, GainSymbols, NumericLaw, numeric_law
+from tests.refused import refused
 
 PAPER = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
 UNEVEN = AlphaSymbols(eps=0.1, h=0.4, a=7, b=9, d=1.9, r=2.8)
@@ -55,19 +56,20 @@ def test_the_rate_is_the_derivative_of_the_energy(law: str) -> None:
     assert (ahead - behind) / (2 * t) == pytest.approx(numeric.energy_rate(q, p), rel=1e-6)
 
 
-def test_bad_input_is_named() -> None:
-    with pytest.raises(UnknownNameError, match="unknown law 'algoritm1'; did you mean 'algorithm1'"):
-        ConcreteFlock("algoritm1", 2, 1)
-    with pytest.raises(ArgumentError, match="n = 0: expected a whole number >= 1"):
-        ConcreteFlock("algorithm1", 0, 1)
-    with pytest.raises(ArgumentError, match="m = 4: expected a dimension"):
-        ConcreteFlock("algorithm1", 2, 4)
-    with pytest.raises(ArgumentError, match=r"parameters \['c_1\^gamma', 'c_2\^gamma'\] are symbols"):
-        numeric_law("algorithm2", 2, 1, alpha=PAPER, gains=GainSymbols(1, 1))
-    with pytest.raises(ArgumentError, match="q_r has 1 components: expected 2"):
-        numeric_law("algorithm2", 2, 2, alpha=PAPER, gains=GAINS, q_r=[1.0])
-    with pytest.raises(ArgumentError, match=r"q has shape \(3, 1\): expected \(2, 1\)"):
-        reference("algorithm1", 2, 1, PAPER).energy(np.zeros((3, 1)), np.zeros((3, 1)))
+test_bad_input_is_named = refused(
+    (lambda: ConcreteFlock("algoritm1", 2, 1), "unknown law 'algoritm1'; did you mean 'algorithm1'", UnknownNameError),
+    (lambda: ConcreteFlock("algorithm1", 0, 1), "n = 0: expected a whole number >= 1"),
+    (lambda: ConcreteFlock("algorithm1", 2, 4), "m = 4: expected a dimension"),
+    (
+        lambda: numeric_law("algorithm2", 2, 1, alpha=PAPER, gains=GainSymbols(1, 1)),
+        r"parameters \['c_1\^gamma', 'c_2\^gamma'\] are symbols",
+    ),
+    (lambda: numeric_law("algorithm2", 2, 2, alpha=PAPER, gains=GAINS, q_r=[1.0]), "q_r has 1 components: expected 2"),
+    (
+        lambda: reference("algorithm1", 2, 1, PAPER).energy(np.zeros((3, 1)), np.zeros((3, 1))),
+        r"q has shape \(3, 1\): expected \(2, 1\)",
+    ),
+)
 
 
 def test_importing_it_loads_sympy_but_no_kernel() -> None:

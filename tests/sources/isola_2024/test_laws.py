@@ -111,10 +111,7 @@ def test_the_gamma_agent_has_already_moved():
 
 
 test_bad_arguments_are_named = refused(
-    (
-        lambda: MSNDiscretisation(PushedAlgorithm1(), DT),
-        r"expected Algorithm1\(...\) or Algorithm2\(...\) itself",
-    ),
+    (lambda: MSNDiscretisation(PushedAlgorithm1(), DT), r"expected Algorithm1\(...\) or Algorithm2\(...\) itself"),
     (lambda: MSNDiscretisation(Algorithm1(), 0.0), "dt = 0: expected a number > 0"),
     (lambda: MSNDiscretisation(Algorithm1(), DT, in_place=1), "in_place = 1: expected True or False"),
     (

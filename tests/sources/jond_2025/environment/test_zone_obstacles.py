@@ -210,10 +210,7 @@ def test_the_smallest_disc():
 test_polygons_that_are_none = refused(
     (lambda: SimplePolygon([(0, 0), (1, 1)]), r"vertices have shape \(2, 2\): expected \(V, 2\) with V >= 3"),
     (lambda: SimplePolygon([(0, 0, 0), (1, 0, 0), (0, 1, 0)]), "expected .V, 2."),
-    (
-        lambda: SimplePolygon([(0, 0), (2, 2), (2, 0), (0, 2)]),
-        r"does not meet itself.*Self-intersection.1 1.",
-    ),
+    (lambda: SimplePolygon([(0, 0), (2, 2), (2, 0), (0, 2)]), r"does not meet itself.*Self-intersection.1 1."),
     (lambda: SimplePolygon([(0, 0), (1, 0), (2, 0)]), "encloses an area"),
     (lambda: ARROW.clearance([[0.0, 0.0, 0.0]]), r"q has shape \(1, 3\): expected \(N, 2\), points of the plane"),
 )

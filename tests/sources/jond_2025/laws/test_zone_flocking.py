@@ -227,10 +227,7 @@ test_bad_parameters = refused(
     (lambda: ZoneWeights(cohesion=0.0), "cohesion sums to zero.*switch cohesion off by cohesion_gain=0"),
     (lambda: ZoneWeights(alignment=((1.0, 0.0), (1.0, 1.0))), r"alignment\[0\] sums to zero"),
     (lambda: ZoneWeights(separation=((1.0, 0.0),)), r"separation has shape \(1, 2\)"),
-    (
-        lambda: ZoneWeights(separation=((1.0, -1.0), (0.0, 0.0))),
-        r"separation\[0\]\[1\] = -1: expected a number >= 0",
-    ),
+    (lambda: ZoneWeights(separation=((1.0, -1.0), (0.0, 0.0))), r"separation\[0\]\[1\] = -1: expected a number >= 0"),
     (lambda: ZoneFlocking(RADII, order="random"), "order = 'random': expected one of synchronous, sequential"),
     (lambda: ZoneFlocking(1.5), "radii = 1.5: expected a ZoneRadii"),
     (lambda: ZoneFlocking(base=1.2), "base = 1.2: expected at most 1"),
