@@ -31,7 +31,18 @@ _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
 
 
 @dataclass(frozen=True)
-class FixedStep(Solver):
+class _Stepwise(Solver):
+    """Solver with a step; apart from what makes a map of it, so that types follow `FixedStep.__new__`."""
+
+    dt: float  # type: ignore[misc]  # of an instance here
+
+    units: ClassVar[Any] = {"dt": (0, 1)}
+
+    def __post_init__(self) -> None:
+        normalise(self, ensure_positive, "dt")
+
+
+class FixedStep(_Stepwise):
     """Explicit one-step method with a fixed step.
 
     A subclass gives coefficients: stage s is the rate at y + h Σ_j a_sj K_j and t + h Σ_j a_sj, the step ends at
@@ -54,13 +65,10 @@ class FixedStep(Solver):
         f of a method with one stage; None of others.
     """
 
-    dt: float  # type: ignore[misc]  # of an instance here
-
     a: ClassVar[Rows] = ((),)
     b: ClassVar[Sequence[float]] = (1.0,)
     position_factor: ClassVar[float | None] = None
     order_of_wrapped: ClassVar[int] = 0  # by which files name it where it steps a wrapped law
-    units: ClassVar[Any] = {"dt": (0, 1)}
 
     def __new__(cls, *given: Any, **named: Any) -> Any:
         """Return the solver; given a law too, the law in its steps."""
@@ -69,9 +77,6 @@ class FixedStep(Solver):
         if not isinstance(law, LawOfMotion):
             return super().__new__(cls)
         return FixedSteps(stepped, cls(*rest, **named) if rest or named else cls(0.01))
-
-    def __post_init__(self) -> None:
-        normalise(self, ensure_positive, "dt")
 
     @cached_property
     def tableau(self) -> Tableau:
