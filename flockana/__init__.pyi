@@ -79,6 +79,7 @@ from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm
 from .laws.terms.pairs import PairTerm as PairTerm
 from .laws.terms.term import Term as Term
+from .laws.velocity import VelocityLaw as VelocityLaw
 from .measures import metrics as metrics
 from .measures import reynolds as reynolds
 from .measures.metrics import cohesion_radius as cohesion_radius

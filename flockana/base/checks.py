@@ -122,8 +122,10 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
     return q, p
 
 
-def draw_start(q0: Any, p0: Any, seed: int) -> tuple[FloatArray, FloatArray]:
+def draw_start(q0: Any, p0: Any, seed: int, velocities: Any = None) -> tuple[FloatArray, FloatArray]:
     """Return positions and velocities of a start, given as arrays or as functions of a seed; at rest without p0.
+
+    `velocities` is a function of positions that completes a start without p0 otherwise.
 
     Examples
     --------
@@ -134,7 +136,9 @@ def draw_start(q0: Any, p0: Any, seed: int) -> tuple[FloatArray, FloatArray]:
     p = p0(seed) if callable(p0) else p0
     if p is None and isinstance(q, tuple) and len(q) == 2 and np.ndim(q[0]) == 2:
         q, p = q
-    return ensure_state(q, np.zeros(np.shape(q)) if p is None else p)
+    if p is None:
+        p = np.zeros(np.shape(q)) if velocities is None else velocities(q)
+    return ensure_state(q, p)
 
 
 def ensure_kind(name: str, value: Any, kind: type | tuple[type, ...] | str, example: str) -> None:

@@ -96,7 +96,7 @@ def rest_of(law: Any, q: Any) -> Any:
 def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool, plot: Path | None) -> int:
     """Show a delayed law by its rightmost roots, a map by its slowest modes; they have no picture."""
     from flockana.base.errors import ArgumentError
-    from flockana.stability import DelayLinearisation
+    from flockana.stability import DelayLinearisation, VelocityLinearisation
 
     if plot is not None:
         raise ArgumentError(
@@ -109,6 +109,9 @@ def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool
         facts["rightmost roots"] = [[s.real, s.imag] for s in linear.rightmost(count).tolist()]
         if delay:
             facts |= _finite_margin("delay margin", linear.delay_margin())
+    elif isinstance(linear, VelocityLinearisation):
+        facts |= {"zero modes": linear.zero_modes, "decay rate": linear.decay_rate}
+        facts["poles"] = [[s.real, s.imag] for s in linear.eigenvalues[: linear.zero_modes + count].tolist()]
     else:
         facts |= {"dt": linear.dt, "zero modes": [mode.name for mode in linear.zero_modes]}
         facts["spectral radius"] = linear.spectral_radius

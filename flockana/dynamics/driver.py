@@ -9,12 +9,13 @@ from collections.abc import Callable, Iterator
 
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.frame import Plan
-from flockana.dynamics.interpreted import Interpreter
+from flockana.dynamics.interpreted import Interpreter, VelocityInterpreter
 from flockana.dynamics.sample import Samples, Start, Tally
 from flockana.dynamics.stepper import Integrator, Stepper
 from flockana.dynamics.switches import SwitchingInterpreter
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
+from flockana.laws.velocity import VelocityLaw
 
 
 def drive(make_stepper: Callable[[], Stepper], tally: Tally) -> Iterator[Samples]:
@@ -34,8 +35,10 @@ def drive(make_stepper: Callable[[], Stepper], tally: Tally) -> Iterator[Samples
         stepper.continue_from(count)
 
 
-def integrator_of(law: Law, start: Start, plan: Plan) -> Integrator:
+def integrator_of(law: Law | VelocityLaw, start: Start, plan: Plan) -> Integrator:
     """Return what integrates a law: from switch to switch one with jumps, except in fixed steps; compiled if it can."""
+    if isinstance(law, VelocityLaw):
+        return VelocityInterpreter(law, start, plan)
     if isinstance(law, SwitchedLaw) and law.located and plan.solver.dt is None:
         return SwitchingInterpreter(law, start, plan)
     return engine_of(law, start, plan) or Interpreter(law, start, plan)

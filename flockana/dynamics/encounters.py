@@ -36,7 +36,7 @@ from flockana.kernels.laws import guard_of
 from flockana.kernels.march import Block
 from flockana.kernels.shares import TOO_MANY
 from flockana.kernels.verlet import COUNT, Pairs, lister, no_pairs, with_room
-from flockana.laws.law import Law
+from flockana.laws.law import LawOfMotion
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
 BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
@@ -64,7 +64,7 @@ class Encounters:
     among: npt.NDArray[np.int32] | None = None  # (L, 2): the pairs that poles concern; None: all
 
     @classmethod
-    def of(cls, law: Law, n: int) -> Encounters:
+    def of(cls, law: LawOfMotion, n: int) -> Encounters:
         """Return the encounters of a law for n agents."""
         surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
         radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
@@ -121,7 +121,7 @@ class Encounters:
 class StepChecks:
     """Checks that every step of a run must pass (`flockana.kernels.checks`)."""
 
-    def __init__(self, law: Law, frame: Frame, plan: Plan) -> None:
+    def __init__(self, law: LawOfMotion, frame: Frame, plan: Plan) -> None:
         self._encounters, self._view = Encounters.of(law, frame.shape[0]), frame.view
         fixed = plan.solver.dt is not None
         balance, poles = (0.0, np.inf), self._encounters.poles.size > 0

@@ -10,11 +10,14 @@ from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.sample import Start
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.laws.velocity import VelocityLaw
 
 
-def first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> Start:
+def first_call(law: Law | DiscreteLaw | VelocityLaw, t0: float, q0: FloatArray, p0: FloatArray) -> Start:
     """Return the start of a run; raise unless the law returns real numbers in the flock's shape, finite there."""
     name, at = law.title, f"at the start, t = {t0:g}"
+    if isinstance(law, VelocityLaw):  # its velocities are checked already
+        return Start(t0, q0, p0, law.acceleration(t0, q0))
     if isinstance(law, Law):
         u, power = law.checked_flow(t0, q0, p0)
         start = Start(t0, q0, p0, u, power, law.hamiltonian(t0, q0, p0))

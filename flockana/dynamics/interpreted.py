@@ -16,6 +16,7 @@ from flockana.dynamics.sample import Start, finite
 from flockana.dynamics.stepper import Integrator
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.law import Law
+from flockana.laws.velocity import VelocityLaw
 from flockana.solvers.solver import Limits
 
 
@@ -25,14 +26,15 @@ class Interpreter(Integrator):
     def __init__(self, law: Law, start: Start, plan: Plan) -> None:
         super().__init__(law, start, plan)
         self.order, self.pairs = np.arange(len(start.q), dtype=np.uint64), no_pairs(0, self.frame.shape[1])
-        self._rhs = self.frame.rate(self._counted)
+        self._rhs = self._rate()
         self.begin()
 
     def begin(self) -> None:
         """Open a solver at the first row, which knows nothing of earlier steps."""
         if self.stops.size:
             if self.plan.solver.dt:
-                self.block.f[0] = self._rhs(float(self.block.t[0]), self.block.y[0])
+                t, y = float(self.block.t[0]), self.block.y[0, : self._solved].copy()
+                self._fill(0, t, y, self._rhs(t, y))
             self._open(self.stops[0], None)
             self._write(0)
 
@@ -40,27 +42,44 @@ class Interpreter(Integrator):
         """As `Law.flow`."""
         return self.law.flow(t, q, p)
 
+    @property
+    def _solved(self) -> int:
+        """Number of components of a row that the solver steps."""
+        return int(self.block.y.shape[1])
+
+    def _rate(self) -> Callable[[float, FloatArray], FloatArray]:
+        """Return the right-hand side that the solver steps."""
+        return self.frame.rate(self._counted)
+
+    def _fill(self, row: int, t: float, y: FloatArray, f: FloatArray) -> None:
+        """Write time, vector and rate of the solver into a row."""
+        self.block.t[row], self.block.y[row], self.block.f[row] = t, y, f
+
     def _counted(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Count the flow's evaluations, and stop a solver once values are not finite."""
-        self.evaluations += 1
+        """Return the flow, counted."""
         u, rate = self.flow(t, q, p)
+        return self._count(t, u), rate
+
+    def _count(self, t: float, u: FloatArray) -> FloatArray:
+        """Count an evaluation and return it; stop a solver once values are not finite."""
+        self.evaluations += 1
         if self.plan.solver.name == "LSODA" and not finite(u):  # it would try to step over it for ever
-            raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
-        return u, rate
+            raise FloatingPointError(f"{self.law.title} gives no finite values at t = {t:g}")
+        return u
 
     def _open(self, until: float, first: float | None) -> None:
         """Return a new solver from the first row towards a time, with the given first step if possible."""
-        t, y = float(self.block.t[0]), self.block.y[0].copy()
+        t, y, f = float(self.block.t[0]), *(each[0, : self._solved].copy() for each in self.block[1:3])
         self._course: Callable[[float], FloatArray] | None = None
         sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
-        limits = Limits(until, control.rtol, np.repeat(control.floor, sizes), control.longest, first)
-        self._solver: Any = self.plan.solver.open(self._rhs, t, y, self.block.f[0].copy(), limits)
+        floors = np.repeat(control.floor, sizes)[: self._solved]
+        limits = Limits(until, control.rtol, floors, control.longest, first)
+        self._solver: Any = self.plan.solver.open(self._rhs, t, y, f, limits)
 
     def _write(self, row: int) -> bool:
         """Write the solver's state and rate; return whether they are finite."""
         t, y, f = float(self._solver.t), self._solver.y, getattr(self._solver, "f", None)
-        self.block.t[row], self.block.y[row] = t, y
-        self.block.f[row] = self._rhs(t, y) if f is None else f
+        self._fill(row, t, y, self._rhs(t, y) if f is None else f)
         return finite(self.block.y[row], self.block.f[row])
 
     def advance(self) -> int:
@@ -117,3 +136,37 @@ class Interpreter(Integrator):
             self._course = self._solver.dense_output()
         found: FloatArray = self._course(t)
         return found
+
+
+class VelocityInterpreter(Interpreter):
+    """Integrator of a law of first order: it steps positions, and writes rows of positions and velocities."""
+
+    law: VelocityLaw
+
+    @property
+    def _solved(self) -> int:
+        return self.frame.size
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """Return the rate of the velocities along the motion, and NaN."""
+        return self.law.acceleration(t, q), np.nan
+
+    def _rate(self) -> Callable[[float, FloatArray], FloatArray]:
+        def rhs(t: float, x: FloatArray) -> FloatArray:
+            return self._count(t, self._relative(self.law.velocity(t, self._state(t, x, x)[0])))
+
+        return rhs
+
+    def _relative(self, v: FloatArray) -> FloatArray:
+        return v.ravel() - self.frame.drift[: self.frame.size]
+
+    def _state(self, t: float, x: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return self.frame.state(t, np.concatenate([x, v]))
+
+    def _fill(self, row: int, t: float, y: FloatArray, f: FloatArray) -> None:
+        u = self.flow(t, *self._state(t, y, f))[0]
+        super()._fill(row, t, np.concatenate([y, f]), np.concatenate([f, u.ravel()]))
+
+    def course(self, t: float) -> FloatArray:  # noqa: D102
+        x = super().course(t)
+        return np.concatenate([x, self._relative(self.law.velocity(t, self._state(t, x, x)[0]))])

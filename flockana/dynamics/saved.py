@@ -24,7 +24,7 @@ from flockana.base.files import atomic_write, ensure_path
 from flockana.base.seals import checksum, is_sealed, seal_of, sealed
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.between import Between
-from flockana.laws.discrete import ensure_law
+from flockana.laws.velocity import ensure_any_law
 
 if TYPE_CHECKING:
     import xarray
@@ -151,7 +151,7 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
             q=np.array(data["q"]),
             p=np.array(data["p"]),
             u=np.array(data["u"]),
-            law=ensure_law(from_data(read_json(data.attrs["law"]))),
+            law=ensure_any_law(from_data(read_json(data.attrs["law"]))),
             extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
             status=str(data.attrs["status"]),
             message=str(data.attrs["message"]),

@@ -33,8 +33,9 @@ from flockana.dynamics.sample import Sample, Samples, Start, Tally
 from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.laws.velocity import VelocityLaw, ensure_any_law
 from flockana.laws.wrapped import needs_steps, wrappers_within
 from flockana.solvers.fixed_steps import FixedStep, FixedSteps
 from flockana.solvers.named import solver_of
@@ -42,7 +43,7 @@ from flockana.solvers.solver import Solver
 
 
 def simulate(
-    law: Law | DiscreteLaw,
+    law: Law | DiscreteLaw | VelocityLaw,
     q0: Any,
     p0: Any,
     t_span: TimeSpan,
@@ -56,18 +57,18 @@ def simulate(
     progress: bool = False,
     watch: Callable[[Sample], object] | None = None,
 ) -> Trajectory:
-    """Integrate q' = p, p' = u(t, q, p) from (q0, p0).
+    """Integrate q' = p, p' = u(t, q, p) from (q0, p0), or q' = velocity(t, q) from q0.
 
     Ctrl-C ends the run early and returns what was integrated, with status ``"interrupted"``.
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
+    law : Law, VelocityLaw or DiscreteLaw
         What moves the flock. A discrete law brings its own step; method, tolerances and dt do not apply to it. A
         `SwitchedLaw` is integrated from switch to switch, except in fixed steps; a sliding mode ends the run and is
         reported.
     q0, p0 : array_like, shape (n, m)
-        Initial positions and velocities.
+        Initial positions and velocities; those of a `VelocityLaw` are its own, and may be None.
     t_span : (float, float)
         Start and end.
     method : str or Solver
@@ -114,9 +115,12 @@ def simulate(
     >>> run.status, bool(abs(run.energy_residual).max() < 1e-6)
     ('complete', True)
     """
-    ensure_law(law)
+    ensure_any_law(law)
     if isinstance(law, Law) and needs_steps(law):
         law, method, dt = _in_steps(law, method, dt), "DOP853", None
+    if isinstance(law, VelocityLaw):
+        t_span = ensure_time_span(t_span)
+        q0, p0 = law.start(t_span[0], q0, p0)
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -133,6 +137,8 @@ def simulate(
         make_stepper: Callable[[], Stepper] = partial(MapStepper, law, start, t_span, keep)
     else:
         plan, how = _plan(solver_of(method, dt), law, start, t_span, keep, (rtol, atol, max_step))
+        if isinstance(law, VelocityLaw) and getattr(plan.solver, "position_factor", None):
+            raise ArgumentError(f"method = {plan.solver.name!r}: {law.title} is of first order; expected RK4 or Heun")
         name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan)
     started, tally = time.perf_counter(), Tally()
     kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
@@ -160,7 +166,7 @@ def _in_steps(law: Law, method: str | Solver, dt: Any) -> FixedSteps:
 
 def _plan(
     solver: Solver,
-    law: Law,
+    law: Law | VelocityLaw,
     start: Start,
     t_span: tuple[float, float],
     keep: FloatArray | None,

@@ -23,7 +23,7 @@ from flockana.dynamics import saved
 from flockana.dynamics.between import Between
 from flockana.dynamics.measured import MeasuredRun
 from flockana.dynamics.tolerance import ensure_atol, options_in_units
-from flockana.laws.discrete import ensure_law
+from flockana.laws.velocity import ensure_any_law
 
 if TYPE_CHECKING:
     import xarray
@@ -59,7 +59,7 @@ class Trajectory(MeasuredRun):
     t : ndarray, shape (T,)
         Sample times.
     q, p, u : ndarray, shape (T, n, m)
-        Positions, velocities, accelerations at the samples.
+        Positions, velocities, accelerations at the samples; of a law of first order d²q/dt² along its motion.
     law : object
         The law that was integrated.
     extra : mapping of str to ndarray
@@ -93,7 +93,7 @@ class Trajectory(MeasuredRun):
     between: Between | None = None
 
     def __post_init__(self) -> None:
-        ensure_law(self.law)
+        ensure_any_law(self.law)
         for name, kind in (("extra", Mapping), ("stats", Mapping), ("between", Between | None)):
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")

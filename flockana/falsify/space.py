@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.laws.velocity import VelocityLaw
 from flockana.recorded.parameters import law_parameter, with_parameter
 from flockana.scenarios import Scenario
 
@@ -72,6 +73,8 @@ class Space:
         state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
         for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
             law = with_parameter(law, name, _value(share, *ends))
+        if isinstance(law, VelocityLaw):
+            state["p0"] = law.start(self.scenario.t_span[0], state.get("q0", self.scenario.q0))[1]
         return replace(self.scenario, law=law, **state)
 
 
@@ -112,6 +115,8 @@ def search_space(
     chosen = (vary,) if isinstance(vary, str) else tuple(vary) if isinstance(vary, Iterable) else (repr(vary),)
     if not set(chosen) <= set(STATE) or len(set(chosen)) < len(chosen):
         raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
+    if isinstance(scenario.law, VelocityLaw):  # velocities are those of the places
+        chosen = tuple(name for name in chosen if name != "p")
     ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}
     if not chosen and not ranges:
         raise ArgumentError("nothing is varied: expected vary=('q', 'p') or parameters={'gains.c1_alpha': (1, 50)}")

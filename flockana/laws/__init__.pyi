@@ -22,3 +22,4 @@ from .terms.navigation import Navigation as Navigation
 from .terms.obstacles import ObstacleTerm as ObstacleTerm
 from .terms.pairs import PairTerm as PairTerm
 from .terms.term import Term as Term
+from .velocity import VelocityLaw as VelocityLaw

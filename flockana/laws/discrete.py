@@ -154,12 +154,17 @@ def ensure_law(law: Any) -> Law | DiscreteLaw:
     Raises
     ------
     ArgumentError
-        If it is no `Law` and no `DiscreteLaw`; a class instead of an instance is named as such. If it, or what it is
-        made of, defines a method anew that the integrators would ignore.
+        If it is no `Law` and no `DiscreteLaw`, or of first order; a class instead of an instance is named as such. If
+        it, or what it is made of, defines a method anew that the integrators would ignore.
     """
     if isinstance(law, Law | DiscreteLaw):
         ensure_consistent(law)
         return law
+    if isinstance(law, LawOfMotion):
+        raise ArgumentError(
+            f"law = {format_value(law)}: a law of first order; expected one of second order or a map, such as "
+            "Algorithm2(target=StaticTarget((0, 0)))"
+        )
     hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
     raise ArgumentError(
         f"law = {format_value(law)}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}"

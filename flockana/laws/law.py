@@ -118,7 +118,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         """Return the narrowest features of all parts: functions of the distance, obstacles, γ-agents."""
         kind = type(self)
         says = getattr(kind, "functions", None) is not LawOfMotion.functions  # a law that names them by itself
-        if says and overrides_consistently(kind, "functions", ("flow", "step")):
+        if says and overrides_consistently(kind, "functions", ("flow", "step", "velocity")):
             return tuple(map(function_feature, self.functions))
         return tuple(feature for part in self._parts() for feature in part.features())
 

@@ -130,7 +130,9 @@ class Wrapper(WrappingLaw):
     stepped: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        ensure_kind("law", self.law, Law, "a continuous law such as Algorithm1(), or one that wraps a law")
+        ensure_kind(
+            "law", self.law, Law, "a continuous law of second order such as Algorithm1(), or one that wraps a law"
+        )
         if "seed" in vars(self):  # times the channels it is part of a key, and files hold 64 bits
             normalise(self, lambda _, seed: ensure_seed(seed, 62), "seed")
 

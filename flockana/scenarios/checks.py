@@ -15,7 +15,7 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError
-from flockana.laws import ensure_law
+from flockana.laws.velocity import ensure_any_law
 from flockana.scenarios.start import LazyArray
 from flockana.theorems import Status, theorems
 
@@ -27,7 +27,7 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
     """Raise unless a scenario's fields have the right kinds; no start is drawn."""
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
-    ensure_law(parts["law"])
+    ensure_any_law(parts["law"])
     ensure_time_span(parts["t_span"])
     ensure_seed(parts["seed"])
     shapes = {

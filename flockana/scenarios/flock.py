@@ -8,7 +8,7 @@ from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_t
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws import ensure_law
+from flockana.laws.velocity import ensure_any_law, start_velocities
 from flockana.laws.with_start import WithStart
 from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
@@ -29,8 +29,8 @@ class Flock(NotEvidence, WithStart):
     Parameters
     ----------
     q0, p0 : array_like, shape (n, m), or callable
-        Positions and velocities, or a function of a seed that returns them; at rest by default. A `q0` that returns
-        two arrays gives both.
+        Positions and velocities, or a function of a seed that returns them; by default at rest, or of a `VelocityLaw`
+        its velocities. A `q0` that returns two arrays gives both.
     options : mapping
         Further arguments of `simulate`, such as ``{"rtol": 1e-6}``.
 
@@ -53,7 +53,7 @@ class Flock(NotEvidence, WithStart):
     name: str = "own flock"
 
     def __post_init__(self) -> None:
-        ensure_law(self.law)
+        ensure_any_law(self.law)
         object.__setattr__(self, "t_span", ensure_time_span(self.t_span))
         if not (self.drawn or self.p0 is None):
             ensure_state(self.q0, self.p0)
@@ -70,7 +70,8 @@ class Flock(NotEvidence, WithStart):
 
     def start(self, seed: int = 0) -> tuple[Any, Any]:
         """Return positions and velocities, each of shape (n, m)."""
-        return draw_start(self.q0, self.p0, ensure_seed(seed))
+        law, t0 = self.law, self.t_span[0]
+        return draw_start(self.q0, self.p0, ensure_seed(seed), lambda q: start_velocities(law, t0, q, None))
 
     def law_and_start(self, seed: int) -> tuple[Any, Any, Any, tuple[float, float]]:  # noqa: D102
         return self.law, *self.start(seed), self.t_span

@@ -134,7 +134,7 @@ class FixedSteps(DiscreteLaw):
     private = ("step", "past", "held")
 
     def __post_init__(self) -> None:
-        ensure_kind("law", self.law, Law, "a continuous law such as DeadZoneFlocking()")
+        ensure_kind("law", self.law, Law, "a continuous law of second order such as DeadZoneFlocking()")
         ensure_kind("solver", self.solver, FixedStep, "a solver with a fixed step, such as RK4(0.01)")
         dt = self.dt
         for clock in (clock for one in self._wrappers for clock in one.clocks):

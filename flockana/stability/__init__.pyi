@@ -17,6 +17,7 @@ from .delay_linearisation import DelayLinearisation as DelayLinearisation
 from .delay_roots import rightmost_roots as rightmost_roots
 from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
+from .first_order import VelocityLinearisation as VelocityLinearisation
 from .gain_problems import gain_problem as gain_problem
 from .informing import InformedAgents as InformedAgents
 from .informing import agents_to_inform as agents_to_inform

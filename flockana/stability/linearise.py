@@ -21,11 +21,13 @@ from flockana.base.checks import (
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws import Delayed, DiscreteLaw, Law, Sampled, ensure_law
+from flockana.laws.velocity import VelocityLaw
 from flockana.laws.wrapped import needs_steps
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.stability.delay_linearisation import DelayLinearisation
+from flockana.stability.first_order import VelocityLinearisation, linearise_velocity
 from flockana.stability.lifted import lifted_map
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.loops import hold_of, instant_law, is_late, late_parts
@@ -60,6 +62,8 @@ def linearise(
     law: DiscreteLaw | Sampled, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]
 ) -> MapLinearisation: ...
 @overload
+def linearise(law: VelocityLaw, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> VelocityLinearisation: ...
+@overload
 def linearise(law: Delayed, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> DelayLinearisation: ...
 @overload
 def linearise(law: Any, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> Linearisation: ...
@@ -74,7 +78,7 @@ def linearise(
     allow_residual: bool = False,
     zero: float | None = None,
     side: Side | None = None,
-) -> Linearisation | MapLinearisation | DelayLinearisation:
+) -> Linearisation | MapLinearisation | DelayLinearisation | VelocityLinearisation:
     """Linearise a law or a map about an equilibrium, after checking that it is one.
 
     Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
@@ -86,11 +90,11 @@ def linearise(
 
     Of a wrapped law the loop is linearised: within its limits where it is `Saturated`, without its noise where it is
     `Measured` or `Disturbed`, in the mean where it is `Lossy`, with its past where it is `Delayed`, and over a period
-    where it is `Sampled`.
+    where it is `Sampled`. A `VelocityLaw` has n·m poles, at positions where its velocities are 0.
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
+    law : Law, VelocityLaw or DiscreteLaw
         Any continuous law, wrapped or not (a law of your own without `derivatives` is differentiated by differences);
         or a map: a scheme such as `TaylorStep`, the MSN project's, the minimal model's, `HeadingAveraging`,
         `ZoneFlocking`.
@@ -117,7 +121,8 @@ def linearise(
 
     Returns
     -------
-    Linearisation; of a map or a `Sampled` law MapLinearisation, of a `Delayed` one DelayLinearisation
+    Linearisation; of a map or a `Sampled` law MapLinearisation, of a `Delayed` one DelayLinearisation, of a
+    `VelocityLaw` VelocityLinearisation
 
     Raises
     ------
@@ -135,8 +140,16 @@ def linearise(
     True
     """
     how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero, "side": side}
-    if isinstance(equilibrium, (Linearisation, MapLinearisation, DelayLinearisation)) and equilibrium.law is law:
+    if (
+        isinstance(equilibrium, (Linearisation, MapLinearisation, DelayLinearisation, VelocityLinearisation))
+        and equilibrium.law is law
+    ):
         return equilibrium
+    if isinstance(law, VelocityLaw):
+        if any(each is not None for each in (links, zero, side)):
+            raise ArgumentError(f"links, zero, side: {law.title} is of first order; expected None")
+        q, t = _positions(law, equilibrium), ensure_finite_scalar("t", t)
+        return linearise_velocity(law, (t, q, p), force_tolerance, allow_residual)
     if isinstance(ensure_law(law), DiscreteLaw):
         return _linearised_map(law, equilibrium, p, how)
     if needs_steps(law):

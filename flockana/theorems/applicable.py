@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import ensure_finite_scalar, ensure_state
 from flockana.base.errors import FlockanaError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.discrete import ensure_law
+from flockana.laws.velocity import VelocityLaw, ensure_any_law
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import Claim, Hypothesis
@@ -64,11 +64,14 @@ def applicable(
     """
     import pandas as pd
 
-    law, used = ensure_law(law), ensure_tolerances(tolerances)
+    law, used = ensure_any_law(law), ensure_tolerances(tolerances)
+    t0 = ensure_finite_scalar("t0", t0)
+    if isinstance(law, VelocityLaw):
+        q0, p0 = law.start(t0, q0, p0)
     q0, p0 = ensure_state(q0, np.zeros(np.shape(q0)) if p0 is None else p0)
     law.check_dimension(q0.shape[1])
     law.check_agents(len(q0))
-    start = start_of(law, q0, p0, ensure_finite_scalar("t0", t0))
+    start = start_of(law, q0, p0, t0)
     items = [catalogue()[name] for name in theorems_about(law, q0, p0, t0)]
     rows = [row for item in sorted(items, key=lambda item: item.on_motion) for row in _rows(item, start, used)]
     return pd.DataFrame(rows, columns=list(COLUMNS))
@@ -84,7 +87,10 @@ def applicable_to(flock: Any) -> pd.DataFrame:
 
 def start_of(law: Any, q0: Any, p0: Any, t0: float) -> Observed:
     """Return a start as a run of one sample, which is exact."""
-    u = np.zeros(np.shape(q0)) if law.is_map or wrappers_of(law) else law.acceleration(t0, q0, p0)
+    if isinstance(law, VelocityLaw):
+        u = law.acceleration(t0, q0)
+    else:
+        u = np.zeros(np.shape(q0)) if law.is_map or wrappers_of(law) else law.acceleration(t0, q0, p0)
     extra = {name: np.asarray(value)[None] for name, value in law.start(q0, p0).items()} if law.is_map else {}
     series = extra or {"work": np.zeros(1)}
     alone = Observed.alone(Trajectory(np.array([t0]), q0[None], p0[None], np.asarray(u)[None], law, series))

@@ -8,6 +8,7 @@ import numpy as np
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.switched import SwitchedLaw
+from flockana.laws.velocity import VelocityLaw
 from flockana.theorems.map_steps import ensure_steps_of_map
 
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not
@@ -22,6 +23,9 @@ def _ensure_fits(run: Trajectory) -> bool:
     if run.law.is_map:
         ensure_steps_of_map(run)
         return True
+    if isinstance(run.law, VelocityLaw):
+        _ensure_velocities(run, run.law)
+        return True
     difference = np.abs(run.u - run._flows[0]).max(axis=(1, 2))
     if isinstance(run.law, SwitchedLaw):
         difference[_at_switches(run.law, run)] = 0.0
@@ -34,6 +38,17 @@ def _ensure_fits(run: Trajectory) -> bool:
             "state: expected a run as simulate returned it; was it edited, or is it of another law?"
         )
     return True
+
+
+def _ensure_velocities(run: Trajectory, law: VelocityLaw) -> None:
+    """Raise unless the velocities of a run are those of its law of first order."""
+    difference = np.abs([law.velocity(t, q) - p for t, q, p in zip(run.t, run.q, run.p, strict=True)]).max(axis=(1, 2))
+    k = int(difference.argmax())
+    if difference[k] > SAME_INPUT * max(float(np.abs(run.p).max()), run.scales.speed):
+        raise ArgumentError(
+            f"p at t = {run.t[k]:g} is off by {difference[k]:.3g} from the velocity of {law.title} there: expected a "
+            "run as simulate returned it; was it edited, or is it of another law?"
+        )
 
 
 def _rounded_input(run: Trajectory, k: int) -> float:

@@ -3,13 +3,12 @@
 from importlib import import_module
 from typing import Any, TypedDict, Unpack, overload
 
-import numpy as np
-
-from flockana.base.checks import TimeSpan
+from flockana.base.checks import TimeSpan, ensure_time_span
 from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.velocity import start_velocities
 from flockana.theorems.catalogue import theorem
 from flockana.theorems.evidence import Evidence, NoCase, NotEvidence, State
 from flockana.theorems.on_runs import RunEvidence
@@ -158,8 +157,8 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
             raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
         if callable(q0) or callable(p0):
             raise ArgumentError("the start is a function of a seed: expected Flock(law, q0, p0, t_span).verify(seed)")
-        p = np.zeros(np.shape(q0)) if p0 is None else p0
-        return ensure_uninterrupted(simulate(law, q0, p, T_SPAN if t_span is None else t_span))
+        span = T_SPAN if t_span is None else ensure_time_span(t_span)
+        return ensure_uninterrupted(simulate(law, q0, start_velocities(law, span[0], q0, p0), span))
     if not isinstance(trajectory, Trajectory):
         if isinstance(trajectory, NotEvidence):
             raise ArgumentError(trajectory.advice)
