@@ -123,6 +123,7 @@ from .solvers.solver import AdaptivePair as AdaptivePair
 from .solvers.taylor_step import TaylorStep as TaylorStep
 from .sources.carrillo_2017 import SingularAlignment as SingularAlignment
 from .sources.cucker_smale_2007 import CuckerSmale as CuckerSmale
+from .sources.gazi_passino_2003 import GaziPassino as GaziPassino
 from .sources.jond_2025 import Alien as Alien
 from .sources.jond_2025 import Box as Box
 from .sources.jond_2025 import DiscreteMinimalFlocking as DiscreteMinimalFlocking
@@ -138,6 +139,7 @@ from .sources.li_dead_zone import DeadZoneInteraction as DeadZoneInteraction
 from .sources.li_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
 from .sources.moreau_2005 import NetAveraging as NetAveraging
 from .sources.motsch_tadmor_2011 import MotschTadmor as MotschTadmor
+from .sources.pavone_frazzoli_2007 import CyclicPursuit as CyclicPursuit
 from .sources.tanner_2007 import FixedNetFlocking as FixedNetFlocking
 from .sources.tanner_2007 import LogPotential as LogPotential
 from .sources.tanner_2007 import ProximityFlocking as ProximityFlocking

@@ -6,9 +6,9 @@ _PROOFS: dict[Rigour, str] = {
     "symbolic": "certified-basins constant-acceleration deviation-energy disturbed-basins energy-identities "
     "nonplanar-fcc singular-pair smoothness stand-off turned-axes",
     "smt": "any-potential any-potential-limits bearing-distance bearing-distance-printed cohesion collisions "
-    "convergence cucker-smale dead-zone finite-time growing-windows headings informed-agents links-kept "
-    "matched-velocities net-consensus net-measures own-sums rooted-averaging second-order-modes singular-alignment "
-    "tanner theorem5-counts theorem5-crossings theorem6",
+    "convergence cucker-smale cyclic-pursuit dead-zone finite-time gazi-passino growing-windows headings "
+    "informed-agents links-kept matched-velocities net-consensus net-measures own-sums rooted-averaging second- "
+    "order-modes singular-alignment tanner theorem5-counts theorem5-crossings theorem6",
     "interval": "barrier compressed-patches delayed-consensus distinct-pairs double-agent n-max speed-bound "
     "strained-thirteen tracking-gain",
 }

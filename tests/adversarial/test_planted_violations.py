@@ -14,7 +14,9 @@ import pytest
 from flockana import (
     Algorithm3,
     CuckerSmale,
+    CyclicPursuit,
     FiniteTimeAlignment,
+    GaziPassino,
     MinimalFlocking,
     MotschTadmor,
     RationalWeight,
@@ -54,6 +56,8 @@ RUNS = {
     "alignment of two": lambda: (CuckerSmale(), [[0.0], [1.0]], [[0.0], [0.1]]),
     "own sums": lambda: (MotschTadmor(RationalWeight(decay=0.4)), NEAR, SLOW),
     "singular": lambda: (SingularAlignment(SingularWeight(decay=0.5)), [[0.0], [1.0]], [[0.0], [-2.0]]),
+    "swarm": lambda: (GaziPassino(), NEAR, None),
+    "pursuit": lambda: (CyclicPursuit(1.0, 30.0), NEAR, None),
     "links": lambda: (LinkKeeping(((0, 1),), r=2.0), NEAR, SLOW),
     "tree": lambda: (MinimalFlocking(edges=((0, 1),), normalised=True), NEAR, SLOW),
 }
@@ -115,6 +119,8 @@ PLANTED = [
     ("collision-energy", "below", "algorithm 1", crossed), ("cucker-smale", "bounded", "alignment", away),
     ("cucker-smale-pair", "invariant", "alignment of two", hurried),
     ("dead-zone-1-corrected", "balance", "dead zone", lifted), ("dead-zone-1-printed", "energy", "dead zone", away),
+    ("cyclic-pursuit", "centroid", "pursuit", away), ("cyclic-pursuit", "motion", "pursuit", away),
+    ("gazi-passino", "centroid", "swarm", away), ("gazi-passino", "rate", "swarm", away),
     ("energy", "balance", "algorithm 1", lifted), ("energy", "balance", "algorithm 2", lifted),
     ("energy", "balance", "algorithm 3", lifted), ("ha-liu", "bounded", "alignment", away),
     ("ha-liu", "rate", "alignment", hurried), ("ha-liu-sharp", "bounded", "alignment", away),

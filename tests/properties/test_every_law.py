@@ -45,6 +45,8 @@ LAWS = {
     "MotschTadmor": (fl.MotschTadmor(fl.RationalWeight(decay=0.5, length=5.0), gain=2.0), FREE),
     "SingularAlignment": (fl.SingularAlignment(fl.SingularWeight(2.0, 0.5, 5.0)), FREE),
     "FiniteTimeAlignment": (fl.FiniteTimeAlignment(((0, 1), (1, 2))), {"translation", "boost"}),
+    "GaziPassino": (fl.GaziPassino(1.0, 5.0, 20.0), FREE),
+    "CyclicPursuit": (fl.CyclicPursuit(2.0, 20.0), FREE - {"permutation", "reflection"}),
     "FixedNetFlocking": (FixedNetFlocking(((0, 1), (1, 2)), fl.LogPotential(1.0, 5.0)), FREE - {"permutation"}),
     "ProximityFlocking": (ProximityFlocking(fl.LogPotential(1.0, 5.0), r=8.0), FREE),
     "LinkKeeping": (LinkKeeping(((0, 1), (1, 2)), r=60.0), FREE - {"permutation"}),

@@ -1,0 +1,2 @@
+from .laws import GaussianRepulsion as GaussianRepulsion
+from .laws import GaziPassino as GaziPassino

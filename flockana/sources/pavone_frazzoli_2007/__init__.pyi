@@ -1,0 +1,1 @@
+from .laws import CyclicPursuit as CyclicPursuit

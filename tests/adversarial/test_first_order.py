@@ -1,0 +1,32 @@
+"""Laws of first order: swarms on both sides of b = a, and pursuit beside its critical angle, from any start."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana import CyclicPursuit, GaziPassino
+from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from tests.adversarial.strategies import powers, seeds
+
+THEOREMS = ("gazi-passino", "cyclic-pursuit")
+
+
+@effort(0.4)
+@given(powers(-12.0, 0.0), st.booleans(), st.integers(1, 7), powers(-3.0, 3.0), powers(-3.0, 3.0), seeds)
+def test_swarms_on_both_sides_of_equal_gains(off, above, n, unit, pace, seed):
+    q = unit * np.random.default_rng(seed).normal(size=(n, 2))
+    law = GaziPassino(pace, pace * (1.0 + off if above else 1.0 / (1.0 + off)), 0.3 * unit**2)
+    always = dict.fromkeys(("bounded", "rest", "sharp"), VERIFIED) | dict.fromkeys(("centroid", "rate"), TRUE)
+    side = {"collapse": VACUOUS if above else VERIFIED, "apart": VERIFIED if above and n > 1 else VACUOUS}
+    hold("gazi-passino", Case(law, q, law.velocity(0.0, q), 1.0 / pace), always | side)
+
+
+@effort(0.4)
+@given(powers(-12.0, -0.5), st.sampled_from(["meet", "circle", "spread"]), st.sampled_from([2, 3, 4, 5, 6, 9]), seeds)
+def test_pursuit_beside_its_critical_angle(off, side, n, seed):
+    rng = np.random.default_rng(seed)
+    share = {"meet": 1.0 - off, "circle": 1.0, "spread": 1.0 + off}[side]
+    law = CyclicPursuit(rng.uniform(0.1, 9.0), rng.choice([-1.0, 1.0]) * 180.0 / n * share)
+    q = rng.normal(size=(n, 2))
+    known = {name: VERIFIED if name == side else VACUOUS for name in ("meet", "circle", "spread")}
+    hold("cyclic-pursuit", Case(law, q, law.velocity(0.0, q), 1.0), known | {"centroid": TRUE, "motion": TRUE})
