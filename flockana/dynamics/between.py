@@ -89,7 +89,8 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
         return Course(t, q, p, u, None)
     pairs = (t, between.t), (q, between.q), (p, between.p), (u, between.u)
     order = np.argsort(np.concatenate(pairs[0]))
-    return Course(*(np.concatenate(pair)[order] for pair in pairs), between.slack)
+    t, q, p, u = (np.concatenate(pair)[order] for pair in pairs)
+    return Course(t, q, p, u, between.slack)
 
 
 class Recorder:
@@ -134,9 +135,10 @@ class Recorder:
             return None
         steps = steps if inside.all() else steps.at(inside)
         if not self._thinned:
-            return Between(*steps[:4])
+            return Between(steps.t, steps.q, steps.p, steps.u)
         exact, knots = np.zeros(steps.q.shape[1]), np.sort(np.concatenate([times, steps.t]))
-        return Between(*steps[:4], np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
+        slack = np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()])
+        return Between(steps.t, steps.q, steps.p, steps.u, slack)
 
     def _limit_memory(self) -> None:
         """Drop every other step if there are too many, and free their memory."""
@@ -157,8 +159,8 @@ class Recorder:
                     continue
                 kept.append(one)
             before = one
-        arrays = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
-        self._steps, self._thinned = [Samples(*arrays, {}, wanted=False)], True
+        t, q, p, u = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
+        self._steps, self._thinned = [Samples(t, q, p, u, {}, wanted=False)], True
         self._held = 3 * self._steps[0].q.size
 
 

@@ -15,7 +15,7 @@ from flockana.dynamics.frame import Plan
 from flockana.dynamics.sample import Start, finite
 from flockana.dynamics.stepper import Integrator
 from flockana.kernels.verlet import no_pairs
-from flockana.laws.law import Law
+from flockana.laws.law import LawOfMotion
 from flockana.laws.velocity import VelocityLaw
 from flockana.solvers.solver import Limits
 
@@ -23,7 +23,7 @@ from flockana.solvers.solver import Limits
 class Interpreter(Integrator):
     """Integrator that steps a law in Python."""
 
-    def __init__(self, law: Law, start: Start, plan: Plan) -> None:
+    def __init__(self, law: LawOfMotion, start: Start, plan: Plan) -> None:
         super().__init__(law, start, plan)
         self.order, self.pairs = np.arange(len(start.q), dtype=np.uint64), no_pairs(0, self.frame.shape[1])
         self._rhs = self._rate()

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 
@@ -26,7 +25,7 @@ class Sample(NamedTuple):
 class Samples(NamedTuple):
     """Instants of a run, along a first axis: samples, or if not `wanted` the integrator's steps between samples."""
 
-    t: npt.NDArray[np.floating]
+    t: FloatArray
     q: FloatArray
     p: FloatArray
     u: FloatArray
@@ -36,9 +35,9 @@ class Samples(NamedTuple):
     @classmethod
     def joined(cls, blocks: Sequence[Samples]) -> Samples:
         """Return instants of several blocks in one, which are wanted if those of the first are."""
-        arrays = (np.concatenate(series) for series in zip(*(block[:4] for block in blocks), strict=True))
+        t, q, p, u = (np.concatenate(series) for series in zip(*(block[:4] for block in blocks), strict=True))
         extra = {name: np.concatenate([block.extra[name] for block in blocks]) for name in blocks[0].extra}
-        return cls(*arrays, extra, blocks[0].wanted)
+        return cls(t, q, p, u, extra, blocks[0].wanted)
 
     def at(self, rows: Any) -> Samples:
         """Return some of them: views where `rows` is a slice."""

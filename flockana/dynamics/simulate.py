@@ -246,8 +246,8 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
 
 def _copy(single: Samples) -> Sample:
     """Return a copy of a single sample for the user's `watch`, which may change it without harm to the run."""
-    (t, *state), extra = single[:4], {name: np.array(values[0]) for name, values in single.extra.items()}
-    return Sample(float(t[0]), *(values[0].copy() for values in state), extra)
+    q, p, u = (values[0].copy() for values in single[1:4])
+    return Sample(float(single.t[0]), q, p, u, {name: np.array(values[0]) for name, values in single.extra.items()})
 
 
 def _collect(

@@ -13,7 +13,7 @@ from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.sample import Samples, Start
 from flockana.kernels.advance import record
 from flockana.kernels.march import Block
-from flockana.laws.law import Law
+from flockana.laws.law import LawOfMotion
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
 _ENDLESS = 1e9  # and so do steps of which so many more would be needed: hours of the fastest flocks
@@ -54,7 +54,9 @@ class Integrator(Stepper):
 
     order: npt.NDArray[np.uint64]  # every agent's own number, in the order of the vectors
 
-    def __init__(self, law: Law, start: Start, plan: Plan, rows: int = 1) -> None:
+    law: Any
+
+    def __init__(self, law: LawOfMotion, start: Start, plan: Plan, rows: int = 1) -> None:
         self.law, self.plan, self.notes = law, plan, {"redone": 0}
         self.frame = Frame.of(start.t, start.q, start.p, energetic=start.energetic)
         self.checks, y = StepChecks(law, self.frame, plan), self.frame.start(start.q, start.p)

@@ -1,6 +1,7 @@
 """Agents that were sampled at other times than others: refused, left with gaps, or interpolated to common instants."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def interpolated(rec: Recording, most_acceleration: float) -> Recording:
     The error of each position covers every motion whose accelerations are at most as large as stated; gaps stay.
     """
     full, between = rec.filled(most_acceleration=most_acceleration), (pieces_of(rec) >= 0)[:, :, None]
-    arrays = {name: np.where(between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
+    arrays: Any = {name: np.where(between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
     full = replace(full, **arrays).select(samples=rec.present[:, int(np.argmax(rec.present.sum(axis=0)))])
     error = np.broadcast_to(full.sd if full.bound is None else full.bound, full.present.shape)
     note = (
