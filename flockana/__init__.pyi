@@ -139,6 +139,7 @@ from .sources.li_dead_zone import DeadZoneInteraction as DeadZoneInteraction
 from .sources.li_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
 from .sources.moreau_2005 import NetAveraging as NetAveraging
 from .sources.motsch_tadmor_2011 import MotschTadmor as MotschTadmor
+from .sources.olfati_saber_murray_2004 import AverageConsensus as AverageConsensus
 from .sources.pavone_frazzoli_2007 import CyclicPursuit as CyclicPursuit
 from .sources.tanner_2007 import FixedNetFlocking as FixedNetFlocking
 from .sources.tanner_2007 import LogPotential as LogPotential

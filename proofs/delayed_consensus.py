@@ -8,7 +8,7 @@ from fractions import Fraction
 import sympy as sp
 import z3
 
-from flockana.sources.olfati_saber_murray_2004.theorems import root_enclosure
+from flockana.sources.olfati_saber_murray_2004.theorems.delayed_consensus import root_enclosure
 from proofs.proof import Proof, Step
 from proofs.smt import implication, impossible
 

@@ -4,11 +4,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import CyclicPursuit, GaziPassino
+from flockana import AverageConsensus, CyclicPursuit, GaziPassino
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds
 
-THEOREMS = ("gazi-passino", "cyclic-pursuit")
+THEOREMS = ("gazi-passino", "cyclic-pursuit", "average-consensus")
 
 
 @effort(0.4)
@@ -30,3 +30,20 @@ def test_pursuit_beside_its_critical_angle(off, side, n, seed):
     q = rng.normal(size=(n, 2))
     known = {name: VERIFIED if name == side else VACUOUS for name in ("meet", "circle", "spread")}
     hold("cyclic-pursuit", Case(law, q, law.velocity(0.0, q), 1.0), known | {"centroid": TRUE, "motion": TRUE})
+
+
+@effort(0.4)
+@given(st.integers(2, 6), st.integers(0, 3), powers(-12.0, 0.0), st.booleans(), seeds)
+def test_sums_of_rings_average_and_a_heavier_link_spoils_it(n, more, off, balanced, seed):
+    rng = np.random.default_rng(seed)
+    weights = np.zeros((n, n))
+    for k in range(1 + more):  # whole weights: sums of rows and columns are equal to the bit
+        order = rng.permutation(n)
+        weights[order, np.roll(order, 1)] += 1.0 + k
+    if not balanced:
+        weights[tuple(order[[0, -1]])] += off
+    law, q = AverageConsensus(weights), rng.normal(size=(n, 1))
+    even = {"average": VERIFIED, "some-start": VACUOUS, "decay": TRUE}
+    uneven = {"average": VACUOUS, "some-start": VERIFIED, "decay": VACUOUS}
+    always = {"agreement": VERIFIED, "steps": VERIFIED}
+    hold("average-consensus", Case(law, q, None, 1.0), always | (even if balanced else uneven))

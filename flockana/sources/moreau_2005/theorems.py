@@ -1,10 +1,9 @@
 """Moreau; Ren and Beard: agents that average agree if the nets of every bounded window of time have a root together."""
 
-from typing import Any
-
 import numpy as np
 
 from flockana.sources.moreau_2005.laws import NetAveraging
+from flockana.theorems.rooted import describe_groups, unheard_groups
 from flockana.theorems.toolkit import (
     EPS,
     Checked,
@@ -35,34 +34,21 @@ _HALF = (  # agent 1 hears 0, is heard by 0, hears 2, is heard by 2
 )
 
 
-def unheard_groups(weights: Any) -> list[list[int]]:
-    """Return the groups of agents that hear nobody outside; a net has a root exactly if there is one."""
-    import networkx
-
-    hears = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)
-    return sorted(sorted(group) for group in networkx.attracting_components(hears))
-
-
-def _words(groups: list[list[int]]) -> str:
-    listed = " and ".join(", ".join(map(str, group[:4])) + (" ..." if len(group) > 4 else "") for group in groups[:2])
-    return f"root {groups[0][0]}" if len(groups) == 1 else f"{len(groups)} groups hear nobody outside: {listed}"
-
-
 def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
     """Return the hypotheses that every window of some length has a root, and that all nets together have none."""
     nets, grows = np.array(law.nets), np.array(law.growth) > 0
     together = unheard_groups(nets.sum(axis=0))
-    rootless = condition("the nets have no root together", len(together) > 1, detail=_words(together))
+    rootless = condition("the nets have no root together", len(together) > 1, detail=describe_groups(together))
     name, remedy = "the nets of every window of T steps have a root together, for some T", ""
     if not grows.any():
-        text, holds = f"T = {sum(law.lengths)}: {_words(together)}", len(together) == 1
+        text, holds = f"T = {sum(law.lengths)}: {describe_groups(together)}", len(together) == 1
         remedy = "let all but one of these groups hear another"
     else:  # a net acts for longer and longer, so that long windows show it alone
         alone = [(k, unheard_groups(nets[k])) for k in np.flatnonzero(grows).tolist()]
         lacking = [(k, groups) for k, groups in alone if len(groups) > 1]
         holds, text = not lacking, f"T = {sum(law.lengths) + 1}: each net that acts ever longer has a root"
         if lacking:
-            text = f"net {lacking[0][0]} acts ever longer, in which {_words(lacking[0][1])}"
+            text = f"net {lacking[0][0]} acts ever longer, in which {describe_groups(lacking[0][1])}"
             remedy = "keep the lengths bounded"
     return condition(name, holds, detail=text, remedy=remedy), rootless
 

@@ -1,5 +1,6 @@
 """Linear laws of a net: agents draw towards the positions and velocities that they hear, over any digraph."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -8,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
 from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
 from flockana.laws.law import Law
 
 _WANTED = "a square array of weights a_ij >= 0, with which agent i hears agent j"
@@ -37,9 +39,9 @@ class NetConsensus(Law):
     Parameters
     ----------
     weights : array_like or sparse array, shape (n, n)
-        a_ij >= 0, with which agent i hears agent j (1/time² where α is 1); row i is what i hears.
+        a_ij >= 0, with which agent i hears agent j, pure numbers; row i is what i hears.
     position, velocity : float
-        α >= 0 and β >= 0 (β in units of time, relative to α).
+        α >= 0 (1/time²) and β >= 0 (1/time).
 
     Raises
     ------
@@ -60,6 +62,7 @@ class NetConsensus(Law):
     velocity: float = 1.0
 
     references: ClassVar[tuple[str, ...]] = ("ren-atkins-2007",)
+    units: ClassVar[Mapping[str, Powers]] = {"position": (0, -2), "velocity": (0, -1)}
     functions = ()  # its weights do not depend on distances
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from flockana.certified.second_order import (
 )
 from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
 from flockana.theorems.claims import judged, run_theorem
+from flockana.theorems.rooted import has_root
 from flockana.theorems.toolkit import (
     Checked,
     Claim,
@@ -35,19 +36,6 @@ def gains_positive(law: NetConsensus) -> Hypothesis:
     least = min(law.position, law.velocity)
     text = f"α = {law.position:g}, β = {law.velocity:g}"
     return condition("α > 0 and β > 0", least > 0.0, least, text, remedy="raise both above 0")
-
-
-def rooted(law: NetConsensus) -> Hypothesis:
-    """Return the hypothesis that one agent is heard by all, directly or through others."""
-    import networkx
-
-    hears = networkx.from_numpy_array(np.array(law.weights), create_using=networkx.DiGraph)
-    groups = [sorted(group) for group in networkx.attracting_components(hears)]
-    listed = " and ".join(", ".join(map(str, group[:4])) + (" ..." if len(group) > 4 else "") for group in groups[:2])
-    text = f"root {groups[0][0]}" if len(groups) == 1 else f"{len(groups)} groups hear nobody outside: {listed}"
-    name = "one agent is heard by all, directly or through others"
-    remedy = "let all but one of these groups hear another"
-    return condition(name, len(groups) == 1, detail=text, remedy=remedy)
 
 
 def threshold_exceeded(law: NetConsensus) -> Hypothesis:
@@ -102,7 +90,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     over the eigenvalues μ ≠ 0 of L. On a directed ring of n agents the bound is ½ cot²(π/n).
     """
     law: NetConsensus = seen.law
-    gains, root = gains_positive(law), rooted(law)
+    gains, root = gains_positive(law), has_root(law.weights)
     above = threshold_exceeded(law) if gains.status == root.status == "met" else None
     needs = [gains, root, *([] if above is None else [above])]
     return needs, [_consensus(seen, needs), _never(gains, root, above)]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from flockana.sources.olfati_saber_murray_2004 import theorems as delayed_consensus
-from flockana.sources.olfati_saber_murray_2004.theorems import root_enclosure
+from flockana.sources.olfati_saber_murray_2004.theorems import delayed_consensus
+from flockana.sources.olfati_saber_murray_2004.theorems.delayed_consensus import root_enclosure
 from flockana.stability import consensus_system, delay_margin
 from flockana.theorems import Tolerances, theorem
 

@@ -1,0 +1,33 @@
+"""Scenarios of consensus of the first order: balanced nets, nets that are not, a leader, and two groups."""
+
+import numpy as np
+
+from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
+
+_NAMES = tuple(f"average-consensus:{part}" for part in ("agreement", "average", "some-start", "decay", "steps"))
+_AVERAGE = verified("average-consensus", *_NAMES) | vacuous(_NAMES[2])
+_OTHER = verified("average-consensus", *_NAMES) | vacuous(_NAMES[1], _NAMES[3])
+
+
+def _net(name: str, title: str, weights: np.ndarray, expected: dict[str, Status]) -> Builder:
+    """Return a net whose agents start at random on a plane."""
+    law = AverageConsensus(weights)
+
+    def draw(seed: int) -> Start:
+        return law.start(0.0, np.random.default_rng(seed).uniform(-1.0, 1.0, (len(weights), 2)))
+
+    source = "Ours, on Olfati-Saber and Murray: q' = -Lq from random places."
+    references = ("olfati-saber-murray-2004", "flockana")
+    return entry(name, title, source, law, draw, 20.0, expected, references=references)
+
+
+_RING = np.roll(np.eye(4), 1, axis=1)
+_UNEVEN = np.array([[0.0, 2.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+_PARTED = np.kron(np.eye(2), np.ones((2, 2)) - np.eye(2))
+SCENARIOS = {
+    "average-ring": _net("average-ring", "A directed ring of four averages", _RING, _AVERAGE),
+    "average-weighted": _net("average-weighted", "Three agents that weigh their start", _UNEVEN, _OTHER),
+    "average-leader": _net("average-leader", "A chain of four that comes to its leader", np.eye(4, k=-1), _OTHER),
+    "average-parted": _net("average-parted", "Two pairs keep two averages", _PARTED, vacuous("average-consensus")),
+}

@@ -1,0 +1,125 @@
+"""Olfati-Saber and Murray: consensus on a digraph, when it is the average, how fast, and in which steps."""
+
+import numpy as np
+
+from flockana.certified.balls import exact
+from flockana.certified.second_order import laplacian_of, moving_eigenvalues
+from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
+from flockana.theorems.rooted import has_root, unheard_groups
+from flockana.theorems.toolkit import (
+    EPS,
+    Checked,
+    Claim,
+    Enclosure,
+    Hypothesis,
+    Needs,
+    Observed,
+    Tolerances,
+    condition,
+    judged,
+    law_is,
+    limit_claim,
+    run_theorem,
+    unmet,
+    vacuous,
+)
+
+_PROOF = "average-consensus"
+
+
+def _balance(law: AverageConsensus) -> Hypothesis:
+    """Return the hypothesis that each agent is heard as much as it hears, exactly."""
+    columns = [sum((exact(row[j]) for row in law.weights), exact(0.0)) for j in range(len(law.weights))]
+    rows = [sum(map(exact, row), exact(0.0)) for row in law.weights]
+    off = [abs(float((a - b).p) / float((a - b).q)) for a, b in zip(rows, columns, strict=True)]
+    worst = int(np.argmax(off))
+    text = f"agent {worst} hears {float(sum(law.weights[worst])):.6g} and is off by {off[worst]:.3g}"
+    return condition("the net is balanced: each agent is heard as much as it hears", max(off) == 0.0, -max(off), text)
+
+
+def _agreement(seen: Observed, root: Hypothesis) -> Claim:
+    spread = float(np.ptp(seen.run.q[-1], axis=0).max())
+    return limit_claim("agreement", [root], proof=_PROOF).described(
+        computed=spread, stated="q_i - q_j -> 0 from every start", detail=f"at the end places differ by {spread:.3g}"
+    )
+
+
+def _average(seen: Observed, needs: Needs) -> Claim:
+    off = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
+    return limit_claim("average", needs, proof=_PROOF).described(
+        computed=float(off),
+        stated="all tend to the average of the start",
+        detail=f"at the end agents are up to {off:.3g} from it",
+    )
+
+
+def _elsewhere(root: Hypothesis, balanced: Hypothesis) -> Claim:
+    """Return the claim that some start ends elsewhere, vacuous on a balanced net."""
+    opposite = {"met": "unmet", "unmet": "met"}[balanced.status]
+    need = Hypothesis(f"not: {balanced.name}", opposite, detail=balanced.detail)  # type: ignore[arg-type]
+    if need.status == "unmet":
+        return vacuous("some-start", need)
+    return judged("some-start", Enclosure.of(0.0), [root, need], about="all", proof=_PROOF).described(
+        stated="from some start agents do not tend to its average", detail=balanced.detail
+    )
+
+
+def _decay(seen: Observed, needs: Needs) -> Claim:
+    """Return the claim that the disagreement falls at λ₂ of (L + Lᵀ)/2 at least."""
+    half = seen.law.laplacian + seen.law.laplacian.T
+    rounding = 8.0 * len(half) * EPS * float(np.abs(half).sum(axis=1).max())
+    rate = 0.5 * (float(np.linalg.eigvalsh(half)[min(1, len(half) - 1)]) - rounding)
+    size = np.sqrt(np.sum((seen.run.q - seen.run.q.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
+    error = np.sqrt(seen.n) * seen.shape_error.max(axis=1) + 8.0 * EPS * np.abs(seen.run.q).max(axis=(1, 2))
+    bound = size[0] * np.exp(-rate * (seen.t - seen.t[0]))
+    return judged("decay", Enclosure.around(bound - size, error + error[0]), needs, proof=_PROOF).described(
+        computed=float(size[-1] / (size[0] or 1.0)),
+        stated=f"‖q - q̄‖ <= ‖q(0) - q̄‖ exp(-λ₂ t), λ₂ = {rate:.6g}",
+        detail=f"λ₂ of (L + Lᵀ)/2 = {rate:.6g}; ‖q - q̄‖ goes from {size[0]:.4g} to {size[-1]:.4g}",
+    )
+
+
+def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
+    """Return the claim about steps q_i + ε Σ_j a_ij (q_j - q_i): the largest ε, and that it is at least 1/Δ."""
+    moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
+    limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
+    least = min(limits, key=lambda one: float(one.mid())) if limits else None
+    room = Enclosure.of(0.0) if least is None else Enclosure.around(float(least.mid()) * degree - 1.0, 1e-9)
+    known = "no step is too long" if least is None else f"ε < min 2 Re μ/|μ|² = {least.str(8, radius=False)}"
+    return judged("steps", room, [root], about="all", proof=_PROOF).described(
+        computed=None if least is None else float(least.mid()),
+        stated="I - εL agrees for 0 < ε < 1/Δ, and exactly for 0 < ε < min 2 Re μ/|μ|² over μ ≠ 0",
+        detail=f"{known}; 1/Δ = {1.0 / degree:.6g}" if degree else known,
+    )
+
+
+@run_theorem(
+    _PROOF,
+    title="Consensus on a digraph is the average of the start exactly if the net is balanced",
+    source="Olfati-Saber and Murray 2004; Olfati-Saber, Fax and Murray 2007 (steps), in our words; exact limit ours",
+    law=law_is("consensus of the first order", AverageConsensus),
+    claims=("agreement", "average", "some-start", "decay", "steps"),
+    references=("olfati-saber-murray-2004", "olfati-saber-fax-murray-2007", "flockana"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let q' = -Lq with the Laplacian L of a fixed digraph. If one agent is heard by all, directly or through others,
+    all agree from every start; then they tend to its average exactly if each agent is heard as much as it hears. There
+    the disagreement falls at the rate λ₂ of (L + Lᵀ)/2 or faster, also while such nets are switched, at the least of
+    their rates. Steps I - εL agree exactly for 0 < ε < min 2 Re μ/|μ|² over the eigenvalues μ ≠ 0 of L: never less than
+    1/Δ, Δ the most that an agent hears.
+    """
+    law: AverageConsensus = seen.law
+    root, balanced = has_root(law.weights), _balance(law)
+    groups = unheard_groups(law.weights)
+    strong = condition(
+        "the net is strongly connected", len(groups[0]) == seen.n, detail=f"{len(groups[0])} of {seen.n}"
+    )
+    if unmet([root]):
+        return [root], []
+    return [root], [
+        _agreement(seen, root),
+        _average(seen, [root, balanced]),
+        _elsewhere(root, balanced),
+        _decay(seen, [balanced, strong]),
+        _steps(law, root),
+    ]

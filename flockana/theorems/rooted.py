@@ -1,0 +1,37 @@
+"""Roots of nets: agents that are heard by all, directly or through others."""
+
+from typing import Any
+
+import numpy as np
+
+from flockana.theorems.hypotheses import condition
+from flockana.theorems.theorem import Hypothesis
+
+_SHOWN = 4  # agents of a group
+
+
+def unheard_groups(weights: Any) -> list[list[int]]:
+    """Return the groups of agents that hear nobody outside, weights_ij > 0 where i hears j; a root is alone in one.
+
+    A net has a root exactly if there is one group, and is strongly connected exactly if that is all agents.
+    """
+    import networkx
+
+    hears = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)
+    return sorted(sorted(group) for group in networkx.attracting_components(hears))
+
+
+def describe_groups(groups: list[list[int]]) -> str:
+    """Return in words which agent is a root, or which groups hear nobody outside."""
+    if len(groups) == 1:
+        return f"root {groups[0][0]}"
+    listed = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])
+    return f"{len(groups)} groups hear nobody outside: {' and '.join(listed)}"
+
+
+def has_root(weights: Any) -> Hypothesis:
+    """Return the hypothesis that one agent is heard by all."""
+    groups = unheard_groups(weights)
+    name = "one agent is heard by all, directly or through others"
+    remedy = "let all but one of these groups hear another"
+    return condition(name, len(groups) == 1, detail=describe_groups(groups), remedy=remedy)
