@@ -75,7 +75,7 @@ import flockana as fl
 from flockana import lattice, plots, stability
 from flockana.course import figures, grade
 from flockana.lattice.rigidity import rigidity_matrix
-from flockana.stability.bases import complement
+from flockana.stability.zero_modes import complement
 
 figure, axes = plots.subplots(1, 3, size=(12, 3.9))
 _ = figures.equilibria(axes=axes)

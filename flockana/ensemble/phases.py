@@ -20,15 +20,13 @@ _FORMER = {"deviation_energy": "normalised_deviation_energy"}  # what saved ense
 def phases(
     dataset: "xarray.Dataset", *, contact: float = CONTACT, tolerances: Tolerances | None = None
 ) -> "xarray.DataArray":
-    """Return the phase in which each run of an ensemble ended, from its measures at the end.
+    """Return the phase in which each run of an ensemble ended, as a code into `PHASES`; -1 of a run that failed.
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
     links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched
     (slip, K̃ in the law's own scale, ≤ ``tolerances.mismatch``) and links near d (Ẽ ≤ ``tolerances.deviation``), ε₂ and
-    ε₁ of Definition 5 of
-    Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
-
-    Returns xarray.DataArray Codes into `PHASES`, of the dimensions of the runs; -1 where a run did not complete.
+    ε₁ of Definition 5 of Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end
+    time, not of a limit.
     """
     dataset = dataset.rename({old: new for old, new in _FORMER.items() if old in dataset and new not in dataset})
     missing = [name for name in _NEEDED if name not in dataset]

@@ -18,14 +18,7 @@ from flockana.base.checks import (
 from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_html, facts_text
-from flockana.equilibria.classify import (
-    MAX_SIZE,
-    EquilibriumKind,
-    classify_spectrum,
-    ensure_small,
-    falling,
-    spectrum,
-)
+from flockana.equilibria.classify import MAX_SIZE, EquilibriumKind, classify_spectrum, ensure_small, falling, spectrum
 from flockana.equilibria.descent import descend
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
 from flockana.laws import Navigation

@@ -24,8 +24,7 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import scaled_near_one
 from flockana.jit import thawed
-from flockana.kernels.crossings import crossing_signs, nearest_links
-from flockana.kernels.segments import UNSURE, meet
+from flockana.kernels.segments import UNSURE, crossing_signs, meet, nearest_links
 from flockana.measures.nets import LinkArray
 
 LISTED = 100_000  # crossings that are listed at most where all are asked for; beyond, a count says "at least"

@@ -1,16 +1,19 @@
 """Films of runs: frames at equal spacing in time, in a fixed view."""
 
+import itertools
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.animation import FFMpegWriter, FuncAnimation
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, FuncAnimation
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from PIL import Image
 from scipy.interpolate import CubicHermiteSpline
 
 from flockana.base.checks import FloatArray, TimeSpan, ensure_positive
@@ -20,7 +23,6 @@ from flockana.base.interrupts import defer_sigint
 from flockana.base.progress import progress_bar
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.plots.gif import GifWriter
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import limit, style
 from flockana.scenarios.flock import Flock, run_of
@@ -34,12 +36,10 @@ _SUFFIXES = ".gif", ".mp4"
 
 
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
-    """Return the run at equally spaced times, interpolated by cubics.
+    """Return the run at equally spaced times, interpolated by cubics, without its ``extra`` series.
 
     Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them, each once:
     fewer than asked for where it has fewer. So of a run of one sample, that sample.
-
-    Returns Trajectory Of a continuous law without its ``extra`` series.
     """
     t = trajectory.t
     times = np.linspace(t[0], t[-1], count)
@@ -193,3 +193,31 @@ def _fix_view(ax: Any, view: FloatArray) -> None:
     limit(ax, low, high)
     if low.size == 2:
         ax.set_aspect("equal", adjustable="box")
+
+
+def durations(frames: int, fps: float) -> list[int]:
+    """Return the time of each frame of a GIF in milliseconds, whole hundredths of a second whose sum is right."""
+    ends = [round(100.0 * k / fps) for k in range(frames + 1)]
+    return [10 * (end - start) for start, end in itertools.pairwise(ends)]
+
+
+class GifWriter(AbstractMovieWriter):
+    """Writer that collects frames and saves them as a GIF that repeats."""
+
+    def setup(self, fig: Any, outfile: Any, dpi: float | None = None) -> None:
+        """Begin a film."""
+        super().setup(fig, outfile, dpi=dpi)
+        self._images: list[Image.Image] = []
+
+    def grab_frame(self, **savefig_kwargs: Any) -> None:
+        """Take the figure as the next frame."""
+        with BytesIO() as data:
+            self.fig.savefig(data, **{**savefig_kwargs, "format": "rgba", "dpi": self.dpi})
+            frame = Image.frombytes("RGBA", self.frame_size, data.getvalue())
+        self._images.append(frame.convert("RGB"))
+
+    def finish(self) -> None:
+        """Write the file."""
+        first, *others = self._images
+        times = durations(len(self._images), self.fps)
+        first.save(self.outfile, "GIF", save_all=True, append_images=others, duration=times, loop=0)

@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
+from scipy.interpolate import CubicHermiteSpline
 
+from flockana.base.checks import FloatArray
 from flockana.base.errors import UnknownNameError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.profiles import pair_distance_profile
-from flockana.plots.dense import velocities_between
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import (
     curves,
@@ -27,6 +28,7 @@ from flockana.plots.style import (
 from flockana.scenarios.findings import PANEL, component_counts, has_metric
 
 _FEW = 12  # components that a linear scale shows as well
+_INSTANTS = 1500  # about as many as a figure has pixels across
 
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
@@ -207,3 +209,14 @@ def centre_of_mass(trajectory: Trajectory, ax: Any) -> None:
     for path, name, dash, width in paths:
         named = zip(path.T, "xyz", colours, strict=False)
         curves(ax, t, ((x, f"{axis} of the {name}", colour, dash) for x, axis, colour in named), width=width)
+
+
+def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Return times and velocities within the solver's steps, by cubics through velocities and accelerations."""
+    ensure_run(trajectory)
+    t, _, p, u, _ = trajectory.path
+    parts = -(-_INSTANTS // max(1, len(t) - 1))
+    if trajectory.law.is_map or len(t) < 2 or parts == 1:
+        return t, p
+    times = (t[:-1, None] + np.diff(t)[:, None] * np.arange(parts) / parts).ravel()
+    return np.append(times, t[-1]), np.concatenate([CubicHermiteSpline(t, p, u)(times), p[-1:]])

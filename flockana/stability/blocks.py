@@ -12,7 +12,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.terminal import rigid_motions
 from flockana.laws import Navigation, PairTerm
-from flockana.stability.bases import NEUTRAL, complement
+from flockana.stability.zero_modes import NEUTRAL, complement
 
 MOST = 2000  # rows of a dense matrix of the second order; its state space has twice as many
 

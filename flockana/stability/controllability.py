@@ -18,8 +18,8 @@ from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_p
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
-from flockana.stability.bases import complement
 from flockana.stability.rounding import eigenvalues
+from flockana.stability.zero_modes import complement
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -26,12 +26,11 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
-from flockana.stability.bases import NEUTRAL
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.rounding import eigenvalues
-from flockana.stability.zero_modes import ZERO, kernel_of
+from flockana.stability.zero_modes import NEUTRAL, ZERO, kernel_of
 
 DELAYED = ("all", "pairs", "neighbours")
 CARRIES = ("both", "positions", "velocities")

@@ -25,8 +25,8 @@ from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.laws import Algorithm2
-from flockana.stability.bases import complement
 from flockana.stability.blocks import reduced
+from flockana.stability.zero_modes import complement
 
 FORMS = ("full", "simplified")
 ROTATIONS = ("apart", "neutral", "counted")

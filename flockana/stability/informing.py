@@ -14,7 +14,6 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
-from flockana.stability.bases import complement
 from flockana.stability.controllability import (
     PoleGroup,
     ScaledModel,
@@ -24,6 +23,7 @@ from flockana.stability.controllability import (
     pole_groups,
     scaled_model,
 )
+from flockana.stability.zero_modes import complement
 
 if TYPE_CHECKING:
     from flockana.stability.linear_flock import LinearFlock

@@ -28,13 +28,7 @@ _LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which 
 
 
 def delay_system(
-    law: Any,
-    q: Any,
-    *,
-    delayed: str = "all",
-    carries: str = "both",
-    links: Any = None,
-    strict: bool = True,
+    law: Any, q: Any, *, delayed: str = "all", carries: str = "both", links: Any = None, strict: bool = True
 ) -> DelaySystem:
     """Return the linearised flock whose interactions are delayed.
 

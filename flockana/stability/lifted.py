@@ -15,13 +15,12 @@ import numpy as np
 from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.laws import Sampled
-from flockana.stability.bases import complement
 from flockana.stability.delay import kernels
 from flockana.stability.delay_roots import LatePart
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.maps import MapLinearisation
 from flockana.stability.signals import labels
-from flockana.stability.zero_modes import ZERO
+from flockana.stability.zero_modes import ZERO, complement
 
 MOST = 3000  # states of a lifted map
 _WHOLE = 1e-9  # of a period: a delay so short is none

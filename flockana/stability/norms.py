@@ -11,9 +11,9 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_nonnegative, en
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
-from flockana.stability.bases import complement
 from flockana.stability.blocks import Blocks
 from flockana.stability.rounding import eigenvalues
+from flockana.stability.zero_modes import complement
 
 if TYPE_CHECKING:
     from control import StateSpace

@@ -16,6 +16,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.stability.components import StrongComponents
 from flockana.stability.mode_names import translations
 
+NEUTRAL = 1e-9  # of the stiffness of its agents: a rigid motion that meets no more than that is neutral
 ZERO = 1e-8  # of the agents' own row sums: what K does to a motion that costs nothing
 _ROUNDING, _LEFT = 64.0, 16.0  # of eps √N, and of the force left at an equilibrium: what may appear as stiffness
 _BELOW, _ABOVE = 10.0, 1000.0  # times the threshold: where a motion may or may not be a zero mode
@@ -146,3 +147,10 @@ class Quotient(NamedTuple):
     basis: FloatArray
     force: FloatArray
     pace: float
+
+
+def complement(basis: Any) -> Any:
+    """Return an orthonormal basis of the orthogonal complement."""
+    if basis.shape[1] == 0:
+        return np.eye(basis.shape[0])
+    return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]

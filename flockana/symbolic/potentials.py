@@ -224,8 +224,5 @@ def derive_psi_beta() -> Derivation:
     potential = _beta(BETA_NAMED)
     closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
     first = r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:"
-    steps = (
-        Step(first, closed, sp.Lt(Z, potential.edge)),
-        *_piece_steps("psi_beta", potential, False, sp.true),
-    )
+    steps = (Step(first, closed, sp.Lt(Z, potential.edge)), *_piece_steps("psi_beta", potential, False, sp.true))
     return Derivation(r"The potential $\psi_\beta$", steps, psi_beta(Z, beta=BETA_NAMED), potential.residuals(False))

@@ -3,7 +3,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import UnknownNameError
-from flockana.plots.gif import durations
+from flockana.plots.animation import durations
 from flockana.plots.paper import COLUMNS
 
 

@@ -3,12 +3,7 @@
 import numpy as np
 
 from flockana.certified.balls import exact
-from flockana.certified.second_order import (
-    laplacian_of,
-    moving_eigenvalues,
-    stable_off_agreement,
-    velocity_threshold,
-)
+from flockana.certified.second_order import laplacian_of, moving_eigenvalues, stable_off_agreement, velocity_threshold
 from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.rooted import has_root

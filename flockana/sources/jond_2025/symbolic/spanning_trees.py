@@ -59,9 +59,6 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
     With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1). The printed
     (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used
     together (34) comes out right.
-
-    Returns dict of str to Derivation "28", "28-corrected", "identity", "identity-corrected", "34"; the residuals are
-    the rows of left minus right.
     """
     D, D_in = incidence_matrix(edges), receiver_matrix(edges)
     p, factors = _column("p", D.rows), sp.diag(*sp.symbols(f"k_0:{len(edges)}"))

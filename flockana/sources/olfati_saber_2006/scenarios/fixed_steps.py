@@ -6,15 +6,7 @@ from flockana.environment import LinearTarget
 from flockana.laws import Algorithm2
 from flockana.measures.metrics import velocity_mismatch
 from flockana.scenarios.entry import Builder, Start, entry, refuted, verified
-from flockana.scenarios.findings import (
-    Claim,
-    Tolerances,
-    Trajectory,
-    connected,
-    finding,
-    report,
-    rerun,
-)
+from flockana.scenarios.findings import Claim, Tolerances, Trajectory, connected, finding, report, rerun
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.olfati_saber_2006.scenarios.free_space import random_start
 
