@@ -10,7 +10,7 @@ from math import log, nan
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.norms import Balanced, largest_gain
@@ -165,6 +165,8 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] =
     >>> result.stable, result.gains.round(4).tolist()
     (False, [1.4679, 2.1547, 3.1629])
     """
+    if not callable(chain):
+        raise ArgumentError(f"chain = {format_value(chain)}: expected a function of n that returns n linearised agents")
     counts = tuple(ensure_count("a number of agents", n) for n in sizes)
     if not counts or any(b <= a for a, b in pairwise((1, *counts))):
         raise ArgumentError(f"sizes = {tuple(sizes)}: expected rising numbers of agents, from 2 on")

@@ -27,7 +27,7 @@ THEOREM = Theorem(
 )
 
 
-@erratum("T1", source="a toy", expected={"refuted": "printed"})
+@erratum("T1", expected={"refuted": "printed"})
 def keeps_energy(tolerances):
     """Under drag alone the energy is said to stay, though its rate is −k Σ‖p_i‖²."""
     q, p = np.zeros((1, 1)), np.ones((1, 1))
