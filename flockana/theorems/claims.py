@@ -4,7 +4,7 @@ A claim about a run holds if a margin, an enclosure over time, is nowhere negati
 decides instead, and the numbers stand beside it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -288,6 +288,16 @@ def statement_of(check: Callable[..., Any]) -> str:
     return " ".join((check.__doc__ or "").split())
 
 
+def _from_table(name: str, claims: Iterable[str], fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a theorem has from its row of ``errata.csv``, if it has one, and which claims are corrections."""
+    row, right = erratum_of(name), {"corrected"}
+    known: dict[str, Any] = {}
+    if row is not None:
+        known = {"title": printed(name), "source": f"{row.printer}, {row.where}", "references": row.references}
+        right |= {row.right_claim[0]} if row.sort != "confirmed" else set()
+    return known | {"corrected": tuple(sorted({*claims} & right - {*fields.get("ours", ())}))}
+
+
 def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
     """Return a decorator that makes a theorem about runs of the function that checks it.
 
@@ -296,7 +306,7 @@ def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
     name : str
         Id of the theorem; its statement is the function's docstring.
     **fields
-        Further fields of `Theorem`.
+        Further fields of `Theorem`; of an erratum as in `erratum`.
 
     Examples
     --------
@@ -307,19 +317,14 @@ def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
     >>> theorem.statement
     'All agents stay where they are.'
     """
+    known = _from_table(name, fields.get("claims", ()), fields)
     return lambda check: Theorem(
-        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **fields}
+        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **known, **fields}
     )
 
 
 def erratum(
-    name: str,
-    *,
-    title: str = "",
-    source: str = "",
-    expected: Mapping[Status, str] = _EXPECTED,
-    references: tuple[str, ...] = (),
-    **fields: Any,
+    name: str, *, expected: Mapping[Status, str] = _EXPECTED, **fields: Any
 ) -> Callable[[Callable[[Tolerances], list[Claim]]], Theorem]:
     """Return a decorator that makes an erratum of a function: a theorem checked without a user's run.
 
@@ -327,16 +332,13 @@ def erratum(
 
     Parameters
     ----------
-    title, source : str
-        As in `Theorem`; by default what is printed and where, as the source's ``errata.csv`` says.
     expected : mapping of str to str
         By expected status the names of claims, with blanks between; by default of "printed" and "corrected". The
         status of the whole follows from them.
-    references : tuple of str
-        Keys of the bibliography; by default those of ``errata.csv``.
     **fields
-        `author`, `corrected` and `ours`, as in `Theorem`; by default a claim "corrected" is one, and the claim that
-        ``errata.csv`` has as the right statement of what is not confirmed, unless it is ours.
+        Further fields of `Theorem`. Title, source and references are by default those of ``errata.csv``; `corrected` is
+        a claim of that name, and the claim that the table has as the right statement of what is not confirmed, unless
+        it is in `ours`.
 
     Examples
     --------
@@ -348,21 +350,11 @@ def erratum(
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
     each = {claim: status for status, claims in expected.items() for claim in claims.split()}
-    row = erratum_of(name)
-    right = {row.right_claim[0]} if row and row.sort != "confirmed" else set()
-    corrected = each.keys() & ({"corrected"} | right) - {*fields.get("ours", ())}
+    known = _from_table(name, each, fields)
 
     def made(check: Callable[[Tolerances], list[Claim]]) -> Theorem:
-        item = Theorem(
-            id=name,
-            title=title or printed(name),
-            statement=statement_of(check),
-            source=source or f"{row.printer}, {row.where}" if row else source,
-            kind="fixed",
-            check=lambda tolerances: ([], check(tolerances)),
-            references=references or (row.references if row else ("olfati-saber-2006",)),
-            **{"corrected": tuple(sorted(corrected)), **fields},
-        )
+        judge: dict[str, Any] = {"kind": "fixed", "check": lambda tolerances: ([], check(tolerances))}
+        item = Theorem(id=name, **{"statement": statement_of(check), **known, **judge, **fields})
         by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)
         return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})
 

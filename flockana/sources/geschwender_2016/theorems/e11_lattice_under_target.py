@@ -17,7 +17,6 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
 from flockana.theorems.attraction import final_basin
 from flockana.theorems.claims import judged, run_theorem, undecided
-from flockana.theorems.errata import printed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
@@ -111,8 +110,6 @@ def _thresholds(law: Algorithm2) -> Claim:
 
 @run_theorem(
     "E11",
-    title=printed("E11"),
-    source="slides, summary of Theorem 3; both student projects",
     law=law_is("Algorithm 2", Algorithm2),
     claims=("printed", "minimum", "threshold"),
     reason="not so: {name}",

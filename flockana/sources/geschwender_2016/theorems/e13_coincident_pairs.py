@@ -8,7 +8,6 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.collisions import distinct_pairs, pairs_at_one_instant
-from flockana.theorems.errata import printed
 from flockana.theorems.hypotheses import alpha_gain
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, run_theorem, unmet
@@ -27,13 +26,9 @@ def _enclosed(run: Trajectory) -> str | None:
 
 @run_theorem(
     "E13",
-    title=printed("E13"),
-    source="slides, Theorem 3(iv)",
     law=law_is("Algorithm 2", Algorithm2),
     claims=("printed", "corrected"),
-    references=("geschwender-2016", "olfati-saber-2006"),
     leads={"printed": pairs_apart, "corrected": pairs_apart},
-    corrected=("corrected",),
 )
 def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """Theorem 3(iv) says that with H_λ(0) < (k+1) c* at most k distinct pairs could collide. Energy bounds only the

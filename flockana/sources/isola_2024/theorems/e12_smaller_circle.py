@@ -12,7 +12,6 @@ from flockana.stability.centre_path import motion, path_and_factor
 from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
 from flockana.theorems.claims import run_theorem
-from flockana.theorems.errata import printed
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed
@@ -52,11 +51,8 @@ def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: 
 
 @run_theorem(
     "E12",
-    title=printed("E12"),
-    source="MSN project, conclusion, cases 3 and 4",
     claims=("predicted", "consistent", "printed"),
     reason="no γ-agent with a wrong p_r to follow",
-    references=("isola-2024", "olfati-saber-2006"),
     ours=("predicted", "consistent"),
 )
 def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
