@@ -62,6 +62,11 @@ def test_lectures_and_theorems_lead_to_each_other(proved):
 
 def test_every_scenario_has_a_page_that_leads_to_its_theorems(tmp_path):
     scenarios.write(tmp_path / "scenarios", tmp_path / "extra", verdicts.Verdicts(), images=False, report=False)
+    tried = (tmp_path / "scenarios" / "without-installing.md").read_text(encoding="utf-8")
+    assert [line.partition("](")[2] for line in tried.splitlines() if line.startswith("## ")] == [
+        f"{name}.md)" for name in scenarios.TWELVE
+    ]
+    assert tried.count("](../theorems/") == sum(len(scenario(name).theorems) for name in scenarios.TWELVE)
     for name in scenario_names():
         text = (tmp_path / "scenarios" / f"{name}.md").read_text(encoding="utf-8")
         assert all(f"(../theorems/{theorem}.md)" in text for theorem in scenario(name).theorems)

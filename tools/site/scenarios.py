@@ -12,6 +12,11 @@ from tools.site.verdicts import Verdicts
 from tools.site.words import contents, plain, table
 
 FIRST = "paper-split-rejoin"
+TRIED = "without-installing"
+TWELVE = (
+    *("hexagon", "three-agents-1d", FIRST, "collapse", "dead-zone-wide-start", "zone-tree", "headings-meet"),
+    *("cucker-smale-critical-above", "net-ring-below", "links-kept", "head-on-collision", "minimal-2d"),
+)
 FIRST_SHOWN = "A flock of 150 agents meets six discs, splits, and rejoins"
 
 
@@ -31,12 +36,8 @@ def page(case: Scenario, verdicts: Verdicts, *, images: bool, report: bool) -> s
     """The page of one."""
     parts = [f"# {plain(case.name)}: {plain(case.title)}", f"*{plain(case.source)}*"]
     if images:
+        parts += player(case.name)
         told = ran(case.name)
-        if told["play"]:
-            parts.append(
-                f'<iframe class="run" title="The run of {case.name}" loading="lazy" '
-                f'src="../../runs/{case.name}.html"></iframe>'
-            )
         shown = " ".join(
             f"![{case.name} at {label}](images/{case.name}-{k}.svg){{.still}}"
             for k, (label, _) in enumerate(told["stills"])
@@ -46,6 +47,25 @@ def page(case: Scenario, verdicts: Verdicts, *, images: bool, report: bool) -> s
     if images:
         parts += ["## How it was run", table(("what", "value"), [(plain(a), plain(b)) for a, b in told["facts"]])]
     return "\n\n".join([*parts, f"`flockana verify {case.name}` runs it again, checks it and writes a report."]) + "\n"
+
+
+def player(name: str) -> list[str]:
+    """The frame in which a run plays; none if its numbers have no room in the player."""
+    frame = f'<iframe class="run" title="The run of {name}" loading="lazy" src="../../runs/{name}.html"></iframe>'
+    return [frame] if ran(name)["play"] else []
+
+
+def twelve(verdicts: Verdicts, *, images: bool, report: bool) -> str:
+    """The page on which twelve flocks play, with their verdicts."""
+    parts = [
+        "# Twelve flocks, without installing anything",
+        "Each plays here: press play, drag the time, turn what has three dimensions. Below stands what its source or "
+        "theory says of it, and what flockana found.",
+    ]
+    for case in map(scenario, TWELVE):
+        parts += [f"## [{plain(case.title)}]({case.name}.md)", *(player(case.name) if images else [])]
+        parts.append(verdicts_table(case, verdicts, report=report))
+    return "\n\n".join(parts) + "\n"
 
 
 def verdicts_table(case: Scenario, verdicts: Verdicts, *, report: bool) -> str:
@@ -84,13 +104,14 @@ def write(folder: Path, extra: Path, verdicts: Verdicts, *, images: bool, report
                 _write_run(name, folder / "images", extra / "runs")
             (folder / f"{name}.md").write_text(page(case, verdicts, images=images, report=report), encoding="utf-8")
             rows.append((*([thumbnail(name)] if images else []), f"[{plain(name)}]({name}.md)", plain(case.title)))
+    (folder / f"{TRIED}.md").write_text(twelve(verdicts, images=images, report=report), encoding="utf-8")
     opening = (
         "# Scenarios\n\nPublished simulations, and cases that decide a theorem: each page plays the run and lists what "
         "was found."
     )
     if report:
         opening += ' The whole is in <a href="../../report/index.html">the report</a>, as `flockana verify` wrote it.'
-    listed = contents(f"{name} <{name}>" for name in scenarios()).replace(":maxdepth: 1", ":hidden:")
+    listed = contents((TRIED, *(f"{name} <{name}>" for name in scenarios()))).replace(":maxdepth: 1", ":hidden:")
     header = (*(["at the end"] if images else []), "scenario", "title")
     (folder / "index.md").write_text(f"{opening}\n\n{table(header, rows)}\n\n{listed}\n", encoding="utf-8")
 
