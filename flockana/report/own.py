@@ -23,13 +23,15 @@ from flockana.scenarios import Scenario
 from flockana.scenarios.flock import Flock
 from flockana.theorems import Theorem, Verdict, verify
 
+_NONE: tuple[str | Theorem, ...] = ()  # theorems that were not given
+
 
 def write_report(
     subject: Any,
     directory: str | os.PathLike[str],
     *,
     law: Any = None,
-    theorems: Sequence[str | Theorem] = (),
+    theorems: Sequence[str | Theorem] = _NONE,
     seed: int = 0,
 ) -> Path:
     """Write a page with the player, hypotheses, claims with margins, figures and energies of a flock or a run.
@@ -77,7 +79,7 @@ def write_report(
 
 
 def own_pages(
-    subject: Any, *, law: Any = None, theorems: Sequence[str | Theorem] = (), seed: int = 0, figures: bool = True
+    subject: Any, *, law: Any = None, theorems: Sequence[str | Theorem] = _NONE, seed: int = 0, figures: bool = True
 ) -> list[ScenarioPage]:
     """Return the page of a flock, a scenario, a run or a recording, or those of verdicts by their subjects."""
     verdicts: tuple[Verdict, ...] = (subject,) if isinstance(subject, Verdict) else subject
@@ -124,7 +126,7 @@ def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
 
 def _ensure_unused(what: str, **given: Any) -> None:
     """Raise if something is given that a report on this takes no account of."""
-    for name in (name for name, value in given.items() if value is not None and value != ()):
+    for name in (name for name, value in given.items() if value is not None and value is not _NONE):
         raise ArgumentError(f"{name} = {format_value(given[name])}: {what} their own; leave {name} out")
 
 

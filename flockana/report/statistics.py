@@ -119,20 +119,18 @@ def entry_of(name: str, records: Sequence[Record], level: float) -> ScenarioShar
 def section_of(dataset: Any) -> StatisticsSection:
     """Return the section on an ensemble's dataset, with an entry for each combination of its parameters."""
     table = shares(dataset, level=_LEVEL)
-    axes = [str(name) for name in dataset.run.dims if name != "seed"]
+    name, axes = dataset.attrs.get("scenario", "ensemble"), [str(x) for x in dataset.run.dims if x != "seed"]
     entries = []
-    for values in product(*(dataset[name].values.tolist() for name in axes)):
+    for values in product(*(dataset[axis].values.tolist() for axis in axes)):
         point = dict(zip(axes, values, strict=True))
         runs, counts = dataset.sel(point), table.sel(point)
         statuses = {
             label: Counter({of: int(counts[of].sel(claim=label)) for of in STATUSES}) for label in runs.claim.values
         }
         rows = tuple(_row(label, each, _LEVEL) for label, each in statuses.items() if each.total())
-        size, lost, seconds = runs.run.size, int(counts.incomplete), float(runs.seconds.mean())
-        title = f"{size} runs"
-        entries.append(
-            ScenarioShares(dataset.attrs["scenario"], title, "", _in_words(point), size, lost, seconds, rows)
-        )
+        seconds = float(runs.seconds.mean()) if "seconds" in runs else 0.0
+        numbers = runs.run.size, int(counts.incomplete), seconds, rows
+        entries.append(ScenarioShares(name, "Runs of an ensemble", "", _in_words(point), *numbers))
     return StatisticsSection(_LEVEL, tuple(entries), _picture(entries) if len(entries) <= _DRAWN else None)
 
 
