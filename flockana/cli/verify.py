@@ -66,11 +66,11 @@ def verify_command(
     if no_report and report is not None:
         raise ArgumentError(f"--output {report}: --no-report writes none; leave out one of them")
     if on is not None:
-        _ensure_checkable(name, seeds)
-    start, seed = seed, seed or 0
+        _ensure_checkable(name, on, seeds, seed)
+    seed = seed or 0
     work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
     folder = None if no_report else ensure_directory(report or report_folder(name))
-    saved = [] if on is None else [_case_page(name, on, start, not no_report)]
+    saved = [] if on is None else [_case_page(name, on, seed, not no_report)]
     results, code, failure = (saved, OK, None) if saved else _check_all(work, jobs or cores())
     pages = [result for result in results if isinstance(result, Page)]
     surveyed = [result for result in results if isinstance(result, SurveyResult)]
@@ -175,7 +175,7 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
     return [results[task.name] for task in tasks if task.name in results], code, failure
 
 
-def _ensure_checkable(name: str | None, seeds: int | None) -> None:
+def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | None) -> None:
     from flockana.base.checks import ensure_known
     from flockana.report.work import ERRATA
     from flockana.scenarios import scenarios
@@ -183,6 +183,8 @@ def _ensure_checkable(name: str | None, seeds: int | None) -> None:
 
     if seeds:
         raise ArgumentError(f"--seeds {seeds}: a case has one seed; leave out --seeds or --on")
+    if seed is not None and on.endswith(".nc"):
+        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
     if name is None:
         raise ArgumentError("--on CASE needs a NAME: the theorem to check, or the scenario that was run")
     if name == ERRATA:
@@ -193,7 +195,7 @@ def _ensure_checkable(name: str | None, seeds: int | None) -> None:
         raise ArgumentError(f"{name} is not about a run: expected a theorem about motion, such as os-1")
 
 
-def _case_page(name: str | None, on: str, seed: int | None, figures: bool) -> Page:
+def _case_page(name: str | None, on: str, seed: int, figures: bool) -> Page:
     """Check a theorem on a case, or a saved run as one of its scenario."""
     from flockana.cli.own import read_case
     from flockana.dynamics.trajectory import Trajectory
@@ -202,14 +204,12 @@ def _case_page(name: str | None, on: str, seed: int | None, figures: bool) -> Pa
     from flockana.scenarios import Scenario, scenario, scenarios
     from flockana.theorems import verify
 
-    run, path = read_case(on, seed or 0), Path(on)
+    run, path = read_case(on, seed), Path(on)
     assert name is not None  # checked before
     if not isinstance(run, Trajectory):
         if name in scenarios():
             raise ArgumentError(f"{name} --on {on}: expected a theorem to check on it, or a saved run of {name}")
         return own_pages(run, theorems=[name], figures=figures)[0]
-    if seed is not None:
-        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
     if name in scenarios():
         item = scenario(name)
         if type(item.law) is not type(run.law) or item.q0.shape != run.q[0].shape:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flockana.base.errors import ArgumentError, FlockanaError, format_value
+from flockana.base.shown import ShortRepr
 from flockana.laws.candidates import candidates
 from flockana.recorded.compare import Comparison, compare, share_text
 from flockana.recorded.recording import Recording, ensure_recording
@@ -13,7 +14,7 @@ _FITS = 0.99  # share explained, the gains as the recording has them, from which
 
 
 @dataclass(frozen=True, eq=False)
-class Recognition:
+class Recognition(ShortRepr):
     """Laws ranked by how much of a recording they explain, and those that do not apply to it.
 
     Attributes

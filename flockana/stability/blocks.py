@@ -10,6 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from flockana.base.shown import ShortRepr
 from flockana.equilibria.terminal import rigid_motions
 from flockana.laws import Navigation, PairTerm
 from flockana.stability.zero_modes import NEUTRAL, complement
@@ -18,7 +19,7 @@ MOST = 2000  # rows of a dense matrix of the second order; its state space has t
 
 
 @dataclass(frozen=True)
-class Blocks:
+class Blocks(ShortRepr):
     """x'' = −K x − D x' + w in the order of ``q.ravel()``, w a disturbing force on each agent.
 
     Parameters

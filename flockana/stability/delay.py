@@ -26,6 +26,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
+from flockana.base.shown import ShortRepr
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
 from flockana.stability.linear_flock import LinearFlock
@@ -42,7 +43,7 @@ _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutra
 
 
 @dataclass(frozen=True)
-class DelaySystem:
+class DelaySystem(ShortRepr):
     """Linear flock x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ), whose one delay is free.
 
     Parameters

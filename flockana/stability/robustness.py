@@ -21,6 +21,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from flockana.base.shown import ShortRepr
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.modes import SecondOrder
 from flockana.stability.norms import Balanced, largest_gain
@@ -49,7 +50,7 @@ class LoopMargins:
 
 
 @dataclass(frozen=True)
-class RobustnessMargins:
+class RobustnessMargins(ShortRepr):
     """Margins of all loops of a flock, and the worst of each kind.
 
     Parameters
@@ -118,6 +119,7 @@ def open_loop(flock: LinearFlock, agent: int, axis: int = 0) -> StateSpace:
     >>> from flockana.environment.targets import StaticTarget
     >>> from flockana.interactions import Gains
     >>> from flockana.laws.olfati_saber import Algorithm2
+    >>> from flockana.stability import linearise
     >>> law = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=3.0), target=StaticTarget((0.0,)))
     >>> loop = open_loop(linearise(law, [[0.0]]), 0)
     >>> complex(loop(2.0))
