@@ -47,6 +47,7 @@ def observe_command(
     box: Annotated[
         str | None, typer.Option(metavar="L[,L..]", help="Periods of positions, which are unwrapped.")
     ] = None,
+    m: Annotated[int | None, typer.Option("--m", help="Dimension; by default that of the positions.")] = None,
     jitter: Annotated[float | None, typer.Option(help="Stamps within this of each other are one instant.")] = None,
     interpolate: Annotated[
         float | None,
@@ -77,6 +78,7 @@ def observe_command(
         columns=_columns(columns),
         axes=axes,
         box=None if box is None else _numbers("--box", box),
+        m=m,
         jitter=jitter,
         interpolate=interpolate or (None if interpolate is None else False),
         dt=dt,

@@ -77,10 +77,19 @@ class Fit(ShortRepr):
 
 
 def interval_text(low: float, high: float) -> str:
-    """Return an interval in words, which say where it is open."""
+    """Return an interval in words, which say where it is open, by four digits or as many as tell its ends apart.
+
+    Examples
+    --------
+    >>> interval_text(1.99999992, 2.00000004), interval_text(0.0, inf)
+    ('between 1.9999999 and 2', 'open')
+    """
     if not isfinite(high):
         return "open" if not low > 0.0 else f"above {low:.4g}, open"
-    return f"between {low:.4g} and {high:.4g}" if isfinite(low) else f"below {high:.4g}, open"
+    if not isfinite(low):
+        return f"below {high:.4g}, open"
+    digits = next((k for k in range(4, 17) if f"{low:.{k}g}" != f"{high:.{k}g}"), 17)
+    return f"between {low:.{digits}g} and {high:.{digits}g}"
 
 
 def fit(

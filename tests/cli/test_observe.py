@@ -49,6 +49,21 @@ def test_bad_input_is_one_line(refused, tracks):
     refused("expected --d and --r", tracks, "--formula", "s**2")
 
 
+def test_clocks_and_the_dimension_are_options(call, refused, tmp_path):
+    rows = [(0.1 * k + 0.03 * i, i, k, 2.0 * i, 0.0) for k in range(20) for i in range(2)]
+    path = tmp_path / "it.csv"
+    pd.DataFrame(rows, columns=["t", "id", "x", "y", "z"]).to_csv(path, index=False)
+    refused("are sampled at other times", path, "--d", "2")
+    for options, said in (
+        (("--jitter", "0.05"), "m = 2, 20 samples"),
+        (("--interpolate", "1"), "m = 2, 20 samples, t = 0 to 1.9, 1 gaps"),
+        (("--interpolate", "0"), "m = 2, 40 samples"),
+    ):
+        code, out, _ = call(path, "--d", "2", "--m", "2", "--bound", "0.01", *options)
+        assert code == 0
+        assert said in " ".join(out.split())
+
+
 @pytest.mark.slow
 def test_gains_are_fitted_for_a_formula_too(call, tracks):
     code, out, _ = call(tracks, "--formula", "(s**2-d**2)**2/1e3", "--d", "7", "--r", "8.4", "--fit", "--json")
