@@ -40,6 +40,8 @@ def interpolated(rec: Recording, most_acceleration: float) -> Recording:
 
     The error of each position covers every motion whose accelerations are at most as large as stated; gaps stay.
     """
+    if not rec.gaps:
+        return rec
     full, between = rec.filled(most_acceleration=most_acceleration), (pieces_of(rec) >= 0)[:, :, None]
     arrays: Any = {name: np.where(between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
     full = replace(full, **arrays).select(samples=rec.present[:, int(np.argmax(rec.present.sum(axis=0)))])

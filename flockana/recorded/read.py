@@ -102,9 +102,11 @@ def read_recording(
             "dataset, or arrays by name"
         )
     rec = rec if box is None else unwrapped(rec, box)
+    if interpolate is not None and interpolate is not False:
+        return interpolated(rec, ensure_positive("interpolate", interpolate))
     if interpolate is None and any(text.startswith(AGENTS) for text in rec.read_as):
         ensure_one_clock(rec)
-    return interpolated(rec, ensure_positive("interpolate", interpolate)) if interpolate else rec
+    return rec
 
 
 class _How(NamedTuple):
