@@ -92,7 +92,7 @@ def few_frames(rng: np.random.Generator) -> Case:
 def collinear(rng: np.random.Generator) -> Case:
     """A pair that creeps: damping and stiffness are told almost together."""
     law = fl.Algorithm1(gains=fl.Gains(c1_alpha=4.0, c2_alpha=25.0))
-    t = np.arange(41) * 0.05
+    t = np.linspace(0.0, 2.0, 41)
     made = fl.simulate(law, [[0.0], [rng.uniform(5.5, 6.5)]], rng.normal(0.0, 0.3, (2, 1)), (0.0, 2.0), t_eval=t)
     rec = fl.Recording(t, made.q + rng.normal(0.0, 0.02, made.q.shape), sd=0.02)
     return Case(made, rec, law, ("c1_alpha", "c2_alpha"), columns(rec, 0.02), {})
@@ -107,7 +107,7 @@ def heavy_tails(rng: np.random.Generator) -> Case:
 
 def touch_once(rng: np.random.Generator) -> Case:
     """Two agents that pass each other and are in range for part of the time."""
-    t, law = np.arange(61) * 0.05, fl.Algorithm1(gains=fl.Gains(c1_alpha=20.0, c2_alpha=0.5))
+    t, law = np.linspace(0.0, 3.0, 61), fl.Algorithm1(gains=fl.Gains(c1_alpha=20.0, c2_alpha=0.5))
     q0, p0 = [[-9.0, 0.0], [9.0, rng.uniform(4.0, 6.0)]], [[6.0, 0.0], [-6.0, 0.0]]
     made = fl.simulate(law, q0, p0, (0.0, 3.0), t_eval=t)
     rec = fl.Recording(t, made.q + rng.normal(0.0, 0.03, made.q.shape), sd=0.03)
