@@ -1,7 +1,6 @@
-"""Lectures as slides: one for each heading and, below it, one for each cell; exercises left out.
+"""Lectures as slides: the title with the aims, and for each figure its section's heading, one sentence and the figure.
 
-A slide has a fixed height, and nothing may be cut off: code and what it puts out have slides of their own, long lines
-are broken, figures are no larger than the slide, and what is still taller is scrolled.
+Code runs and is not shown. A slide has a fixed height: figures are no larger, and what is still taller is scrolled.
 """
 
 import re
@@ -9,18 +8,21 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import nbformat
+from nbformat.v4 import new_markdown_cell
 
 from flockana.course.build import companions, notebook, sources, tags
 from flockana.course.delivery import deliver, notebook_bytes
 
 _LEFT_OUT = {"exercise", "answer", "check", "install"}
-_HEADING = re.compile(r"(?m)^(?=##? )")
-_A_LINE = 240  # characters of a text that need no slide to themselves
+_SENTENCE = r"(?s:.+?[.?])(?=\s+[A-Z*$#]|\s*\Z)"
+_PART = re.compile(
+    rf"(?m)^# (?P<title>.+)$|^\*\*Aims\.\*\* (?P<aims>{_SENTENCE})|^## (?P<head>.+)$"
+    rf"|^\*\*Figure \w+\.\d+\.\*\* (?P<said>(?s:.+?)(?=\n\n|\Z))"
+)
 _STYLE = """<style>
 .reveal .slides section:not(.stack) { box-sizing: border-box; max-height: 700px; overflow: hidden auto; }
-.reveal .slides pre { white-space: pre-wrap !important; overflow-wrap: anywhere; font-size: 12px !important; }
-.reveal .slides .jp-OutputArea-output :is(img, svg) { max-width: 100%; max-height: 400px; }
+.reveal .slides :is(.jp-CodeCell .jp-InputArea, .jp-InputPrompt, .jp-OutputPrompt) { display: none !important; }
+.reveal .slides .jp-OutputArea-output :is(img, svg) { max-width: 100%; max-height: 480px; }
 .reveal .slides :is(.MathJax_Display, mjx-container[display="true"]) { overflow-x: auto; overflow-y: hidden; }
 </style>"""
 
@@ -28,30 +30,36 @@ _STYLE = """<style>
 def slides(source: Path) -> Any:
     """Return a lecture's notebook marked for ``jupyter nbconvert --to slides --execute``."""
     book = notebook(source, "student")
-    book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
-    book.cells[0].source += f"\n\n{_STYLE}"
-    for number, (before, cell) in enumerate(zip([None, *book.cells], book.cells, strict=False)):
+    book.cells = list(_slides([cell for cell in book.cells if not _LEFT_OUT & set(tags(cell))]))
+    for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:3].strip('_')}-slide-{number:03d}"
-        cell.metadata["slideshow"] = {"slide_type": _kind(cell, before)}
     return book
 
 
-def _parts(cell: Any) -> Iterator[Any]:
-    """Split a text cell at its headings; return other cells unchanged."""
-    if cell.cell_type != "markdown":
-        yield cell
-        return
-    for text in filter(str.strip, _HEADING.split(cell.source)):
-        yield nbformat.v4.new_markdown_cell(text.strip())
+def _slides(cells: list[Any]) -> Iterator[Any]:
+    """Return title, figures with a sentence each, and the code between them, which is run and skipped."""
+    title = head = ""
+    code: list[Any] = []
+    for cell in cells:
+        if cell.cell_type == "code":
+            yield from (_marked(each, "skip") for each in code)
+            code = [cell]
+            continue
+        for part in _PART.finditer(cell.source):
+            title, head = part["title"] or title, part["head"] or head
+            if part["aims"]:
+                yield _marked(new_markdown_cell(f"# {title}\n\n{part['aims']}\n\n{_STYLE}"), "slide")
+            if part["said"]:
+                sentence = re.match(_SENTENCE, part["said"])
+                yield _marked(new_markdown_cell(f"## {head}\n\n{sentence[0] if sentence else part['said']}"), "slide")
+                yield from (_marked(each, "-") for each in code)
+                code = []
+    yield from (_marked(each, "skip") for each in code)
 
 
-def _kind(cell: Any, before: Any) -> str:
-    if cell.cell_type != "markdown":
-        leads = before.cell_type == "markdown" and not before.source.startswith("#")
-        return "-" if leads and len(before.source) <= _A_LINE else "subslide"
-    if cell.source.startswith("**Lectures before this one:**"):
-        return "skip"
-    return "slide" if cell.source.startswith("#") else "subslide"
+def _marked(cell: Any, kind: str) -> Any:
+    cell.metadata["slideshow"] = {"slide_type": kind}
+    return cell
 
 
 def shown() -> list[Path]:

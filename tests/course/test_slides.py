@@ -9,24 +9,23 @@ LECTURES = [path for path in build.sources() if not path.name.startswith("A")]
 
 
 @pytest.mark.parametrize("source", LECTURES, ids=lambda path: path.stem)
-def test_a_slide_for_each_heading_and_all_that_is_shown(source):
+def test_a_slide_for_each_figure_with_one_sentence_and_all_code(source):
     text = source.read_text(encoding="utf-8").partition("# ## Exercises")[0]
-    book = slides(source)
-    kinds = [cell.metadata["slideshow"]["slide_type"] for cell in book.cells]
-    heads = [cell.source.splitlines()[0] for cell in book.cells if cell.cell_type == "markdown"]
-    expected = re.findall(r"(?m)^# (##? .+)$", text)
-    assert [head for head in heads if head in expected] == expected
-    assert kinds[0] == "slide"
-    for kind, before, cell in zip(kinds[1:], book.cells, book.cells[1:], strict=False):
-        if cell.cell_type == "code":  # beside more than a line or two of text a figure does not fit
-            short = before.cell_type == "markdown" and not before.source.startswith("#") and len(before.source) <= 240
-            assert kind == ("-" if short else "subslide")
-    assert book.cells[0].source.rstrip().endswith("</style>")
-    assert kinds.count("skip") == 1
-    assert len(expected) + 2 == kinds.count("slide")  # references and further reading
-    shown = [cell.source for cell in build.notebook(source, "student").cells if not build.tags(cell)]
-    code = [cell.source for cell in book.cells if cell.cell_type == "code"]
-    assert code == [each for each in shown if each in code]
-    assert len(code) >= 2
-    assert not any("answered(" in each for each in code)
-    assert not any(" = ..." in each for each in code)
+    cells = slides(source).cells
+    kinds = [cell.metadata["slideshow"]["slide_type"] for cell in cells]
+    figures = re.findall(r"(?m)^# \*\*Figure \w+\.\d+\.\*\* (\S+ \S+)", text)
+    texts = [cell.source.partition("<style>")[0] for cell in cells if cell.cell_type == "markdown"]
+    assert len(texts) == kinds.count("slide") == len(figures) + 1
+    assert texts[0].startswith(re.search(r"(?m)^# (# .+)$", text)[1])
+    for said, first in zip(texts[1:], figures, strict=True):
+        head, _, sentence = said.partition("\n\n")
+        assert f"\n# {head}\n" in text
+        assert sentence.startswith(first)
+    assert all(len(said.split()) <= 60 for said in texts)
+    assert all(re.search(r"[.?]\s*\Z", said) for said in texts)
+    shown = {k + 1 for k, cell in enumerate(cells) if cell.cell_type == "markdown" and k > 0}
+    assert {k for k, kind in enumerate(kinds) if kind == "-"} == shown
+    code = [cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "code"]
+    kept = [cell.source for cell in cells if cell.cell_type == "code"]
+    assert kept == [each for each in code if each in kept]
+    assert not any("answered(" in each or " = ..." in each for each in kept)
