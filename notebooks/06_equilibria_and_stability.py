@@ -127,10 +127,14 @@ _ = plots.pole_map(L.eigenvalues)
 # %% [markdown]
 # **Figure 6.2.** The poles of nineteen agents. All lie in the open left half-plane but one, at 0: the rotation.
 #
+# <details><summary>How to read the output</summary>
+#
 # How to read the output. The *residual* is the largest force that is left, relative to the forces of the law: 0 up
 # to rounding. A zero mode is *semisimple* if it makes no term that grows like $t$ (step 4 of the proof). The decay rate
 # is $-\operatorname{Re}s$ of the slowest pole, zero modes apart; that *of the structure* leaves out the motion of the
 # centre.
+#
+# </details>
 #
 # `find_equilibrium` minimises $U_\lambda$. The hexagon is a minimum, a little smaller than the lattice: the γ-agent
 # compresses it. It is *semi-stable*: the shape converges, and the flock ends somewhere on a circle of equilibria.
@@ -149,6 +153,8 @@ stability.mode_motion(L, shapes[0]).player(height=520)
 # **Figure 6.3.** The three slowest structural modes. The slowest is *breathing*: all agents move outwards together
 # and back. The player shows it in motion, much enlarged.
 #
+# <details><summary>What the shapes mean</summary>
+#
 # What do the shapes mean? A flock of $n$ agents in the plane has $2n$ coordinates, so $2n$ modes: 2 translations, 1
 # rotation, and $2n - 3$ shapes. For nineteen agents that is 35 shapes. A *breathing* mode changes all distances by
 # the same share. *Shear* modes come in pairs, because the hexagon looks the same after a turn by 60°: two shapes
@@ -161,6 +167,8 @@ stability.mode_motion(L, shapes[0]).player(height=520)
 # between neighbours acts on *differences* of velocities, and in breathing neighbours move nearly alike. The fastest
 # modes are those in which neighbours move against each other. That is the same fact as in lecture 00a: the Laplacian
 # is small on smooth vectors and large on rough ones.
+#
+# </details>
 #
 # ## Does it tell the truth?
 #
@@ -246,12 +254,16 @@ assert late(1.1 * alone) > 5.0
 # margin the agent is *stable*, and its swing takes many periods to die. A margin is a cliff, not a target; a
 # designer stays well away from it.
 #
+# <details><summary>Why the flock is so much more sensitive</summary>
+#
 # Why is the flock so much more sensitive than its centre? Look at the poles of Figure 6.2. The centre's are at
 # $-1.05$; the structure's reach out to imaginary parts above 30. For a mode with stiffness $\omega'^2$ and little
 # damping the phase of $sD + S$ is nearly 0, so the delay alone turns the force against the velocity: at
 # $\omega'\tau$ of the order of the damping ratio the mode is no longer damped. The stiffest links decide, and they
 # are the ones that a designer makes stiff in order to keep the pattern tight. So there is a trade-off that no gain
 # removes: *tight formations need fast radios*.
+#
+# </details>
 #
 # ## Sampled and noisy
 #

@@ -23,6 +23,26 @@
 # and distances only, and does the theorem that says so hold?** The first half of the question is about information:
 # which terms of a law can be computed from what is sensed? The second is a lesson in reading a proof: this one
 # computes eigenvalues, all in the left half-plane, and concludes something false.
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots
+from flockana.course import figures, grade
+from flockana.measures.perception import edge_vectors
+from flockana.sources.jond_2025 import MinimalFlocking, ZoneFlocking
+from flockana.stability import linearise
+from flockana.symbolic import bearing_distance, spanning_trees
+
+figure, ax = plots.subplots(size=(6.4, 3.6))
+radii = {"repulsion $z_r$": 1.5, "conflict $z_c$": 3.0, "attraction $z_a$": 5.0, "surveillance $z_s$": 6.0}
+_ = figures.zones(radii, ax=ax)
+
+# %% [markdown]
+# **Figure 8.1.** The zones of one agent (dot), with the radii of the paper's second experiment. Flockmates in the
+# two inner discs repel, those outside the innermost one and within $z_a$ attract and align; aliens, the paper's
+# word for intruders, repel anywhere within $z_s$.
 #
 # ## One glider behind another
 #
@@ -84,26 +104,6 @@
 # 7.5, a mean is a mean (erratum J10). The paper's weights 0.75 and 0.25 do nothing; the library's default has gains in
 # front of the means instead. *The loudest term wins*: global speed and separation shout, cohesion whispers, and then
 # the sum, 5.6 long, is cut off at the machine's limit $u^{\max} = 2$.
-
-# %%
-import numpy as np
-
-import flockana as fl
-from flockana import plots
-from flockana.course import figures, grade
-from flockana.measures.perception import edge_vectors
-from flockana.sources.jond_2025 import MinimalFlocking, ZoneFlocking
-from flockana.stability import linearise
-from flockana.symbolic import bearing_distance, spanning_trees
-
-figure, ax = plots.subplots(size=(6.4, 3.6))
-radii = {"repulsion $z_r$": 1.5, "conflict $z_c$": 3.0, "attraction $z_a$": 5.0, "surveillance $z_s$": 6.0}
-_ = figures.zones(radii, ax=ax)
-
-# %% [markdown]
-# **Figure 8.1.** The zones of one agent (dot), with the radii of the paper's second experiment. Flockmates in the
-# two inner discs repel, those outside the innermost one and within $z_a$ attract and align; aliens anywhere within
-# $z_s$ repel.
 
 # %%
 hunted = fl.scenario("zone-52").run()

@@ -31,6 +31,8 @@
 # the larger falls and the smaller rises, if they keep hearing each other. The words after "if" are the theorem. For
 # $n$ agents everything depends on how they are kept in touch.
 #
+# <details><summary>Both reasons as formulas</summary>
+#
 # Write both down for two agents with the velocities $p_1, p_2$ and the same weight $a_{12}$ of the friction. The
 # *energy* speaks of the square of the difference:
 #
@@ -42,6 +44,8 @@
 # may look at agent 2 without being looked at), and then bears *no other force*: a single push can throw a velocity out
 # of the interval. So each idea buys its freedom with a restriction, and the table of theorems below is a table of such
 # bargains.
+#
+# </details>
 #
 # Ten agents near a patch of a lattice, all at one speed, with headings about one direction:
 
@@ -73,7 +77,7 @@ print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diamet
 # | links kept | $\psi = x^2/(r-x)$, infinite at the range | constant friction | links of the start |
 # | averaged headings | none | the mean of the headings | all within $r$ |
 #
-# Before you read on, guess: which of them will keep these ten together, and which of them *promise* to?
+# **Predict**, and write it down: which of them will keep these ten together, and which of them *promise* to?
 #
 # ## What is promised
 #
@@ -87,16 +91,8 @@ for entry in entries():
     print(f"{entry.name} ({entry.theorem}):\n    {entry.promise}\n")
 
 # %% [markdown]
-# And in full, as the library checks them:
-
-# %%
-import textwrap
-
-for entry in entries():
-    print(f"{entry.theorem}. {fl.theorem(entry.theorem).title}")
-    print(textwrap.indent(textwrap.fill(fl.theorem(entry.theorem).statement, 100), "    "), "\n")
-
-# %% [markdown]
+# A statement in full: `print(fl.theorem("jlm-headings").statement)`.
+#
 # ## What happened
 
 # %%
@@ -148,6 +144,8 @@ for outcome in outcomes:
 # that $\psi > H(0)$ on $(x_0, r)$. A link is shorter than $x_0$ at the start or has $\psi \le H(0)$ there, so it is not
 # in this interval; its length is continuous in time, and to reach $r$ it would have to pass through. $\square$
 #
+# <details><summary>Two hypotheses with numbers</summary>
+#
 # **Two hypotheses with numbers.** Whether a theorem speaks of a start is often one inequality. Do two of them for the
 # start of Figure 12.1.
 #
@@ -165,6 +163,8 @@ for outcome in outcomes:
 # link that cost as much would have $x^2/(8.4 - x) = 1356$, that is $x = 8.349$. So no link will ever be longer than
 # that, at any time. Had this pair been two tenths of a length farther apart at the start, it would have been no link,
 # and nothing would hold it.
+#
+# </details>
 #
 # Note what it does *not* say. Nothing keeps agents apart: in Figure 12.2 the unbounded tensions draw the whole flock
 # into one place. A theorem on cohesion may cost you the one on collisions.
@@ -209,6 +209,8 @@ for ax, (title, links) in zip(axes, nets.items(), strict=True):
 # %% [markdown]
 # **Figure 12.4.** Two nets of three agents that take turns. Neither is connected; their union is.
 #
+# <details><summary>The hypothesis by hand</summary>
+#
 # By hand, from the headings $0$, $0.3$ and $1$ (radians):
 #
 # | step | linked | headings | spread |
@@ -225,6 +227,8 @@ for ax, (title, links) in zip(axes, nets.items(), strict=True):
 # \tfrac1{81}$ for every four steps; in truth the factor is $\tfrac1{16}$. And where do they end? Two who take their
 # mean do not change the sum, so at the mean of the start, $1.3/3 = 0.433$. In general a heading that is heard by many
 # counts more, and the limit is not the mean.
+#
+# </details>
 
 # %%
 turns = [fl.laplacian(3, np.array([pair])).toarray() for pair in ((0, 1), (1, 2))]

@@ -40,7 +40,7 @@
 # | centre | 1.1 | 2.10 | 1.05 | 1 |
 # | pair | 447 | 3.93 | 21.1 | 0.093 |
 #
-# Guess before you read on: of the four limits of the scene, which is the worst for the centre, and which for the pair?
+# **Predict**, and write it down: which of the four limits of the scene is the worst for the centre, and for the pair?
 #
 # ## Saturation
 #
@@ -65,10 +65,14 @@
 # 2. By LaSalle the solution approaches an invariant set with $\operatorname{sat}(z) = 0$, that is $z = 0$.
 # 3. There $\dot v = 0$ and $0 = \dot z = c_1^\gamma v$. So $v = 0$, and $z = 0$ gives $x = 0$. $\square$
 #
+# <details><summary>Where this function comes from</summary>
+#
 # Where does this $W$ come from? Without a limit $\operatorname{sat}(z) = z$ and $W = \tfrac12z^2 + \tfrac12c_1^\gamma
 # v^2$: the square of what the law asks for, and the kinetic energy. The integral is what is left of a square when a
 # spring has a limit: it grows like a square near 0 and like a straight line far away. Such a $W$ is called a Lyapunov
 # function of *Lur'e's* type, and it is the first thing to try when a linear law passes through a nonlinear element.
+#
+# </details>
 #
 # A single agent bears any saturation; it only takes longer, and overshoots. And the flock? Its proofs used that pair
 # forces cancel in the sum and that the force is a gradient. Cut off at a limit, neither is true. *By hand:* three
@@ -139,6 +143,8 @@ _ = ax.legend()
 # pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81. For a pair they
 # are 0.51 and 0.0176: **the pair asks for a sample rate fifty times that of the centre.**
 #
+# <details><summary>By hand, beyond the bound</summary>
+#
 # *By hand, beyond the bound.* Sample the centre once in a time unit, $\Delta t = 1 > 0.953$. Then $\operatorname{tr} =
 # 2 - 2.098 - 0.55 = -0.648$ and $\det = 1 - 2.098 + 0.55 = -0.548$, and $z^2 + 0.648z - 0.548 = 0$ has the roots
 # $0.484$ and $-1.132$. The second one is outside the circle, and it is *negative*: in each sample the error changes its
@@ -148,6 +154,8 @@ _ = ax.legend()
 # $1.681$ and the determinant $1.083$, so the roots are complex, of modulus $\sqrt{1.083} = 1.041$: a swing that grows
 # by 4 % in each sample. *Look at the log: an error that flips at each sample calls for less friction, a swing that
 # grows for a softer spring, and both for a faster clock.*
+#
+# </details>
 #
 # Notice that *different* bounds decide. The centre is limited by its friction: it would bear a stiffer spring. The pair
 # is limited by its spring: it would bear more friction. Only $c_2^\gamma\Delta t$ and $c_1^\gamma\Delta t^2$ enter,
@@ -288,10 +296,14 @@ assert abs(stability.delay_margin(stability.delay_system(critical, [[0.0], [7.0]
 #   \text{the noise adds } g^2\Delta t
 # \end{aligned}$$
 #
+# <details><summary>Why the noise enters once</summary>
+#
 # (Why is there $g^2$ in the last line only? In a short time $\Delta t$ the velocity gets $v + \text{noise}$, and
 # $\langle(v+\text{noise})^2\rangle = \langle v^2\rangle + 2\langle v\,\text{noise}\rangle + g^2\Delta t$; the middle
 # term is 0, because the noise of the moment does not know the velocity. In $xv$ the noise appears once, so its mean is
 # 0.)
+#
+# </details>
 #
 # In the long run all three are constant. The first gives $\langle xv\rangle = 0$, the third
 # $\langle v^2\rangle = g^2/(2c_2^\gamma)$, the second

@@ -24,6 +24,7 @@ from flockana.course.numbers import give_own_numbers, variants
 from flockana.course.pages import (
     course_map,
     entry_of,
+    fold_depth,
     header,
     map_page,
     notation_page,
@@ -105,6 +106,7 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = entry_of(source)
     number_statements(book.cells, entry)
+    fold_depth(book.cells, entry)
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
     lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
     hidden = {"tags": ["install"], "jupyter": {"source_hidden": True}}

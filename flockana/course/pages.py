@@ -14,6 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.references import cite
 
 _STATEMENT = re.compile(r"^> \*\*((?:Theorem|Lemma|Proposition|Corrected)[^*]*)\*\*", re.MULTILINE)
+_PROOF = re.compile(r"^\*(Proof[^*]*?)[.:]?\*.*?\$\\square\$[^\n]*$", re.MULTILINE | re.DOTALL)
 _FIELD = re.compile(r"(\w+)\s*=\s*\{((?:[^{}]|\{[^{}]*\})*)\}")
 
 _ACCENTS = {'"': "\u0308", "'": "\u0301"}
@@ -29,6 +30,7 @@ class Lecture:
     minutes: int  # for reading and running it, exercises apart
     references: tuple[str, ...]  # references, further: what it rests on, and what to read next, as text
     further: tuple[str, ...]
+    depth: tuple[str, ...]  # headings of sections that are folded: no part of the core of 45 minutes
     theorems: Mapping[str, str]  # those of its statements, by number, that the library has
 
 
@@ -59,8 +61,8 @@ def course_map(folder: Path) -> list[Lecture]:
         if title is None:
             raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
         after, further = tuple(entry["after"]), tuple(entry["further"])
-        theorems = entry.get("theorems", {})
-        found.append(Lecture(number, title[1], after, entry["minutes"], references, further, theorems))
+        depth, theorems = tuple(entry.get("depth", ())), entry.get("theorems", {})
+        found.append(Lecture(number, title[1], after, entry["minutes"], references, further, depth, theorems))
     return found
 
 
@@ -127,12 +129,46 @@ def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], 
             cell.source = _STATEMENT.sub(numbered, cell.source)
 
 
+def fold_depth(cells: list[Any], lecture: Lecture) -> None:
+    """Fold proofs, questions and sections of depth: text opens at a click, code with its output is collapsed."""
+    folded, head = {"Questions that come up", *lecture.depth}, ""
+    for cell in (each for each in cells if not each.metadata.get("tags")):
+        if cell.cell_type != "markdown":
+            if head in folded:
+                cell.metadata["jupyter"] = {"source_hidden": True, "outputs_hidden": True}
+            continue
+        parts = re.split(r"^## (.+)$\n?", cell.source, flags=re.MULTILINE)  # text, heading, text, heading, text ...
+        for k in range(0, len(parts), 2):
+            head = parts[k - 1] if k else head
+            if head in folded and parts[k].strip():
+                parts[k] = fold("More", parts[k])
+            elif head not in folded:
+                parts[k] = _PROOF.sub(lambda proof: fold(proof[1], proof[0]).strip(), parts[k])
+        cell.source = "".join(f"## {part}\n" if k % 2 else part for k, part in enumerate(parts)).strip()
+
+
+def fold(title: str, text: str) -> str:
+    """Return a text that opens at a click on its title.
+
+    Examples
+    --------
+    >>> print(fold("Proof", "Add up.").strip())
+    <details><summary>Proof</summary>
+    <BLANKLINE>
+    Add up.
+    <BLANKLINE>
+    </details>
+    """
+    return f"\n<details><summary>{title}</summary>\n\n{text.strip()}\n\n</details>\n\n"
+
+
 def header(lecture: Lecture, folder: Path) -> str:
     """Return the header of a lecture: prerequisites, duration, symbols."""
     before = ", ".join(lecture.after) or "none"
+    core = ", of which 45 for what is not folded" if lecture.depth else ""
     symbols = "\n".join(_rows(notation(folder), lecture.number))
     return (
-        f"**Lectures before this one:** {before}. **Time:** {lecture.minutes} minutes, exercises apart.\n\n"
+        f"**Lectures before this one:** {before}. **Time:** {lecture.minutes} minutes{core}, exercises apart.\n\n"
         f"<details><summary>Symbols</summary>\n\n{symbols}\n\n</details>"
     )
 

@@ -58,6 +58,7 @@ def _slides(cells: list[Any]) -> Iterator[Any]:
 
 
 def _marked(cell: Any, kind: str) -> Any:
+    cell.metadata.pop("jupyter", None)  # a figure is shown, wherever its text is folded
     cell.metadata["slideshow"] = {"slide_type": kind}
     return cell
 

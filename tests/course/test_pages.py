@@ -45,6 +45,21 @@ def test_statements_are_numbered_and_those_of_the_library_exist():
         assert set(marked.values()) <= set(catalogue())
 
 
+@pytest.mark.parametrize("source", build.sources(), ids=lambda path: path.stem)
+def test_a_lecture_s_core_is_short_and_its_depth_is_folded(source):
+    entry = pages.entry_of(source)
+    cells = [cell for cell in build.notebook(source, "student").cells if not build.tags(cell)]
+    texts = [cell.source for cell in cells if cell.cell_type == "markdown"]
+    core = "\n".join(re.sub(r"(?s)<details>.*?</details>", "", text) for text in texts[:1] + texts[2:-1])
+    assert len(core.split()) <= (1500 if entry.number in ("06", "12", "14") else 2200)
+    assert all(text.count("<details>") == text.count("</details>") for text in texts)
+    assert len(re.findall(r"^\*Proof", core, re.MULTILINE)) <= (entry.number == "02")  # one that runs over cells
+    sections = dict(re.findall(r"^## (.+)\n([^#]*)", core, re.MULTILINE))
+    assert all(not sections[head].strip() for head in entry.depth)
+    collapsed = [cell for cell in cells if "outputs_hidden" in cell.metadata.get("jupyter", {})]
+    assert all(cell.cell_type == "code" and cell.metadata["jupyter"]["source_hidden"] for cell in collapsed)
+
+
 def test_the_map_holds_every_lecture_after_those_that_it_builds_on():
     found = pages.course_map(FOLDER)
     numbers = [each.number for each in found]

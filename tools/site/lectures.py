@@ -11,7 +11,7 @@ import jupytext
 import nbformat
 
 from flockana.course import build, slides
-from flockana.course.pages import entry_of, number_of, number_statements
+from flockana.course.pages import entry_of, fold_depth, number_of, number_statements
 from flockana.theorems.catalogue import catalogue
 from tools.site.cache import ROOT
 from tools.site.words import contents
@@ -29,11 +29,14 @@ def lecture(source: Path) -> Any:
     number_statements(
         book.cells, entry_of(source), "[`{0}`](../theorems/{0}.md), [proof](../theorems/{0}.md#proof)".format
     )
+    fold_depth(book.cells, entry_of(source))
     links = " · ".join(f"[{name}](../theorems/{name}.md)" for name in catalogue_entries(source))
     book.cells += [nbformat.v4.new_markdown_cell(f"## In the library\n\n{links}")] if links else []
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:2]}-{number:03d}"
         tags = list(cell.metadata.get("tags", ()))
+        if "jupyter" in cell.metadata:
+            cell.metadata["tags"] = [*tags, "hide-cell"]
         if "solution" in tags and cell.cell_type == "markdown":
             cell.source = f"````{{admonition}} Solution\n:class: dropdown\n\n{cell.source}\n````"
         elif "solution" in tags or "check" in tags:
