@@ -47,7 +47,7 @@
 #
 # where $\Delta(A)$ holds the sums of the rows of $A = [a_{ij}]$ on its diagonal. For the two robots it is
 # $a_{12}\begin{pmatrix}1 & -1\\ -1 & 1\end{pmatrix}$. Each row sums to 0, so $L\mathbf 1 = 0$: the vector of equal
-# numbers is an eigenvector to the eigenvalue 0.
+# numbers is an eigenvector for the eigenvalue 0.
 #
 # > **Theorem (quadratic form).** For every $z \in \mathbb R^n$ one has
 # > $z^\top L z = \tfrac12 \sum_{i,j} a_{ij}\,(z_j - z_i)^2 \ge 0$.

@@ -564,7 +564,7 @@ most_groups = ...
 most_groups = max(len(set(fl.components(run.n, fl.links(q, 8.4)))) for q in run.q)
 
 # %% tags=["check"]
-grade(most_groups, 3, hint="look about t = 20")
+grade(most_groups, 3, hint="look around t = 20")
 
 # %% [markdown] tags=["exercise"]
 # **9.** ★★★ (3 points, proof) Let $p_d = 0$, and let every obstacle be a sphere or a wall, and let every agent stay

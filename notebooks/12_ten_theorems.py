@@ -11,17 +11,17 @@
 # ---
 
 # %% [markdown]
-# # Six theorems on one flock
+# # Ten theorems on one flock
 #
 # **Aims.** Put the field's classics side by side: one start, many laws. What does each theorem promise from there,
 # which hypothesis does the work, and what happens where it fails?
 #
 # ## A scene
 #
-# At a conference six speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
+# At a conference ten speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
 # and a theorem. In the coffee break somebody asks: "If I give all of you the *same* ten drones, at the same places,
-# with the same velocities, what does each of you promise me?" Silence; then six different answers, some of which are
-# "nothing". **What do the classics promise about one and the same start, and which hypothesis decides?**
+# with the same velocities, what does each of you promise me?" Silence; then ten different answers, half of them with
+# an "if". **What do the classics promise about one and the same start, and which hypothesis decides?**
 #
 # ## Two ideas, and two agents
 #
@@ -464,7 +464,7 @@ weight = np.pi / (2.0 * 4.0 * 0.5)
 grade(weight, 0.78539816, digits=4, hint="the delay margin, solved for the weight")
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★★ (2 points, words) Take two of the six theorems, one on energy and one on averaging. Which hypothesis keeps
+# **6.** ★★ (2 points, words) Take two of the ten theorems, one on energy and one on averaging. Which hypothesis keeps
 # the agents of each in touch, who sees to it, the law or an assumption, and what does a start look like that breaks
 # it? Answer in your own words.
 
@@ -509,10 +509,10 @@ grade(grows, 1.05, hint="at the margin itself the swings keep their size")
 # jointly connected.
 
 # %% [markdown] tags=["exercise"]
-# **9.** ★★★ (3 points, project) Open project, about two weeks: add a seventh entry to the comparison, a law from the
+# **9.** ★★★ (3 points, project) Open project, about two weeks: add an entry to the comparison, a law from the
 # literature or your own, from the same start. State what its theorem promises of this start, which hypothesis does
 # the work, and what happened. Then find the smallest change of the start for which the verdict changes, for your law
-# and for two of the six.
+# and for two of the ten.
 
 # %% [markdown] tags=["answer"]
 # *Your answer:*
