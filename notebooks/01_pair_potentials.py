@@ -200,10 +200,14 @@ print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out 
 # pull at 8.* The pair is a hard wall with a soft leash, and most of what flocks do wrong in this course comes from the
 # leash.
 #
+# <details><summary>Both potentials in the head</summary>
+#
 # Estimate both potentials in the head. From $d_\alpha = 14.29$ to $r_\alpha = 18.38$ it is 4.09, and the rim is 0.736
 # high, so the mean pull is $0.736/4.09 = 0.18$. From 0 to $d_\alpha$ it is 14.29, and the wall is 52.4 high, so the
 # mean push is 3.7, of at most 5. That is how an uneven pair comes from an even $\phi$, with $a = b$: both sides have
 # the same strength 5, but the bump weakens the pull, which comes last, and hardly the push.
+#
+# </details>
 #
 # The two numbers of the figure have names. $c^* = \psi_\alpha(0)$ is what two coincident agents cost; theorems on
 # collisions compare the energy with it. $\psi_\alpha(r_\alpha)$ is what a pair out of range costs, *every* pair out

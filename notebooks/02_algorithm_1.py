@@ -47,10 +47,14 @@
 # $c_1^\alpha\psi_\alpha(r_\alpha)$, the height of the rim, the pair swings for ever; if it is above, the pair gets out
 # of range, feels nothing any more, and never comes back.
 #
+# <details><summary>With numbers</summary>
+#
 # *With numbers.* Let $c_1^\alpha = 1$ and $c_2^\alpha = 0.2$. The rim is $\psi_\alpha(r_\alpha) = 0.736$ high. A pair
 # at rest 6.6 apart has the energy 0.635, below the rim, and stays together. At rest 6.5 apart it has 0.967, above the
 # rim: without friction it parts. Only 0.1 of a length lies between the two fates, because the potential is steep where
 # agents are too close, and its rim is low.
+#
+# </details>
 
 # %%
 import numpy as np
@@ -147,6 +151,8 @@ print(fl.verify("E1").status)
 # *Proof.* In $\sum_iu_i$ every pair appears twice, as $(i,j)$ and $(j,i)$. As $n_{ji} = -n_{ij}$ and
 # $a_{ji} = a_{ij}$, its two terms cancel. So $\dot p_c = 0$. $\square$
 #
+# <details><summary>With numbers</summary>
+#
 # **Both with numbers.** Three agents in a row, 7 apart, all weights of linked pairs 0.1793 (lecture 01), $c_2^\alpha =
 # 2\sqrt{30} = 10.95$, with the velocities $1$, $0$, $-1$ along the row. The outer two are 14 apart and not linked. Then
 # $\dot H = -10.95\cdot0.1793\,\bigl[(1-0)^2 + (0+1)^2\bigr] = -3.93$: friction takes 3.93 units of energy in a unit of
@@ -154,6 +160,8 @@ print(fl.verify("E1").status)
 # -1.96$, $u_2 = 10.95\cdot0.1793\,(1 - 1) = 0$, $u_3 = +1.96$. Their sum is 0, as the theorem on momentum says, and
 # $\sum p_iu_i = -3.93$, as the energy says. Note agent 2: its neighbours pull it in both directions, and
 # it feels nothing.
+#
+# </details>
 #
 # So the centre $q_c = \tfrac1n\sum_iq_i$ moves uniformly, and nothing is lost by riding with it: put
 # $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Distances are the same, $V(x) = V(q)$. The kinetic energy splits:

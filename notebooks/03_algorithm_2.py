@@ -65,10 +65,14 @@
 #    $\dot v_i = u_i^\alpha - c_1^\gamma(q_i - q_c) - c_2^\gamma(p_i - p_c)$, in which $q_r$ and $p_r$ have
 #    cancelled. $\square$
 #
+# <details><summary>With numbers</summary>
+#
 # *With numbers.* Three agents on a line at $-4$, $1$ and $6$, all at rest, the γ-agent at rest in $10$, $c_1^\gamma =
 # 1.1$. The centre is at $q_c = 1$, so $x = (-5, 0, 5)$. The γ-agent pulls with $1.1\cdot(14, 9, 4) = (15.4, 9.9, 4.4)$.
 # The mean of the three pulls is $9.9 = 1.1\cdot(10 - 1)$: that moves the centre. What is left over is $(5.5, 0, -5.5) =
 # -1.1\,x$: it presses the three together, and would be the same with the γ-agent anywhere else.
+#
+# </details>
 #
 # Step 3 is where linearity is used. Algorithm 3 of lecture 05 bounds the pull by a nonlinear function, and the split
 # is lost. The library checks the split symbolically:
@@ -121,6 +125,8 @@ _ = figures.target_pull(ax=ax)
 #
 # This is the step that failed for Algorithm 1, and it took one line: $J$ grows without bound.
 #
+# <details><summary>With numbers</summary>
+#
 # *With numbers.* Two agents at rest, 10 apart, out of each other's range, with the gains of the paper, $c_1^\alpha =
 # 30$ and $c_1^\gamma = 1.1$: $V = \psi_\alpha(r_\alpha) = 0.736$, $J = \tfrac12(5^2 + 5^2) = 25$, so
 # $H_\lambda(0) = 30\cdot0.736 + 1.1\cdot25 = 22.1 + 27.5 = 49.6$ and $R \le \sqrt{2\cdot49.6/1.1} = 9.5$. In truth the
@@ -128,6 +134,8 @@ _ = figures.target_pull(ax=ax)
 # $c_1^\alpha V$, a constant that no agent can turn into distance while all are out of range. With 150 agents, 11 175
 # pairs, this part dominates by far, which is why the bound in the next figure lies so high. A bound that is true for
 # *every* start cannot know that this one is harmless.
+#
+# </details>
 #
 # *Proof of (iii), and of convergence to critical points.*
 #
@@ -150,6 +158,8 @@ _ = figures.target_pull(ax=ax)
 # positive, because $s^2$ dominates. So at some $s > 0$ it is 0: there is $\nu \ne 0$ with $(s^2I + sD + S)\nu = 0$,
 # and $\tilde x = e^{st}\nu$ solves the equation. $\square$
 #
+# <details><summary>Why minima: the proof's idea, and two gaps that are closed</summary>
+#
 # What is the use of such a pole? Take one coordinate, $\ddot{\tilde x} + 2\dot{\tilde x} - 3\tilde x = 0$, with the
 # poles 1 and $-3$. All solutions are sums of multiples of $e^t$ and $e^{-3t}$, and only those without $e^t$ converge
 # to 0. They start on the line $\dot{\tilde x} = -3\tilde x$ of the plane of states, and a start drawn at random is not
@@ -167,6 +177,8 @@ _ = figures.target_pull(ax=ax)
 #
 # So from almost every start the shape converges to one critical point without a negative curvature. Whether it is a
 # strict minimum, up to motions, must be asked of the point: further curvatures may be 0. $\square$
+#
+# </details>
 #
 # *Proof of (iv), as far as it is true.* Let $k+1$ pairs coincide *at one time*. Each costs
 # $c_1^\alpha\psi_\alpha(0) = c^*$, and all other terms are non-negative, so $H_\lambda \ge (k+1)c^* > H_\lambda(0)$,
@@ -335,12 +347,16 @@ assert 5.0 < shares.min() < shares.max() < 25.0
 # the $\omega$ of case 4. With $k_v = 0.009$ the ratio is 0.85; with the true velocity it is 1.11, and the flock's
 # circle would be *larger* than the target's.
 #
+# <details><summary>By hand</summary>
+#
 # *By hand.* The gains are $c_1^\gamma = 70$ and $c_2^\gamma = 2\sqrt{70} = 16.73$, so the damping is critical and the
 # denominator is the square $(s + \omega_n)^2$, of modulus $\omega^2 + \omega_n^2$ at $s = i\omega$. Here $\omega =
 # 3.491$ and $\omega^2 = 12.18$, so the modulus is $12.18 + 70 = 82.18$. The numerator is $70 +
 # 0.009\cdot16.73\cdot3.491\,i$, whose imaginary part, 0.53, hardly counts: the ratio is $70/82.18 = 0.852$. With the
 # true velocity the imaginary part is $58.4$, the modulus $\sqrt{70^2 + 58.4^2} = 91.2$, and the ratio $91.2/82.18 =
 # 1.109$.
+#
+# </details>
 #
 # Is a flock that knows the true velocity always on a larger circle? At critical damping and with $k_v = 1$
 #

@@ -127,11 +127,15 @@ _ = figures.crossing_links(ax=ax)
 # **The sharp count.** $3n - 6$ is never reached by an α-lattice: the outer face is large. Harborth (1974) proved the
 # sharp bound $\lfloor 3n - \sqrt{12n-3}\rfloor$, which hexagonal spirals reach.
 #
+# <details><summary>By hand, and where the root comes from</summary>
+#
 # *By hand.* Seven agents, one in the middle of six: six spokes and six links around make 12, and $3\cdot7 - \sqrt{81} =
 # 12$. A hexagon with $k$ rings has $n = 3k^2 + 3k + 1$ agents, so $12n - 3 = (6k+3)^2$ is a square, and the bound is
 # $3n - 6k - 3 = 9k^2 + 3k$: 12, 42, 90 for $k = 1, 2, 3$. Where does the root come from? It counts what is missing at
 # the rim. An agent inside has six links; if all had, there would be $3n$ of them. The $6k$ agents of the rim lack two
-# each, the six corners one more, together $12k + 6$ ends, that is $6k + 3$ links. For the 37 agents:
+# each, the six corners one more, together $12k + 6$ ends, that is $6k + 3$ links.
+#
+# </details>
 
 # %%
 print(f"3n − 6 = {lattice.planar_bound(37)}, Harborth {lattice.harborth(37)}, the patch has {len(pairs)} links")

@@ -82,6 +82,8 @@ _ = figures.zones(radii, ax=ax)
 # sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and
 # $v$, and the radii without $z$, as `ZoneFlocking` does.
 #
+# <details><summary>The law read with numbers</summary>
+#
 # **Read it with numbers.** Take the radii $z_r = 1.5$, $z_c = 3$, $z_a = 5$, the weight 5 for separation and for the
 # global speed, $v^d = 3$, and three agents:
 #
@@ -104,6 +106,8 @@ _ = figures.zones(radii, ax=ax)
 # 7.5, a mean is a mean (erratum J10). The paper's weights 0.75 and 0.25 do nothing; the library's default has gains in
 # front of the means instead. *The loudest term wins*: global speed and separation shout, cohesion whispers, and then
 # the sum, 5.6 long, is cut off at the machine's limit $u^{\max} = 2$.
+#
+# </details>
 
 # %%
 hunted = fl.scenario("zone-52").run()

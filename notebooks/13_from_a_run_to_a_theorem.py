@@ -204,10 +204,14 @@ for t, q, p in zip(run.t, run.q, run.p, strict=True):
 #    of $[y]$. So it is proved that the solutions stay in $[0.75, 1.05]$.
 # 3. At the end they lie in $[0.9 - 0.105,\ 1 - 0.075] = [0.795, 0.925]$.
 #
+# <details><summary>How good the box is</summary>
+#
 # The truth is $[0.9e^{-0.1}, e^{-0.1}] = [0.8144, 0.9048]$, narrower than at the start, while the box has become
 # *wider*: 0.13 instead of 0.1. The reason is that it lets a solution start at 0.9 and move with the speed that only one
 # at 1.05 has. One more term of Taylor's formula knows better. As $\ddot x = x$, one has
 # $x(\Delta t) \in (1 - \Delta t)x + \tfrac12\Delta t^2[y]$, which is $[0.81375, 0.90525]$, of width 0.0915.
+#
+# </details>
 #
 # So a wild guess, once checked, is a proof. The box from the first term alone grows in every step, so one uses Taylor's
 # formula, with the remainder bounded on $[y]$, and carries the box in turning coordinates.

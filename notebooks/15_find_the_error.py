@@ -126,6 +126,8 @@ _ = ax.legend()
 # These are the *normal equations*. They have one solution if $f$ and $g$ are not proportional. What is left,
 # $u - c_1f - c_2g$, is the *residual*.
 #
+# <details><summary>With numbers</summary>
+#
 # **With numbers.** Three accelerations, $u = (3, 4, -2)$, with $f = (1, 2, 0)$ and $g = (0, 1, 1)$. The sums are
 # $\sum f^2 = 5$, $\sum fg = 2$, $\sum g^2 = 2$, $\sum fu = 11$, $\sum gu = 2$:
 #
@@ -136,6 +138,8 @@ _ = ax.legend()
 # and $3f - 2g = (3, 4, -2)$ leaves nothing. Were the last acceleration $+1$ instead, the right-hand side would be
 # $(11, 5)$, the gains $2$ and $\tfrac12$, and the residual $u - 2f - \tfrac12g = (1, -\tfrac12, \tfrac12)$: no gains
 # explain the data.
+#
+# </details>
 #
 # > **Theorem (what a residual is).** At the best gains the residual is orthogonal to $f$ and to $g$, and
 # > $\|u\|^2 = \|c_1f + c_2g\|^2 + \|u - c_1f - c_2g\|^2$. It is 0 if and only if some gains explain the data exactly.

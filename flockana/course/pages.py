@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.references import cite
 
 _STATEMENT = re.compile(r"^> \*\*((?:Theorem|Lemma|Proposition|Corrected)[^*]*)\*\*", re.MULTILINE)
-_PROOF = re.compile(r"^\*(Proof[^*]*?)[.:]?\*.*?\$\\square\$[^\n]*$", re.MULTILINE | re.DOTALL)
+_PROOF = re.compile(r"^\*(Proof[^*]*?)[.:]?\*.*?\\square[^\n]*(?:\n\\end[^\n]*)?$", re.MULTILINE | re.DOTALL)
 _FIELD = re.compile(r"(\w+)\s*=\s*\{((?:[^{}]|\{[^{}]*\})*)\}")
 
 _ACCENTS = {'"': "\u0308", "'": "\u0301"}
