@@ -76,6 +76,16 @@ def pytest_xdist_auto_num_workers(config):
     return cores() + 1
 
 
+def _is_slow(path):
+    """Whether all tests of a file or folder are slow."""
+    return any(path.is_relative_to(Path(__file__).parent / name) for name in SLOW)
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Import no file of slow tests where these are left out: each worker of `make test` would import them all."""
+    return True if config.option.markexpr == "not slow" and _is_slow(collection_path) else None
+
+
 def pytest_collection_finish(session):
     gc.freeze()  # what was collected is no garbage
 
@@ -88,9 +98,8 @@ def pytest_report_header(config):
 
 @pytest.hookimpl(tryfirst=True)  # before `-m` is read
 def pytest_collection_modifyitems(config, items):
-    slow = [Path(__file__).parent / name for name in SLOW]
     for item in items:
-        if any(item.path.is_relative_to(one) for one in slow):
+        if _is_slow(item.path):
             item.add_marker("slow")
     if not config.getoption("attack"):
         items[:] = [item for item in items if item.get_closest_marker("attack") is None]

@@ -121,11 +121,8 @@ def test_thirty_agents_frozen():
     assert counted.abscissa(COUNTED) == pytest.approx(-2.0606, abs=1e-3)  # gains rounded to 0.001
     assert neutral.abscissa(NEUTRAL) == pytest.approx(-2.2473, abs=2e-3)
     assert apart.abscissa(APART) == pytest.approx(-2.2514, abs=2e-3)
-    for own, best in (
-        (counted, ALIKE),
-        (neutral, CRITICAL),
-        (apart, CRITICAL),
-    ):  # alike, no neighbour of the optimum is better
+    # alike, no neighbour of the optimum is better
+    for own, best in ((counted, ALIKE), (neutral, CRITICAL), (apart, CRITICAL)):
         for pair in ((4.9, best[30]), (5.0, best[30] - 0.05), (5.0, best[30] + 0.05)):
             assert own.abscissa(np.repeat(pair, 30)) > own.abscissa(best)
 
