@@ -2,12 +2,14 @@
 
 import pickle
 import re
+from functools import partial
 
 import numpy as np
 import pytest
 
 from flockana.base import checks
 from flockana.base.errors import ArgumentError, FileError, FlockanaError, SolverError, UnknownNameError
+from tests.refused import refused
 
 
 def raises(message):
@@ -37,21 +39,17 @@ def test_errors_travel_between_processes(error):
     assert str(again) == str(error)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        (None, "d = None: expected one real number"),
-        ("seven", "d = 'seven': expected one real number"),
-        ([1.0, 2.0], "d = [1.0, 2.0]: expected one real number"),
-        (1j, "d = 1j: expected one real number"),
-        (10**400, "expected one real number"),
-        (np.nan, "d = nan: expected a finite number"),
-        (-np.inf, "d = -inf: expected a finite number"),
-    ],
+test_ensure_finite_scalar = refused(
+    (None, "d = None: expected one real number"),
+    ("seven", "d = 'seven': expected one real number"),
+    ([1.0, 2.0], "d = [1.0, 2.0]: expected one real number"),
+    (1j, "d = 1j: expected one real number"),
+    (10**400, "expected one real number"),
+    (np.nan, "d = nan: expected a finite number"),
+    (-np.inf, "d = -inf: expected a finite number"),
+    make=partial(checks.ensure_finite_scalar, "d"),
+    exact=True,
 )
-def test_ensure_finite_scalar(value, message):
-    with raises(message):
-        checks.ensure_finite_scalar("d", value)
 
 
 def test_signs():
@@ -63,24 +61,20 @@ def test_signs():
         checks.ensure_nonnegative("d", -1)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        ("abc", "q: expected numbers in an (n, m) array, got str"),
-        ([[1.0], [2.0, 3.0]], "q: expected numbers in an (n, m) array, got list"),
-        (np.array([[1j]]), "q: expected numbers in an (n, m) array, got ndarray"),
-        ([[10**400]], "q: expected numbers in an (n, m) array, got list"),
-        ([1.0, 2.0], "q has shape (2,): expected (n, m), one row per agent; for agents on a line use a column"),
-        (np.zeros((2, 2, 2)), "q has shape (2, 2, 2): expected (n, m)"),
-        (np.zeros((0, 2)), "q has no agents (shape (0, 2)): expected n >= 1"),
-        (np.zeros((3, 4)), "q has shape (3, 4): expected m = 1, 2 or 3 columns"),
-        (np.zeros((3, 0)), "q has shape (3, 0): expected m = 1, 2 or 3 columns"),
-        ([[0.0, 0.0], [np.nan, 1.0], [np.inf, 0.0]], "q[1] = [nan  1.]: expected finite numbers (2 bad agents)"),
-    ],
+test_ensure_points = refused(
+    ("abc", "q: expected numbers in an (n, m) array, got str"),
+    ([[1.0], [2.0, 3.0]], "q: expected numbers in an (n, m) array, got list"),
+    (np.array([[1j]]), "q: expected numbers in an (n, m) array, got ndarray"),
+    ([[10**400]], "q: expected numbers in an (n, m) array, got list"),
+    ([1.0, 2.0], "q has shape (2,): expected (n, m), one row per agent; for agents on a line use a column"),
+    (np.zeros((2, 2, 2)), "q has shape (2, 2, 2): expected (n, m)"),
+    (np.zeros((0, 2)), "q has no agents (shape (0, 2)): expected n >= 1"),
+    (np.zeros((3, 4)), "q has shape (3, 4): expected m = 1, 2 or 3 columns"),
+    (np.zeros((3, 0)), "q has shape (3, 0): expected m = 1, 2 or 3 columns"),
+    ([[0.0, 0.0], [np.nan, 1.0], [np.inf, 0.0]], "q[1] = [nan  1.]: expected finite numbers (2 bad agents)"),
+    make=partial(checks.ensure_points, "q"),
+    exact=True,
 )
-def test_ensure_points(value, message):
-    with raises(message):
-        checks.ensure_points("q", value)
 
 
 def test_points_are_contiguous_float64():
@@ -97,37 +91,29 @@ def test_ensure_state():
         checks.ensure_state([[0.0]], [[np.inf]])
 
 
-@pytest.mark.parametrize(
-    ("value", "m", "message"),
-    [
-        ("x", None, "v = 'x': expected a vector of numbers"),
-        ([1j, 0.0], None, "expected a vector of numbers"),
-        (3.0, None, "v has shape (): expected a vector of 1, 2 or 3 components"),
-        ([[1.0]], None, "v has shape (1, 1): expected a vector of 1, 2 or 3 components"),
-        ([], None, "v has shape (0,): expected a vector of 1, 2 or 3 components"),
-        ([1.0, 2.0, 3.0, 4.0], None, "v has shape (4,): expected a vector of 1, 2 or 3 components"),
-        ([1.0, 2.0], 3, "v has 2 components: expected 3, the dimension of the flock"),
-        ([1.0, np.nan], 2, "v = [ 1. nan]: expected finite numbers"),
-    ],
+test_ensure_vector = refused(
+    (("x", None), "v = 'x': expected a vector of numbers"),
+    (([1j, 0.0], None), "expected a vector of numbers"),
+    ((3.0, None), "v has shape (): expected a vector of 1, 2 or 3 components"),
+    (([[1.0]], None), "v has shape (1, 1): expected a vector of 1, 2 or 3 components"),
+    (([], None), "v has shape (0,): expected a vector of 1, 2 or 3 components"),
+    (([1.0, 2.0, 3.0, 4.0], None), "v has shape (4,): expected a vector of 1, 2 or 3 components"),
+    (([1.0, 2.0], 3), "v has 2 components: expected 3, the dimension of the flock"),
+    (([1.0, np.nan], 2), "v = [ 1. nan]: expected finite numbers"),
+    make=lambda case: checks.ensure_vector("v", *case),
+    exact=True,
 )
-def test_ensure_vector(value, m, message):
-    with raises(message):
-        checks.ensure_vector("v", value, m)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        (3.0, "t_span = 3.0: expected two numbers (t0, t1)"),
-        ((0.0, 1.0, 2.0), "expected two numbers (t0, t1)"),
-        (("a", "b"), "t_span = ('a', 'b'): expected two numbers"),
-        ((0, 10**400), "expected two numbers (t0, t1)"),
-        ((1.0, 1.0), "t_span = (1, 1): expected finite t0 < t1"),
-        ((2.0, 1.0), "t_span = (2, 1): expected finite t0 < t1"),
-        ((0.0, np.inf), "t_span = (0, inf): expected finite t0 < t1"),
-        ((np.nan, 1.0), "t_span = (nan, 1): expected finite t0 < t1"),
-    ],
+test_ensure_time_span = refused(
+    (3.0, "t_span = 3.0: expected two numbers (t0, t1)"),
+    ((0.0, 1.0, 2.0), "expected two numbers (t0, t1)"),
+    (("a", "b"), "t_span = ('a', 'b'): expected two numbers"),
+    ((0, 10**400), "expected two numbers (t0, t1)"),
+    ((1.0, 1.0), "t_span = (1, 1): expected finite t0 < t1"),
+    ((2.0, 1.0), "t_span = (2, 1): expected finite t0 < t1"),
+    ((0.0, np.inf), "t_span = (0, inf): expected finite t0 < t1"),
+    ((np.nan, 1.0), "t_span = (nan, 1): expected finite t0 < t1"),
+    make=checks.ensure_time_span,
+    exact=True,
 )
-def test_ensure_time_span(value, message):
-    with raises(message):
-        checks.ensure_time_span(value)

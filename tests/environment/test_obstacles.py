@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from flockana import BetaInteraction, Capsule, Obstacle, Polygon, Sphere, Wall
 from flockana.base.errors import ArgumentError
-from flockana.base.serialize import from_data, to_data
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle
@@ -211,11 +210,6 @@ def test_no_obstacles_no_sums() -> None:
     assert field.potential_energy(q) == 0.0
     assert len(field.links(q, q).agent) == 0
     check_free(q, ())
-
-
-@EVERY
-def test_obstacles_survive_a_file(obstacle: Obstacle) -> None:
-    assert from_data(json.loads(json.dumps(to_data(obstacle)))) == obstacle
 
 
 test_bad_obstacles_are_refused = refused(

@@ -5,7 +5,6 @@ import pytest
 
 from flockana import Algorithm2, Gains, Sampled, StaticTarget, TaylorStep, simulate
 from flockana.lattice import hexagonal_patch
-from flockana.stability import sampling_margin
 from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
@@ -27,15 +26,6 @@ def test_each_agent_samples_by_its_own_clock():
     assert run.p[:, 0, 0] == pytest.approx([0.0, -0.1, -0.2, -0.2 - 0.1 * 0.98, -0.2 - 0.2 * 0.98])
     late = 101.1
     assert run.p[:3, 1, 0] == pytest.approx([1.0, 1.0, 1.0 - 0.1 * late])
-
-
-def test_runs_lose_stability_at_the_margin():
-    gains = Gains(c1_gamma=4.0, c2_gamma=1.0)
-    law = Algorithm2(gains=gains, target=StaticTarget((0.0,)))
-    margin = sampling_margin(law, [[0.0]]).period
-    for share, grows in ((0.95, False), (1.05, True)):
-        run = simulate(Sampled(law, share * margin), [[1e-3]], [[0.0]], (0.0, 60.0), dt=share * margin)
-        assert (np.abs(run.q[-8:]).max() > 1e-3) == grows
 
 
 test_bad_input = refused(

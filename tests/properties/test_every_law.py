@@ -182,6 +182,7 @@ SOLIDS = (
 )
 RNG = np.random.default_rng(4)
 CIRCLE, LINE = fl.CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), fl.LinearTarget((9.0, 0.0), (-0.5, 1.0))
+PATH = (*((i, i + 1) for i in range(N - 1)), *((i + 1, i) for i in range(N - 1)))
 LED = fl.LedDeadZoneFlocking(
     leaders=(CIRCLE, LINE), group=tuple(k % 2 for k in range(N)), pinned=(0, 1, 4), c1=0.7, c2=1.3, k2=0.9
 )
@@ -196,9 +197,12 @@ FURTHER = {  # parameters that an entry above leaves at one number or without an
     "leaders that tell nothing": replace(LED, feedforward=False),
     "a stronger zone": fl.DeadZoneFlocking(fl.DeadZoneInteraction(k1=0.05), 2.0),
     "a mean of weights": fl.CuckerSmale(fl.RationalWeight(2.0, 0.7, 1.5), mean=True),
+    "links": fl.MinimalFlocking(edges=PATH, spacing=1.1, mu=1.7, sigma=0.6, normalised=False),
     "a net of all": FixedNetFlocking(tuple((i, j) for i in range(N) for j in range(i)), fl.LogPotential(2.0, 1.1), 1.5),
 }
 EVERY = {name: law for name, (law, _) in LAWS.items()} | CARRYING | FURTHER
+EVERY["a path"] = fl.MinimalFlocking(radius=tuple(np.linspace(3.0, 9.0, N)), edges=PATH[:8], beta=0.3)
+EVERY["a path of steps"] = fl.MinimalFlocking(edges=PATH[:8]).discrete(0.2)
 EVERY["ranges of their own"] = fl.DirectedNet(fl.Algorithm1(), (8.4, 3.0, 9.0) * 3, view=2.0, slow=0.5)
 ENERGETIC = (
     *("Algorithm1", "Algorithm2", "Algorithm3", "PeerToPeer", "Composition", "CuckerSmale", "FixedNetFlocking"),
@@ -210,7 +214,7 @@ OWN_RATE = ("HeadingAveraging", "MinimalFlocking", "DiscreteMinimalFlocking")  #
 @pytest.mark.parametrize("name", EVERY)
 def test_a_law_in_other_units_does_the_same(name):
     law = EVERY[name]
-    length, time = 3.0, 1.0 if name in OWN_RATE else 0.25
+    length, time = 3.0, 1.0 if law.title in OWN_RATE else 0.25
     q, p, *_ = state(5)
     places, rates = answer(law, q, p)
     power = 1 if places is not None or isinstance(law, fl.VelocityLaw) else 2  # a flow gives accelerations

@@ -64,11 +64,6 @@ def test_compiled_and_stepped_runs_agree(name):
     np.testing.assert_allclose(*ends, atol=1e-9)
 
 
-def test_momentum_is_kept():
-    run = fl.simulate(LAWS["mean"], Q, P, (0.0, 1.0))
-    np.testing.assert_allclose(run.p.sum(axis=1), np.tile(P.sum(axis=0), (len(run.t), 1)), atol=1e-12)
-
-
 test_bad_parameters_are_named = refused(
     (lambda: fl.RationalWeight(0.0), "strength = 0: expected a number > 0"),
     (lambda: fl.RationalWeight(decay=-1.0), "decay = -1: expected a number >= 0"),

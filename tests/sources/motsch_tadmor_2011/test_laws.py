@@ -51,14 +51,6 @@ def test_a_pair_stops_parting_where_the_integral_says(speed):
     assert speed - w == pytest.approx(quad(lambda x: 2.0 / (2.0 + x * x), 1.0, s)[0], abs=1e-8)
 
 
-def test_other_units_and_files_keep_it(tmp_path):
-    other = fl.rescale(LAW, length=3.0, time=0.25)
-    np.testing.assert_allclose(other.acceleration(0.0, 3.0 * Q, 12.0 * P), 48.0 * force(Q, P), rtol=1e-13)
-    run = fl.simulate(LAW, Q, P, (0.0, 0.5))
-    run.save(tmp_path / "run.nc")
-    assert fl.Trajectory.load(tmp_path / "run.nc").law == LAW
-
-
 test_what_is_refused = refused(
     (lambda: MotschTadmor(gain=0.0), "gain = 0"),
     (lambda: MotschTadmor("weight"), "weight = 'weight': expected RationalWeight"),
