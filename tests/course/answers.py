@@ -109,7 +109,7 @@ def also_zero_at(a: float, b: float) -> str:
     return " + ".join(f"({-0.5 * each / k!r})*(9 - s**2)**{k}" for k, each in enumerate(c, 3))
 
 
-ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
+ANSWERS: dict[str, dict[str, Any]] = {  # wrong ones and right ones, or who makes them
     "00": {
         "collapse_status": (["verified", "vacuous", True, ["refuted"]], ["Refuted", " refuted "]),
         "connectivity": (
@@ -256,7 +256,7 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
             ["(9 - s**2)**4/4 - 8*(9 - s**2)**3/3", "(9 - s**2)**4*3 - 32*(9 - s**2)**3 + 5"],
         ),
         "escape": ([0.785, 0.7863, 1.5708, 0.5], [0.7854, np.pi / 4, 0.785398]),
-        "capstone": (
+        "capstone": lambda: (
             # nothing; numbers; a text; the library's theorem; the library's law; the lecture's theorem; both of
             # the library under other names; no proof
             [

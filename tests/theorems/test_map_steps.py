@@ -1,6 +1,7 @@
 """A run of a map that was edited anywhere is refused; one that was not is judged, whatever machine computed it."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,18 +13,19 @@ from flockana.base.seals import sealed
 from flockana.theorems.map_steps import ensure_steps_of_map
 
 _NEAR, _TURNED = [[1.0, 1.0], [1.0, 1.0], [2.0, 2.0]], [[0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]]
-_HEADINGS = fl.simulate(fl.HeadingAveraging(1.0, 0.1), _NEAR, _TURNED, (0, 100))
-_DEAD_ZONE = fl.simulate(
-    SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02),
-    [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]],
-    [[1.0, 0.0], [0.0, 2.0], [-1.0, 0.0]],
-    (0.0, 20.0),
-    t_eval=np.arange(0.0, 20.1, 0.5),  # every 25th step: between two samples are steps that were not kept
-)
+
+
+@cache
+def runs():
+    """Runs of headings, and of the dead zone sampled each 25th step: the steps between two samples were not kept."""
+    places, speeds = [[0.0, 0.0], [5.0, 0.0], [3.0, 6.0]], [[1.0, 0.0], [0.0, 2.0], [-1.0, 0.0]]
+    law = SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02)
+    headings = fl.simulate(fl.HeadingAveraging(1.0, 0.1), _NEAR, _TURNED, (0, 100))
+    return headings, fl.simulate(law, places, speeds, (0.0, 20.0), t_eval=np.arange(0.0, 20.1, 0.5))
 
 
 def test_a_map_that_is_another_function_each_time_is_told():
-    for run, k in ((_HEADINGS, 1), (_DEAD_ZONE, 1), (_HEADINGS, -1)):
+    for run, k in zip((*runs(), runs()[0]), (1, 1, -1), strict=True):
         q = run.q.copy()
         q[k] += 1e-5
         with pytest.raises(ArgumentError, match=r"q at t = .* is off by .* expected a law that is the same function"):
@@ -31,7 +33,7 @@ def test_a_map_that_is_another_function_each_time_is_told():
 
 
 def test_one_that_was_saved_is_as_good(tmp_path):
-    for run in (_HEADINGS, _DEAD_ZONE):
+    for run in runs():
         run.save(tmp_path / "run.nc")
         ensure_steps_of_map(Trajectory.load(tmp_path / "run.nc"))
 
