@@ -1,6 +1,7 @@
 """The command line, called in an empty folder."""
 
 import json
+import math
 from importlib import import_module
 
 import pytest
@@ -13,6 +14,7 @@ def call(request, capsys, tmp_path, monkeypatch):
     """Exit status, output and errors of a command; a file's COMMAND goes before the arguments of all its calls."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr("flockana.base.progress._EVERY", math.inf)  # seconds: no lines on a slow machine
     command = getattr(request.module, "COMMAND", ())
 
     def run(*arguments):
