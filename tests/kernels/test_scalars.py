@@ -16,6 +16,8 @@ def test_sigma_norm_by_hand():
     assert scalars.sigma_norm(24.0, 1.0) == 4.0  # (√25 − 1)/1
     assert scalars.sigma_norm(0.0, 0.1) == 0.0
     assert scalars.sigma_norm(30.0, 0.1) == pytest.approx(10.0, rel=1e-15)
+    # no semi-norm: of twice the length it is not twice as large (misprint-13)
+    assert scalars.sigma_norm(14.0**2, 0.1) / scalars.sigma_norm(7.0**2, 0.1) == pytest.approx(2.476, abs=5e-4)
     assert scalars.sigma_norm(1e-20, 0.1) == pytest.approx(5e-21, rel=1e-15)  # √(1+x) − 1 would give 0
 
 

@@ -1,9 +1,21 @@
 """What the MSN project reports, judged on planted runs whose truth is plain."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, Tolerances, Trajectory
+from flockana import (
+    Algorithm2,
+    AlphaInteraction,
+    Gains,
+    StaticTarget,
+    Tolerances,
+    Trajectory,
+    connectivity,
+    simulate,
+)
+from flockana.scenarios import scenario
 from flockana.sources.isola_2024.scenarios.reports import DT, REPORTS, STATIC
 
 LAW = Algorithm2(AlphaInteraction(d=15.0, r=18.0), Gains(), StaticTarget((0.0, 0.0)))
@@ -61,3 +73,24 @@ def test_a_wide_start_is_less_connected_than_a_narrow_one():
     assert claim.status == "verified"
     assert claim.computed == (pytest.approx(0.967, abs=5e-4), 1.0)  # measured apart, by another program
     assert "1.00 in this run" in claim.detail
+
+
+@pytest.mark.parametrize(("gains", "steps"), [({}, 15), ({"gains": Gains(*6 * (1.0,))}, 113)])
+def test_steps_until_the_nets_of_cases_3_and_4_are_connected(gains, steps):
+    """What the project says of its coefficients and 3000 iterations (misprint-14)."""
+    for case in (3, 4):
+        entry = scenario(f"msn-case{case}-printed")
+        law = replace(entry.law, law=replace(entry.law.law, **gains))
+        run = simulate(law, entry.q0, entry.p0, (0.0, (steps + 2) * law.dt))
+        assert [connectivity(q, 18.0) == 1.0 for q in run.q[steps - 1 : steps + 2]] == [False, True, True]
+
+
+def test_agents_of_case_2_take_as_long_to_slow_as_to_speed_up():
+    entry, t = scenario("msn-case2"), np.linspace(0.0, 4.0, 1601)
+    run = simulate(entry.law, entry.q0, entry.p0, (0.0, 4.0), t_eval=t)
+    speed = np.linalg.norm(run.p, axis=2)
+    way = np.concatenate([np.zeros((1, run.n)), np.cumsum(np.linalg.norm(np.diff(run.q, axis=0), axis=2), axis=0)])
+    top, agents = speed.argmax(axis=0), np.arange(run.n)
+    still = np.array([k + speed[k:, i].argmin() for i, k in enumerate(top)])
+    assert abs(t[still] / t[top] - 2.0).max() == pytest.approx(0.04, abs=0.005)
+    assert abs(way[still, agents] / way[top, agents] - 2.0).max() == pytest.approx(0.02, abs=0.002)
