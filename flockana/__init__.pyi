@@ -122,6 +122,7 @@ from .solvers.semi_implicit_euler import SemiImplicitEuler as SemiImplicitEuler
 from .solvers.solver import AdaptivePair as AdaptivePair
 from .solvers.taylor_step import TaylorStep as TaylorStep
 from .sources.carrillo_2017 import SingularAlignment as SingularAlignment
+from .sources.cucker_dong_2010 import CuckerDong as CuckerDong
 from .sources.cucker_smale_2007 import CuckerSmale as CuckerSmale
 from .sources.gazi_passino_2003 import GaziPassino as GaziPassino
 from .sources.jond_2025 import Alien as Alien

@@ -13,6 +13,7 @@ import pytest
 
 from flockana import (
     Algorithm3,
+    CuckerDong,
     CuckerSmale,
     CyclicPursuit,
     FiniteTimeAlignment,
@@ -55,6 +56,7 @@ RUNS = {
     "alignment": lambda: (CuckerSmale(RationalWeight(decay=0.4)), NEAR, SLOW),
     "alignment of two": lambda: (CuckerSmale(), [[0.0], [1.0]], [[0.0], [0.1]]),
     "own sums": lambda: (MotschTadmor(RationalWeight(decay=0.4)), NEAR, SLOW),
+    "avoiding": lambda: (CuckerDong(RationalWeight(decay=0.4), distance=0.8), NEAR, SLOW),
     "singular": lambda: (SingularAlignment(SingularWeight(decay=0.5)), [[0.0], [1.0]], [[0.0], [-2.0]]),
     "swarm": lambda: (GaziPassino(), NEAR, None),
     "pursuit": lambda: (CyclicPursuit(1.0, 30.0), NEAR, None),
@@ -117,7 +119,8 @@ PLANTED = [
     ("alpha-flocking-strict", "deviation", "algorithm 1", closer),
     ("alpha-flocking-strict", "mismatch", "algorithm 2", hurried), ("cohesion", "bound", "algorithm 2", away),
     ("collision-energy", "below", "algorithm 1", crossed), ("cucker-smale", "bounded", "alignment", away),
-    ("cucker-smale-pair", "invariant", "alignment of two", hurried),
+    ("cucker-dong", "functional", "avoiding", hurried), ("cucker-dong", "bounded", "avoiding", away),
+    ("cucker-dong", "apart", "avoiding", closer), ("cucker-smale-pair", "invariant", "alignment of two", hurried),
     ("dead-zone-1-corrected", "balance", "dead zone", lifted), ("dead-zone-1-printed", "energy", "dead zone", away),
     ("cyclic-pursuit", "centroid", "pursuit", away),
     ("cyclic-pursuit", "motion", "pursuit", away),

@@ -42,6 +42,7 @@ LAWS = {
         PLACED,
     ),
     "CuckerSmale": (CuckerSmale(fl.RationalWeight(strength=2.0, decay=0.5, length=5.0)), FREE),
+    "CuckerDong": (fl.CuckerDong(fl.RationalWeight(2.0, 0.5, 5.0), distance=0.1), FREE),
     "MotschTadmor": (fl.MotschTadmor(fl.RationalWeight(decay=0.5, length=5.0), gain=2.0), FREE),
     "SingularAlignment": (fl.SingularAlignment(fl.SingularWeight(2.0, 0.5, 5.0)), FREE),
     "FiniteTimeAlignment": (fl.FiniteTimeAlignment(((0, 1), (1, 2))), {"translation", "boost"}),
