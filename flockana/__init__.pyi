@@ -135,6 +135,7 @@ from .sources.jond_2025 import ZoneNoise as ZoneNoise
 from .sources.jond_2025 import ZoneRadii as ZoneRadii
 from .sources.jond_2025 import ZoneWeights as ZoneWeights
 from .sources.jond_2025 import ZoneWorld as ZoneWorld
+from .sources.krick_2009 import DistanceFormation as DistanceFormation
 from .sources.li_dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .sources.li_dead_zone import DeadZoneInteraction as DeadZoneInteraction
 from .sources.li_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking

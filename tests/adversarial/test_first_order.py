@@ -4,11 +4,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import AverageConsensus, CyclicPursuit, GaziPassino
+from flockana import AverageConsensus, CyclicPursuit, DistanceFormation, GaziPassino
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds
 
-THEOREMS = ("gazi-passino", "cyclic-pursuit", "average-consensus")
+THEOREMS = ("gazi-passino", "cyclic-pursuit", "average-consensus", "distance-formation")
 
 
 @effort(0.4)
@@ -47,3 +47,15 @@ def test_sums_of_rings_average_and_a_heavier_link_spoils_it(n, more, off, balanc
     uneven = {"average": VACUOUS, "some-start": VERIFIED, "decay": VACUOUS}
     always = {"agreement": VERIFIED, "steps": VERIFIED}
     hold("average-consensus", Case(law, q, None, 1.0), always | (even if balanced else uneven))
+
+
+@effort(0.4)
+@given(powers(-9.0, 0.0), st.booleans(), powers(-3.0, 3.0), powers(-3.0, 3.0))
+def test_one_link_beside_its_neighbourhood(off, near, unit, pace):
+    """σ² = 2 s² and ‖e‖ = |s² − d²| of a link s long: near if 4 |s² − d²| < 2 s², s² < 2 d² or s² > 2/3 d²."""
+    s2 = 2.0 * (1.0 / (1.0 + off) if near else 1.0 + off)
+    law = DistanceFormation(((0, 1),), unit, gain=pace / unit**2)
+    q = unit * np.array([[0.0, 0.0], [s2**0.5, 0.0]])
+    side = VERIFIED if near else VACUOUS
+    known = dict.fromkeys(("formation", "nearby"), side) | {"rest": VERIFIED, "collinear": VERIFIED, "centroid": TRUE}
+    hold("distance-formation", Case(law, q, law.velocity(0.0, q), 1.0 / pace), known)

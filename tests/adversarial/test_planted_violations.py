@@ -16,6 +16,7 @@ from flockana import (
     CuckerDong,
     CuckerSmale,
     CyclicPursuit,
+    DistanceFormation,
     FiniteTimeAlignment,
     GaziPassino,
     MinimalFlocking,
@@ -60,6 +61,7 @@ RUNS = {
     "singular": lambda: (SingularAlignment(SingularWeight(decay=0.5)), [[0.0], [1.0]], [[0.0], [-2.0]]),
     "swarm": lambda: (GaziPassino(), NEAR, None),
     "pursuit": lambda: (CyclicPursuit(1.0, 30.0), NEAR, None),
+    "formation": lambda: (DistanceFormation(((0, 1),)), NEAR, None),
     "links": lambda: (LinkKeeping(((0, 1),), r=2.0), NEAR, SLOW),
     "tree": lambda: (MinimalFlocking(edges=((0, 1),), normalised=True), NEAR, SLOW),
 }
@@ -73,6 +75,11 @@ def run_of(name):
 def away(run, size):
     """The first agent is a hundred lengths of the law off, at one sample."""
     return at_half_time(run, "q", 100.0 * size * run.scales.length)
+
+
+def aside(run, size):
+    """The first agent leaves the line."""
+    return at_half_time(run, "q", np.array([0.0, size * run.scales.length]))
 
 
 def hurried(run, size):
@@ -122,8 +129,9 @@ PLANTED = [
     ("cucker-dong", "functional", "avoiding", hurried), ("cucker-dong", "bounded", "avoiding", away),
     ("cucker-dong", "apart", "avoiding", closer), ("cucker-smale-pair", "invariant", "alignment of two", hurried),
     ("dead-zone-1-corrected", "balance", "dead zone", lifted), ("dead-zone-1-printed", "energy", "dead zone", away),
-    ("cyclic-pursuit", "centroid", "pursuit", away),
-    ("cyclic-pursuit", "motion", "pursuit", away),
+    ("cyclic-pursuit", "centroid", "pursuit", away), ("cyclic-pursuit", "motion", "pursuit", away),
+    ("distance-formation", "centroid", "formation", away), ("distance-formation", "nearby", "formation", away),
+    ("distance-formation", "collinear", "formation", aside),
     ("gazi-passino", "centroid", "swarm", away), ("gazi-passino", "rate", "swarm", away),
     ("energy", "balance", "algorithm 1", lifted), ("energy", "balance", "algorithm 2", lifted),
     ("energy", "balance", "algorithm 3", lifted), ("ha-liu", "bounded", "alignment", away),

@@ -4,7 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from flockana import Capsule, LedDeadZoneFlocking, MinimalFlocking, Polygon, Sphere, Wall, rescale
+from flockana import (
+    Capsule,
+    CyclicPursuit,
+    DistanceFormation,
+    LedDeadZoneFlocking,
+    MinimalFlocking,
+    Polygon,
+    Sphere,
+    Wall,
+    rescale,
+)
 from flockana.environment import targets
 from tests.adversarial.cases import Case
 
@@ -32,6 +42,8 @@ def rigid(case, turn, shift):
     if getattr(getattr(case.law, "world", None), "dimension", None) is not None:
         raise UnchangedError("obstacles, box and aliens stay where they are")
     law, (q, p) = _world(case.law, turn, shift), (np.asarray(state, float) @ turn for state in (case.q0, case.p0))
+    if isinstance(law, CyclicPursuit) and np.linalg.det(turn) < 0.0:
+        law = replace(law, angle=-law.angle)
     return replace(case, law=law, q0=q + shift, p0=p)
 
 
@@ -55,6 +67,8 @@ def renumbered(case, order):
     weights = getattr(law, "weights", None)
     if weights is not None and any(isinstance(value, tuple) for value in vars(weights).values()):
         raise UnchangedError("weights by agent")
+    if isinstance(law, CyclicPursuit | DistanceFormation):
+        raise UnchangedError("neighbours by number")
     if isinstance(law, MinimalFlocking) and law.edges is not None:
         place = np.argsort(order)
         law = replace(law, edges=tuple((int(place[j]), int(place[i])) for j, i in law.edges))

@@ -48,6 +48,7 @@ LAWS = {
     "FiniteTimeAlignment": (fl.FiniteTimeAlignment(((0, 1), (1, 2))), {"translation", "boost"}),
     "GaziPassino": (fl.GaziPassino(1.0, 5.0, 20.0), FREE),
     "AverageConsensus": (fl.AverageConsensus(10.0 * AVERAGES[0] * (1.0 - np.eye(N))), ROUND | {"translation", "boost"}),
+    "DistanceFormation": (fl.DistanceFormation(((0, 1), (1, 2), (0, 2)), (3.0, 4.0, 5.0)), FREE - {"permutation"}),
     "CyclicPursuit": (fl.CyclicPursuit(2.0, 20.0), FREE - {"permutation", "reflection"}),
     "FixedNetFlocking": (FixedNetFlocking(((0, 1), (1, 2)), fl.LogPotential(1.0, 5.0)), FREE - {"permutation"}),
     "ProximityFlocking": (ProximityFlocking(fl.LogPotential(1.0, 5.0), r=8.0), FREE),

@@ -1,0 +1,116 @@
+"""Krick, Broucke and Francis (2009): formations held by distances, from near enough, and what is never reached."""
+
+from fractions import Fraction
+from math import sqrt
+
+import numpy as np
+
+from flockana.sources.krick_2009.laws import DistanceFormation
+from flockana.theorems.toolkit import (
+    EPS,
+    Checked,
+    Claim,
+    Enclosure,
+    FloatArray,
+    Hypothesis,
+    Observed,
+    Tolerances,
+    condition,
+    judged,
+    law_is,
+    limit_claim,
+    positive_room,
+    run_theorem,
+)
+
+_PROOF = "distance-formation"
+
+
+def _near(law: DistanceFormation, q: FloatArray) -> tuple[Hypothesis, float, float]:
+    """Return the hypothesis σ² > 4 √Δ ‖e‖ of a start, its error ‖e‖ and its least singular value σ."""
+    rows, e = law.rows(q), float(np.linalg.norm(law.errors(q)))
+    values, size = np.linalg.svd(rows, compute_uv=False), float(np.linalg.norm(rows))
+    least = float(values[-1]) if len(rows) <= rows.shape[1] else 0.0
+    share = 4.0 * sqrt(float(np.bincount(np.ravel(law.edges)).max()))
+    sigma = Enclosure.around(least, 64.0 * max(rows.shape) * EPS * size).clip(0.0)
+    blur = 64.0 * len(rows) * EPS * (e + size * size + float(np.sum(np.square(law.lengths))))
+    room = (sigma.square() - share * Enclosure.around(e, blur)) / float(np.max(law.lengths)) ** 2
+    text = f"σ² = {least**2:.6g}, 4 √Δ ‖e‖ = {share * e:.6g}"
+    name = "σ² > 4 √Δ ‖e‖: independent links, near their lengths"
+    return positive_room(name, room, text, remedy="start nearer, or remove links that depend on others"), e, least
+
+
+def _collinear(q: FloatArray) -> Hypothesis:
+    """Return the hypothesis that all agents start on one line, decided exactly; one dimension is no case of it."""
+    name = "all agents start on one line of a plane or of space"
+    z = [[Fraction(x) - Fraction(y) for x, y in zip(row, q[0].tolist(), strict=True)] for row in q.tolist()]
+    way = max(z, key=lambda row: sum(x * x for x in row))
+    on = all(row[a] * way[b] == row[b] * way[a] for row in z for a in range(len(way)) for b in range(a))
+    return condition(name, on and q.shape[1] > 1, detail=f"m = {q.shape[1]}")
+
+
+def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: Tolerances) -> Claim:
+    share = off.clip(0.0) / (float(np.max(seen.law.lengths)) + float(seen.radius.mid[0]))
+    k = int(share.mid.argmax())
+    needs = [_collinear(seen.run.q[0])] if name == "collinear" else []
+    return judged(name, tolerances.energy - share, needs, proof=_PROOF).described(
+        computed=float(share.mid[k]),
+        stated=f"{stated}, to {tolerances.energy:g} of the size",
+        witness={"time": float(seen.t[k])},
+        detail=f"off by {share.mid[k]:.2g} of the size at most",
+    )
+
+
+def _off_line(seen: Observed) -> Enclosure:
+    """Return the largest distance from the line of the start over time, in the frame of the centroid."""
+    z = seen.run.q - seen.run.q.mean(axis=1, keepdims=True)
+    first = z[0]
+    way = first[np.linalg.norm(first, axis=1).argmax()]
+    way = way / (float(np.linalg.norm(way)) or 1.0)
+    across = z - (z @ way)[..., None] * way
+    return Enclosure.around(np.linalg.norm(across, axis=2).max(axis=1), seen.shape_error.max(axis=1))
+
+
+@run_theorem(
+    "distance-formation",
+    title="A formation by distances is reached from near enough; from a line none leaves the line",
+    source="Krick, Broucke and Francis 2009, in our words",
+    law=law_is("formation by distances", DistanceFormation),
+    claims=("centroid", "rest", "collinear", "formation", "nearby"),
+    ours=("formation", "nearby"),
+    references=("krick-2009", "flockana"),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let agents move by q_i' = k Σ_j (‖q_j - q_i‖² - d_ij²)(q_j - q_i) along the links of a net. The centroid never
+    moves, all come to rest, and agents that start on one line stay on it. Ours: let e be the errors of the squared
+    lengths at the start, R half their slopes with independent rows, σ its least singular value, and Δ the largest
+    number of links of an agent. If σ² > 4 √Δ ‖e‖, all lengths tend to d_ij, ‖e‖ falls at the rate kσ²/2 at least, and
+    no agent ever is farther than ‖e‖/σ from its start.
+    """
+    law, q = seen.law, seen.run.q
+    near, e, sigma = _near(law, q[0])
+    off = Enclosure.around(np.linalg.norm(q.mean(axis=1) - q[0].mean(axis=0), axis=1), seen.centre_error)
+    moved = np.linalg.norm(q - q[0], axis=2).max(axis=1)
+    moved = Enclosure.around(moved, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
+    limit = e / sigma if sigma > 0.0 else np.inf
+    left = float(seen.run.metric("length_error")[-1])
+    ended = f"the largest error of a squared length is {left:.3g} at the end"
+    claims = [
+        _share("centroid", "the centroid stays", seen, off, tolerances),
+        limit_claim("rest", [], proof=_PROOF).described(
+            computed=left, stated="velocities tend to 0", detail=ended
+        ),
+        _share("collinear", "agents stay on their line", seen, _off_line(seen), tolerances),
+        limit_claim("formation", [near], proof=_PROOF).described(
+            computed=left, stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=ended
+        ),
+        judged(
+            "nearby", (limit - moved) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
+            [near], proof=_PROOF,
+        ).described(
+            computed=float(moved.mid.max()),
+            stated=f"no agent is farther than {limit:.6g} from its start",
+            detail=f"an agent moves by {moved.mid.max():.6g} at most",
+        ),
+    ]  # fmt: skip
+    return [], claims
