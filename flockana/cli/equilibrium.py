@@ -39,7 +39,7 @@ def equilibrium_command(
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
     from flockana.base.errors import SolverError
-    from flockana.cli.flock import announce_time, read_flock
+    from flockana.cli.flock import announce_time, read_motion
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
@@ -47,7 +47,8 @@ def equilibrium_command(
     ensure_file(save_to, (".json",))
     ensure_file(plot)
     try:
-        law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
+        how: Any = {"start": start, "seed": seed, "algorithm": algorithm, "d": d, "r": r, "time": time}
+        law, q, _ = read_motion(source, **how, potential=True)
         announce_time(len(q))
         equilibrium = find_equilibrium(law, q)
     except SolverError as error:

@@ -18,29 +18,6 @@ _SEARCHED, _GIVEN = 30_000, 150_000  # agents: beyond, minutes and more memory t
 _SHORT = 10.0  # seconds that need no word
 
 
-def read_flock(
-    source: str,
-    *,
-    start: str | None = None,
-    seed: int | None = None,
-    algorithm: int | None = None,
-    d: float | None = None,
-    r: float | None = None,
-    time: float | None = None,
-    potential: bool = True,
-) -> tuple[Any, FloatArray]:
-    """Return the law of a scenario, file or name, and positions; the γ-agent is held in place.
-
-    Examples
-    --------
-    >>> law, q = read_flock("line:3", d=2.0)
-    >>> law.title, law.alpha.d, q.ravel().tolist()
-    ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
-    """
-    how: Any = {"start": start, "seed": seed, "algorithm": algorithm, "d": d, "r": r, "time": time}
-    return read_motion(source, **how, potential=potential)[:2]
-
-
 def read_motion(
     source: str,
     *,
@@ -52,7 +29,16 @@ def read_motion(
     time: float | None = None,
     potential: bool = False,
 ) -> tuple[Any, FloatArray, FloatArray | None]:
-    """Return what `read_flock` returns, and the velocities of a run; None without a run."""
+    """Return the law of a scenario, file or name, positions, and velocities of a run; the γ-agent is held in place.
+
+    `potential` asks for a law that has one. Without a run the velocities are None.
+
+    Examples
+    --------
+    >>> law, q, _ = read_motion("line:3", d=2.0)
+    >>> law.title, law.alpha.d, q.ravel().tolist()
+    ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
+    """
     from flockana.cli.source import ensure_source, read_source
     from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction

@@ -14,7 +14,6 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.memory import ResultCache
 from flockana.dynamics.between import Between, Course, merged
 from flockana.dynamics.tolerance import ErrorFloors, rounding_floors
-from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.velocity import flow_of
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
@@ -190,7 +189,7 @@ class MeasuredRun(ResultCache):
         dump that left steps out, nothing is known between samples, and bounds at all times are the trivial ones.
         """
         steps = self.stats.get("steps", np.inf)
-        return isinstance(self.law, DiscreteLaw) or self.between is not None or len(self.t) - 1 >= steps
+        return bool(self.law.is_map) or self.between is not None or len(self.t) - 1 >= steps
 
     def closest_approach(self) -> ClosestApproach:
         """Return the closest approach of two agents, between samples too, for each interval between samples."""

@@ -11,7 +11,6 @@ from flockana.base.interrupts import restore_interrupts
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import worker_pool
-from flockana.laws import DiscreteLaw
 from flockana.report.pages import Page, fixed_page, scenario_page
 from flockana.report.section import MANY_LAWS, Section
 from flockana.report.surveys import Survey, SurveyResult, make_survey
@@ -114,7 +113,7 @@ def _execution_order(tasks: Sequence[Work]) -> list[Work]:
     # Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
     # the other the loops of maps, and seldom wait for each other (`flockana.jit`).
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())
-    of_maps = {subject for subject in subjects if isinstance(scenario(subject).law, DiscreteLaw)}
+    of_maps = {subject for subject in subjects if scenario(subject).law.is_map}
     maps = [task for task in tasks if _subject(task) in of_maps]
     others = [task for task in tasks if _subject(task) not in of_maps]
     return [*others[:1], *maps, *others[1:]]
