@@ -263,11 +263,11 @@ def _collect(
         try:
             with restore_interrupts():
                 for some in samples if watch is None else _one_by_one(samples):
+                    recorder.add(some)  # first: `watch` may end the run here
                     if some.wanted:
                         kept.append(some)
                         if watch is not None:
                             watch(_copy(some))
-                    recorder.add(some)
                     if progress:
                         reached = max(reached, float(some.t[-1]))
                         advance(reached - t_span[0], f"t = {reached:.4g}")

@@ -120,6 +120,15 @@ class TestKeeping:
         assert run.between.t[0] > 0.5
         assert run.between.t[-1] < 1.0
 
+    def test_a_run_that_its_watcher_ends_keeps_those_up_to_its_last_sample(self):
+        def end(sample):
+            if sample.t >= 2.0:
+                raise KeyboardInterrupt
+
+        run = simulate(LAW, *start(), (0.0, 4.0), t_eval=[0.0, 1.0, 2.0, 4.0], method="RK4", dt=0.25, watch=end)
+        assert (run.status, run.t.tolist()) == ("interrupted", [0.0, 1.0, 2.0])
+        assert {1.25, 1.5, 1.75} <= set(run.between.t)
+
 
 @pytest.fixture(scope="module", params=[1, 3, 8, 20])
 def thinned(request, runs):
