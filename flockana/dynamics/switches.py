@@ -33,7 +33,7 @@ class SwitchingInterpreter(Interpreter):
         self._crossed: Pieces | None = None  # after the last step, if a switch ends it
         self._beside: Samples | None = None
         super().__init__(law, start, plan)
-        self.notes, self._counted_from = {"switches": 0}, (start.t, np.inf)  # switches end steps, however short
+        self.notes = {"switches": 0}
         self.first = self.first and self.first._replace(u=self.flow(*start[:3])[0][None])
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -63,6 +63,10 @@ class SwitchingInterpreter(Interpreter):
             yield self._beside
         self._beside = None
         yield from super().samples(count)
+
+    def describe_failure(self, steps: int, count: int) -> str:
+        """Return why the run ends here: not for short steps, which switches may end, and a slide names its pair."""
+        return self.failure
 
     def continue_from(self, count: int) -> None:
         """Go on from the end of the step, after a switch with pairs in their new pieces."""

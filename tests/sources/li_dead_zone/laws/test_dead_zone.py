@@ -122,6 +122,7 @@ def test_sliding_ends_the_run_and_is_told():
     assert run.status == "failed"
     assert "sliding at t = " in run.message
     assert "agents 0 and 1 slide at distance 3.5" in run.message
+    assert run.message.endswith("give the interaction a ramp to go on")  # and names no nearest pair beside it
     assert "ramp" in run.stats["sliding"]
     assert run.stats["switches"] > 2
     assert np.linalg.norm(run.q[-1, 1] - run.q[-1, 0]) == pytest.approx(3.5, abs=1e-9)
