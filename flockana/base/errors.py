@@ -4,10 +4,12 @@ Every message names the value it got, what was expected, and the remedy. Anythin
 """
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import is_dataclass
 from typing import Any, Self
 
+_LINE_END = re.compile(r"\s*\n\s*")
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all listed
 _LONG = 120  # letters of a law or the like, beyond which its parameters are left out
@@ -40,7 +42,10 @@ def format_value(value: Any) -> str:
 
 
 class FlockanaError(Exception):
-    """Base class of flockana's exceptions."""
+    """Base class of flockana's exceptions, whose messages are one line whatever they quote."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(_LINE_END.sub(" ", arg) if isinstance(arg, str) else arg for arg in args))
 
 
 class ArgumentError(FlockanaError, ValueError):

@@ -294,6 +294,7 @@ def _from_table(name: str, claims: Iterable[str], fields: Mapping[str, Any]) -> 
     known: dict[str, Any] = {}
     if row is not None:
         known = {"title": printed(name), "source": f"{row.printer}, {row.where}", "references": row.references}
+        known["source"] += ", corrected" if fields.get("author") == "corrected" else ""
         right |= {row.right_claim[0]} if row.sort != "confirmed" else set()
     return known | {"corrected": tuple(sorted({*claims} & right - {*fields.get("ours", ())}))}
 

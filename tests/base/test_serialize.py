@@ -65,7 +65,8 @@ def test_no_two_parameter_classes_share_a_name():
     parts = [(import_module(f"flockana.{room}"), tuple(source_modules(room))) for room in rooms]
     modules = [import_module(x.name) for r, _ in parts for x in walk_packages(r.__path__, f"{r.__name__}.")]
     modules += [module for _, own in parts for module in own]
-    names = [x.__name__ for m in modules for x in vars(m).values() if is_dataclass(x) and x.__module__ == m.__name__]
+    classes = {x for m in modules for x in vars(m).values() if isinstance(x, type) and x.__module__ == m.__name__}
+    names = [x.__name__ for x in classes if is_dataclass(x)]
     assert sorted(names) == sorted(parameter_classes())
 
 

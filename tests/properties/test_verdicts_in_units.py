@@ -14,7 +14,10 @@ MOVING = {name: law for name, (law, _) in LAWS.items() if name not in OWN_RATE} 
 
 @pytest.fixture(scope="module", params=MOVING)
 def run(request):
-    return fl.simulate(MOVING[request.param], Q, P, (0.0, 0.3))
+    law = MOVING[request.param]
+    if isinstance(law, fl.NetAveraging):
+        return fl.simulate(law, Q, 0.0 * P, (0.0, 3.0))
+    return fl.simulate(law, Q, None if isinstance(law, fl.VelocityLaw) else P, (0.0, 0.3))
 
 
 @pytest.mark.parametrize("scaling", [(1e-6, 1.0), (1e3, 1e-3), (25.4, 60.0)])
