@@ -32,6 +32,10 @@ _SAME = 1e-9  # of the largest speed: how far given velocities may be from the l
 _SECOND_ORDER = frozenset(name for name in vars(Law) if not name.startswith("_"))
 
 
+class _NoSecondOrderError(ArgumentError, AttributeError):
+    """Error of what a law of first order lacks; `hasattr` sees that it does."""
+
+
 class VelocityLaw(LawOfMotion):
     """Law of first order, dq/dt = velocity(t, q); a subclass is a frozen dataclass with `velocity`.
 
@@ -60,7 +64,7 @@ class VelocityLaw(LawOfMotion):
 
         def __getattr__(self, name: str) -> Any:
             if name in _SECOND_ORDER:
-                raise ArgumentError(
+                raise _NoSecondOrderError(
                     f"{type(self).__name__} is a law of first order, dq/dt = velocity(t, q), and has no {name!r}: "
                     "expected a law of second order here, such as Algorithm1()"
                 )
