@@ -78,7 +78,7 @@ PROOF = Proof(
     title="Formations by distances",
     statement=(
         "Under q' = -k Rᵀe the centroid stays, velocities tend to 0 and agents on a line stay on it; if the rows of R "
-        "are independent and σ² > 4 √Δ ‖e‖ at the start, e tends to 0 at the rate kσ²/2 and no agent moves farther "
+        "are independent and σ²/2 > 2 √Δ ‖e‖ at the start, e tends to 0 at the rate kσ²/2 and no agent moves farther "
         "than ‖e‖/σ."
     ),
     hypotheses="k > 0; e the errors of squared lengths, R half their slopes, Δ the largest number of links of an agent",

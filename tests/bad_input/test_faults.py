@@ -24,8 +24,8 @@ def catalogue(offer):
 
 OUTPUTS = [
     ("run", "tiny", "-o", "it.nc"),
-    ("lattice", "square:2x2", "-o", "it.png"),
-    ("lattice", "square:2x2", "-o", "it.pdf"),
+    ("lattice", "square:2x2", "--plot", "it.png"),
+    ("lattice", "square:2x2", "--plot", "it.pdf"),
     ("equilibrium", "line:2", "-o", "it.json"),
     ("equilibrium", "line:2", "--plot", "it.png"),
     ("stability", "line:2", "--plot", "it.png"),
@@ -169,6 +169,6 @@ def test_a_reader_that_leaves_does_not_change_the_exit_status(tmp_path):
         done = command("theorems", stdout=gone)
         assert (done.returncode, done.stderr) == (0, b"")
         file = tmp_path / "square.png"
-        done = command("lattice", "square:2x2", "-o", str(file), stdout=gone)
+        done = command("lattice", "square:2x2", "--plot", str(file), stdout=gone)
     assert (done.returncode, done.stderr) == (0, b"")
     assert file.stat().st_size > 1000  # the work is done
