@@ -26,6 +26,7 @@ SLOW = (
     *("base/test_interrupts.py", "proofs"),
     *("explore/test_server.py", "explore/test_worker.py", "test_jit.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
+    "test_types_of_a_script.py",
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
     *("kernels/test_poles.py", "theorems/test_attraction.py"),
     *(

@@ -1,9 +1,14 @@
 """Scripts as users write them: mypy takes what the documentation shows, and refuses what the code refuses."""
 
+import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from shutil import which
+
+import pytest
 
 _GOOD = """
 import numpy as np
@@ -36,17 +41,18 @@ fl.Algorithm2(gains={"c1_alpha": 1.0}, target="origin")
 """
 
 
-def test_a_users_script_is_typed(tmp_path):
+@pytest.mark.parametrize("checker", ["mypy", "pyright"])
+def test_a_users_script_is_typed(tmp_path, checker):
+    package = str(Path(__file__).parents[1])
     (tmp_path / "good.py").write_text(_GOOD)
     (tmp_path / "wrong.py").write_text(_WRONG)
-    package = str(Path(__file__).parents[1])
-    options = ["--strict", "--config-file=", "--ignore-missing-imports", "--no-error-summary"]
-    out = subprocess.run(
-        [sys.executable, "-m", "mypy", *options, "good.py", "wrong.py"],
-        cwd=tmp_path,
-        env=os.environ | {"MYPYPATH": package, "PYTHONPATH": package},
-        capture_output=True,
-        text=True,
-    ).stdout.splitlines()
-    refused = [line.partition(": error: ")[0] for line in out if ": error: " in line]
-    assert refused == [f"wrong.py:{k}" for k in range(2, 9)], out
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps({"extraPaths": [package], "pythonVersion": "3.11"}))
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--ignore-missing-imports", "."]
+    if checker == "pyright":
+        if which("pyright") is None:
+            pytest.skip("pyright is not installed: npm install --global pyright")
+        command = ["pyright", "--pythonpath", sys.executable]
+    env = os.environ | {"MYPYPATH": package, "PYTHONPATH": package}
+    out = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True).stdout
+    refused = re.findall(r"(\w+\.py):(\d+):.*\berror: ", out)
+    assert refused == [("wrong.py", str(k)) for k in range(2, 9)], out
