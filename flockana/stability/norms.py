@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import atan, inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -246,11 +247,11 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     return gain, 2.0 * atan(omega) / (1.0 if system.dt is True else float(system.dt)) if given.discrete else omega
 
 
-def largest_gain(system: Balanced, tol: float) -> tuple[float, float]:
-    """Return (H∞ norm, frequency) of a stable system in continuous time."""
+def largest_gain(system: Balanced, tol: float, seen: Iterable[float] = ()) -> tuple[float, float]:
+    """Return (H∞ norm, frequency) of a stable system in continuous time; `seen` are frequencies to begin with."""
     poles = np.linalg.eigvals(system.a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
-    best = max((system.gain(w), w) for w in (*trials.tolist()[:: max(1, trials.size // 24)], inf))
+    best = max((system.gain(w), w) for w in (*seen, *trials.tolist()[:: max(1, trials.size // 24)], inf))
     if not len(poles) or best[0] == 0.0:
         return best
     for _ in range(_ROUNDS):

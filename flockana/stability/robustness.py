@@ -33,6 +33,7 @@ SEARCHED = 1e-6, 1e6  # factors of an input between which growth is looked for w
 _TOLERANCE = 1e-9  # relative: of peaks, and of a crossing
 _NEAR_AXIS = 1e-3  # |Im s²|/|s²| of what may be a crossing, to the rounding of a double one
 _STEPS = 20  # of Newton's method
+_BESIDE, _FREQUENCIES = 30.0, 300  # times the fastest and a thirtieth of the slowest pole: where peaks are looked for
 
 
 @dataclass(frozen=True)
@@ -143,8 +144,36 @@ def loop_margins(flock: LinearFlock) -> RobustnessMargins:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
     problem = flock.second_order
     widest = (0.0, inf) if _gains_are_masses(problem) else SEARCHED
-    m = flock.q.shape[1]
-    return RobustnessMargins(tuple(_margins(problem, k, m, widest) for k in range(flock.q.size)))
+    m, peaks = flock.q.shape[1], _peaks(problem)
+    return RobustnessMargins(tuple(_margins(problem, k, m, widest, peaks[:, k]) for k in range(flock.q.size)))
+
+
+def _peaks(problem: SecondOrder) -> FloatArray:
+    """Return frequencies near the peaks of |S| and of |S − ½| of each loop, shape (2, n m): on a grid, refined."""
+    # Of a peak little above 1 = S(∞) the norm's matrix is nearly singular: it is left to confirm what is found here.
+    from scipy.optimize import minimize_scalar
+
+    flock, size = problem.quotient, problem.q.size
+    rates = np.abs(problem.eigenvalues[problem.eigenvalues != 0.0])
+    if not rates.size:
+        return np.zeros((2, size))
+    turns = np.abs(problem.eigenvalues.imag)
+    spread = np.geomspace(rates.min() / _BESIDE, rates.max() * _BESIDE, _FREQUENCIES)
+    grid = np.unique(np.concatenate([spread, rates, turns[turns > 0.0]]))
+    one, inputs = np.eye(len(flock.A)), flock.basis[size:].T
+    answers = (np.linalg.solve(1j * w * one - flock.A, inputs) for w in grid.tolist())
+    s = 1.0 + np.array([np.einsum("ij,ji->i", flock.force, x) for x in answers])  # (grid, n m)
+    found = np.empty((2, size))
+    for row, shift in enumerate((0.0, 0.5)):
+        for k, top in enumerate(np.abs(s - shift).argmax(axis=0).tolist()):
+            ends = np.log(grid[[max(top - 1, 0), min(top + 1, len(grid) - 1)]])
+            b, f = inputs[:, k], flock.force[k]
+
+            def lack(x: float, b: FloatArray = b, f: FloatArray = f, shift: float = shift) -> float:
+                return -abs(1.0 - shift + complex(f @ np.linalg.solve(1j * np.exp(x) * one - flock.A, b)))
+
+            found[row, k] = np.exp(minimize_scalar(lack, bounds=tuple(ends), method="bounded").x)
+    return found
 
 
 def _gains_are_masses(problem: SecondOrder) -> bool:
@@ -159,13 +188,13 @@ def _gains_are_masses(problem: SecondOrder) -> bool:
     return bool(stiff[0] >= -problem.zero * problem.scale and rest.max() <= problem.zero * problem.scale)
 
 
-def _margins(problem: SecondOrder, index: int, m: int, widest: tuple[float, float]) -> LoopMargins:
+def _margins(problem: SecondOrder, index: int, m: int, widest: tuple[float, float], peaks: FloatArray) -> LoopMargins:
     """Return the margins of the loop broken at one coordinate's input."""
     flock, size = problem.quotient, problem.q.size
     a, b, f = flock.A, flock.basis[size + index], flock.force[index]
     loop = Balanced(a, b[:, None], f[None, :], np.ones((1, 1)), discrete=False)
-    peak = largest_gain(loop, _TOLERANCE)[0]
-    disk = 1.0 / largest_gain(loop._replace(d=np.full((1, 1), 0.5)), _TOLERANCE)[0]
+    peak = largest_gain(loop, _TOLERANCE, peaks[:1].tolist())[0]
+    disk = 1.0 / largest_gain(loop._replace(d=np.full((1, 1), 0.5)), _TOLERANCE, peaks[1:].tolist())[0]
     phase = min((2.0 * degrees(atan2(0.5, abs(s.imag))) for s in _where_real_part_is_half(a, b, f)), default=inf)
     factors = [s.real / (s.real - 1.0) for s in _where_real(a, b, f) if s.real != 1.0]
     low = max((k for k in factors if widest[0] < k < 1.0 and k > SEARCHED[0]), default=widest[0])

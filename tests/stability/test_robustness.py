@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium, linearise
+from flockana import Algorithm1, Algorithm2, Gains, NetConsensus, StaticTarget, find_equilibrium, linearise
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.law_studies import robustness_margins
 from flockana.stability.linearisation import Linearisation
@@ -141,3 +141,23 @@ test_bad_input = refused(
     (lambda: open_loop(linearise(LAW, REST), 3), "agent = 3, axis = 0: expected one of 3 agents and 2 axes"),
     (lambda: robustness_margins(Algorithm1(), 1.1 * REST), "no equilibrium"),
 )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_peaks_little_above_one_are_seen_in_every_loop(seed):
+    """|S| is 1 at infinity: where that ties with all frequencies tried at first, a hump between them was lost."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(3, 7))
+    weights = rng.uniform(0.2, 3.0, (n, n)) * (rng.random((n, n)) < 0.5) * (1.0 - np.eye(n))
+    weights[np.arange(n), np.arange(n) - 1] += rng.uniform(0.5, 2.0, n)
+    law = NetConsensus(weights, position=rng.uniform(1.0, 5.0), velocity=rng.uniform(2.0, 4.0))
+    flock = linearise(law, np.zeros((n, 1)))
+    if not flock.stable:
+        pytest.skip("not stable")
+    K, D, grid = law.position * law.laplacian, law.velocity * law.laplacian, np.geomspace(1e-3, 1e4, 6001)
+    s2 = -(grid**2)[:, None, None]
+    S = s2 * np.linalg.inv(s2 * np.eye(n) + 1j * grid[:, None, None] * D + K)
+    for k, loop in enumerate(flock.robustness().loops):
+        assert loop.sensitivity == pytest.approx(max(1.0, np.abs(S[:, k, k]).max()), rel=2e-5)
+        assert loop.sensitivity >= np.abs(S[:, k, k]).max() * (1.0 - 1e-9)
+        assert loop.disk == pytest.approx(1.0 / max(0.5, np.abs(S[:, k, k] - 0.5).max()), rel=2e-5)
