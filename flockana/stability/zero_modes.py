@@ -114,10 +114,11 @@ def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, 
         rows, (free, against) = net.indices[k], kernels[k]
         block = stiffness[rows]
         if basis.shape[1] and block.nnz:
-            push = block @ basis
+            push, all_terms = block @ basis, abs(block) @ np.abs(basis)
+            push[np.abs(push) <= zero * all_terms] = 0.0  # terms that cancel: what is left would be a motion elsewhere
             if free.shape[1] and push.any():  # a part that can move freely cannot take up a force along that motion
                 stuck = against.T @ push
-                terms = float((np.abs(against).T @ (abs(block) @ np.abs(basis))).max())
+                terms = float((np.abs(against).T @ all_terms).max())
                 _, sizes, turn = np.linalg.svd(stuck)
                 held = int(np.sum(sizes > zero * terms))
                 basis, push = basis @ turn[held:].T, push @ turn[held:].T

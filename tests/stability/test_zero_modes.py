@@ -142,3 +142,20 @@ def test_a_ring_has_the_poles_of_its_circulant():
     roots = np.concatenate([np.roots([1.0, x, x]) for x in 1.0 - np.exp(2j * pi * np.arange(n) / n)])
     for value in problem.eigenvalues:
         assert np.abs(roots - value).min() < 1e-7
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_bent_chain_has_the_poles_of_its_links(seed):
+    """Along each link s² + s + 1, across it s² + s: rounding of lengths made rows and columns of K differ in rank."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(3, 7))
+    ways = pi / 3.0 * rng.integers(0, 6, n - 1) if seed % 2 else rng.uniform(0.0, 2.0 * pi, n - 1)
+    q = np.cumsum([[0.0, 0.0], *np.column_stack([np.cos(ways), np.sin(ways)])], axis=0)
+    law = MinimalFlocking(radius=9.0, spacing=1.0, edges=tuple((k, k + 1) for k in range(n - 1)))
+    flock = linearise(law, q)
+    followers = n - 1
+    expected = [ROOT] * followers + [ROOT.conjugate()] * followers + [-1.0] * followers + [0.0] * (4 + followers)
+    assert flock.stable
+    assert np.sort_complex(flock.eigenvalues.round(9)) == pytest.approx(
+        np.sort_complex(np.round(expected, 9)), abs=1e-8
+    )
