@@ -147,7 +147,7 @@ class ScaledModel(NamedTuple):
 def scaled_model(flock: LinearFlock) -> ScaledModel:
     """Return the model of a linearised flock, its neutral motions as a basis of states."""
     ensure_fits("A", flock.A_sparse.shape, "ask of fewer agents")
-    k, d, pace = flock.stiffness.toarray(), flock.damping.toarray(), flock.second_order.pace
+    k, d, pace = flock.stiffness.toarray(), flock.damping.toarray(), flock.second_order.fastest_rate
     zero, one = np.zeros_like(k), np.eye(len(k))
     a = np.block([[zero, one], [-k / pace**2, -d / pace]])
     kernel = flock.second_order.invariant.kernel

@@ -275,9 +275,18 @@ class SecondOrder:
         return values, real + 1j * imag, errors
 
     @cached_property
+    def fastest_rate(self) -> float:
+        """Largest |λ|, by which positions are measured beside velocities; 1 where nothing moves by itself."""
+        return float(np.abs(self.eigenvalues).max(initial=0.0)) or 1.0
+
+    @cached_property
     def quotient(self) -> Quotient:
         """Return the dynamics off the zero modes: of a state up to neutral motions (dense)."""
-        size, pace, right = self.q.size, self.pace, self.invariant.neutral.copy()
+        return self.quotient_at(self.pace)
+
+    def quotient_at(self, pace: float) -> Quotient:
+        """Return the dynamics off the zero modes, with positions measured by a rate beside velocities."""
+        size, right = self.q.size, self.invariant.neutral.copy()
         if right.shape[1] != np.count_nonzero(self.eigenvalues == 0.0):
             raise SolverError("zero modes come in chains longer than two here: their quotient is not known")
         right[:size] *= pace

@@ -248,14 +248,16 @@ def transient_growth(flock: LinearFlock) -> TransientGrowth:
 
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
-    a = flock.second_order.quotient.A
+    a = flock.second_order.quotient_at(flock.second_order.fastest_rate).A
     if not len(a):
         return TransientGrowth(1.0, 0.0)
 
     def size(exponent: float) -> float:
         return float(np.linalg.norm(expm(a * np.exp(exponent)), 2))
 
-    grid = np.linspace(log(0.01 / flock.second_order.pace), log((_SETTLED + 2.0 * len(a)) / flock.decay_rate), _TIMES)
+    grid = np.linspace(
+        log(0.01 / flock.second_order.fastest_rate), log((_SETTLED + 2.0 * len(a)) / flock.decay_rate), _TIMES
+    )
     sizes = [size(x) for x in grid.tolist()]
     best = int(np.argmax(sizes))
     bounds = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _TIMES - 1)])

@@ -93,13 +93,13 @@ def test_the_gramian_of_a_lone_agent_is_a_closed_form():
 
 
 def test_the_gramian_over_a_horizon_of_a_free_agent():
-    """x'' = −d x' + u, e = e^(−dT): (T − 2(1 − e)/d + (1 − e²)/2d)/d², (1 − e)²/2d², (1 − e²)/2d."""
+    """x'' = −x' + u in units of its rate d, over T = 3d, e = e^(−T): T − 2(1 − e) + (1 − e²)/2, (1 − e)²/2, (1 − e²)/2."""
     d, end = 0.5, exp(-0.5 * 3.0)
     model = scaled_model(flock(np.array([[0.0, 0.0], [d, 0.0]]), position=0, velocity=1))
-    assert model.pace == 1.0
+    assert model.pace == d
     found = gramians(model, 3.0, [[1]])[0]
-    place = (3.0 - 2.0 * (1.0 - end) / d + 0.5 * (1.0 - end**2) / d) / d**2
-    exact = [[place, 0.5 * (1.0 - end) ** 2 / d**2], [0.5 * (1.0 - end) ** 2 / d**2, 0.5 * (1.0 - end**2) / d]]
+    place = 3.0 * d - 2.0 * (1.0 - end) + 0.5 * (1.0 - end**2)
+    exact = [[place, 0.5 * (1.0 - end) ** 2], [0.5 * (1.0 - end) ** 2, 0.5 * (1.0 - end**2)]]
     np.testing.assert_allclose(found[np.ix_([1, 3], [1, 3])], exact, rtol=1e-10)
     assert not found[0].any()
 

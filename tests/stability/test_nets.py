@@ -89,10 +89,10 @@ def test_chains_of_other_forms_are_measured_and_say_so():
 
 @pytest.mark.parametrize("n", [1, 4, 8])
 def test_growth_before_decay_against_a_fine_grid(n):
-    """A chain that amplifies threefold from each to the next, in units in which the fastest rate is a power of 2."""
+    """A chain that amplifies threefold from each to the next."""
     k = np.eye(n) - 3.0 * np.eye(n, k=-1)
     flock = net(k, 2.0 * np.eye(n))
-    found, pace = transient_growth(flock), flock.second_order.pace
+    found, pace = transient_growth(flock), np.abs(flock.eigenvalues).max()
     a = np.block([[np.zeros((n, n)), pace * np.eye(n)], [-k / pace, -2.0 * np.eye(n)]])
     sizes = [np.linalg.norm(expm(a * t), 2) for t in np.linspace(0.0, 40.0, 4001)]
     assert found.growth == pytest.approx(max(sizes), rel=1e-4)
@@ -110,6 +110,18 @@ test_bad_input = refused(
     (lambda: string_gains(net(np.eye(2), np.eye(2)), first=2), "first = 2: expected one of 2 agents"),
     (lambda: transient_growth(net([[1.0]], [[-1.0]])), "the flock is not stable"),
 )
+
+
+@pytest.mark.parametrize("unit", [1.0, 1.2, 1.5, 1e3])
+def test_growth_and_distances_do_not_depend_on_the_unit_of_time(unit):
+    """x'' = −x' − (x − x₀), measured by its rate 1, only falls: A + Aᵀ <= 0; three links in a row grow 1.7-fold."""
+    follower = net(unit**2 * np.array([[0.0, 0.0], [-1.0, 1.0]]), unit * np.array([[0.0, 0.0], [-1.0, 1.0]]))
+    assert transient_growth(follower).growth == pytest.approx(1.0, abs=1e-9)
+    ring = np.eye(3) - np.roll(np.eye(3), 1, axis=1)
+    found, known = (net(t**2 * ring, 2.0 * t * ring) for t in (unit, 1.0))
+    assert transient_growth(found).growth == pytest.approx(transient_growth(known).growth, rel=1e-6)
+    distances = [flock.controllability([0]).distance * scale for flock, scale in ((found, 1.0), (known, 1.0))]
+    assert distances[0] == pytest.approx(distances[1], rel=1e-5)
 
 
 def test_passive_are_the_flocks_whose_matrices_say_so():
