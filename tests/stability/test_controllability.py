@@ -93,7 +93,7 @@ def test_the_gramian_of_a_lone_agent_is_a_closed_form():
 
 
 def test_the_gramian_over_a_horizon_of_a_free_agent():
-    """x'' = −x' + u in units of its rate d, over T = 3d, e = e^(−T): T − 2(1 − e) + (1 − e²)/2, (1 − e)²/2, (1 − e²)/2."""
+    """x'' = −x' + u in units of its rate d, T = 3d, e = e^(−T): T − 2(1 − e) + (1 − e²)/2, (1 − e)²/2, (1 − e²)/2."""
     d, end = 0.5, exp(-0.5 * 3.0)
     model = scaled_model(flock(np.array([[0.0, 0.0], [d, 0.0]]), position=0, velocity=1))
     assert model.pace == d
