@@ -1,5 +1,6 @@
 """Margins of loops that are both delayed and sampled, by search over the maps of one period (`lifted`)."""
 
+from collections.abc import Callable
 from math import inf, nan, pi
 
 import numpy as np
@@ -7,10 +8,12 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin
 from flockana.stability.delay_roots import LatePart
-from flockana.stability.lifted import first_growth, moving_multipliers
+from flockana.stability.lifted import MOST, first_growth, moving_multipliers
 from flockana.stability.sampling import ModePeriod, SamplingMargin
 
 _TRIALS = 48  # delays or periods at which a search looks
+_AGAIN = 60  # further ones below what is found, where delay and period are whole or half multiples of each other
+_LARGE = 600  # states of a lifted map beyond which those are left out
 _FAR = 4.0  # times the delay margin without a hold, and periods: where the search ends
 _BRIEF = 1e-3  # of the shortest time of the flock: the shortest period that is tried
 
@@ -26,6 +29,16 @@ def _multiplier(system: DelaySystem, delay: float, period: float) -> complex:
     return complex(values[0]) if values.size else 0j
 
 
+def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatArray) -> float:
+    """Return the least argument found at which a radius exceeds 1: on a grid, then at the nearest of `whole` below."""
+    # Between multiples of the period a delay changes little; there growth may begin, end at once, and begin again.
+    found = first_growth(radius, trials)
+    if found in (0.0, inf):
+        return found
+    again = first_growth(radius, np.concatenate([trials[:1], np.sort(whole[whole < found])[-_AGAIN:]]))
+    return min(found, again)
+
+
 def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
     """Return the longest delay with which a flock is stable whose whole input is held for a period.
 
@@ -39,8 +52,8 @@ def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
     Returns
     -------
     DelayMargin
-        The first delay at which a search, 48 steps long, meets growth: nothing is certified (`least` is 0). Infinite
-        if it meets none up to four times the margin without a hold and four periods.
+        The first delay at which a search, coarse and then fine, meets growth: nothing is certified (`least` is 0).
+        Infinite if it meets none up to four times the margin without a hold and four periods.
 
     Examples
     --------
@@ -59,7 +72,8 @@ def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
         return DelayMargin(0.0, nan, 0.0)
     far = _FAR * (period + (ideal if ideal < inf else period))
     trials: FloatArray = np.concatenate([[0.0], np.linspace(far / _TRIALS, far, _TRIALS)])
-    found = first_growth(lambda delay: abs(_multiplier(system, delay, period)), trials)
+    whole = 0.5 * period * np.arange(1.0, 2.0 * far / period)
+    found = _search(lambda delay: abs(_multiplier(system, delay, period)), trials, whole)
     if found == inf:
         return DelayMargin(inf, nan, 0.0)
     return DelayMargin(found, abs(float(np.angle(_multiplier(system, found, period)))) / period, 0.0)
@@ -78,7 +92,8 @@ def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin
     Returns
     -------
     SamplingMargin
-        The first period at which a search, 48 steps long, meets growth: nothing is certified (`least` is 0).
+        The first period at which a search, coarse and then fine, meets growth: nothing is certified (`least` is 0). NaN
+        where even the shortest that is looked at grows, by the states of its lifted map: the margin is less.
 
     Examples
     --------
@@ -91,8 +106,15 @@ def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin
     if delay >= ideal:
         return SamplingMargin("hold, delayed", 0.0, 0.0, ())
     quickest = 2.0 * pi / system.highest if system.highest > 0.0 else 1.0
-    trials = np.geomspace(max(_BRIEF * quickest, delay / 50.0), 50.0 * quickest, _TRIALS)
-    found = first_growth(lambda period: abs(_multiplier(system, delay, period)), trials)
+    radius: Callable[[float], float] = lambda period: abs(_multiplier(system, delay, period))  # noqa: E731
+    shortest, start = delay / max(MOST // len(system.prompt[0]) - 6, 1), max(_BRIEF * quickest, delay / 50.0)
+    while radius(start) >= 1.0:  # without a hold it is stable: shorter ones are, at last
+        start *= 0.5
+        if start < shortest:
+            return SamplingMargin("hold, delayed", nan, 0.0, ())
+    brief = delay / max(_LARGE // len(system.prompt[0]) - 6, 1)
+    whole = 2.0 * delay / np.arange(1.0, 2.0 * delay / max(start, brief))
+    found = _search(radius, np.geomspace(start, max(50.0 * quickest, 2.0 * start), _TRIALS), whole)
     if found in (0.0, inf):
         return SamplingMargin("hold, delayed", found, 0.0, ())
     z = _multiplier(system, delay, found)

@@ -125,3 +125,11 @@ test_bad_input = refused(
     (lambda: period_map([LatePart(1.0, *np.eye(1)[None].repeat(2, 0))], 1e-4, np.zeros(1)), "the lifted map has"),
     (lambda: sampled_delay_margin(scalar(1.0, 1.0), 0.0), "period = 0: expected a number > 0"),
 )
+
+
+def test_growth_that_begins_and_ends_below_a_period_is_seen():
+    """A directed net with neighbours heard 1 late: held for 1/7 it grows, for 0.135 and 0.155 it does not."""
+    W = [[0, 1.1, 0, 0.5, 0], [0, 0, 1.5, 1.7, 0], [1, 1.2, 0, 0, 1], [0, 0, 0, 0, 1.5], [0.9, 1.2, 0, 0, 0]]
+    flock = linearise(NetConsensus(W, position=1.0, velocity=2.8), np.zeros((5, 1)))
+    period = flock.sampling_margin(delay=1.0, delayed="neighbours").period
+    assert 0.142 < period < 1.0 / 7.0
