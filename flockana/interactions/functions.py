@@ -40,7 +40,9 @@ class Corner(NamedTuple):
 
     def __str__(self) -> str:
         what = f"the {self.part}" if self.kind == "jump" else f"the slope of the {self.part}"
-        return f"{what} jumps at s = {self.distance:.6g}, from {self.below:.6g} to {self.above:.6g}"
+        known = self.below == self.below and self.above == self.above  # a law may tell where alone
+        sides = f", from {self.below:.6g} to {self.above:.6g}" if known else ""
+        return f"{what} jumps at s = {self.distance:.6g}{sides}"
 
 
 class PairCorner(NamedTuple):

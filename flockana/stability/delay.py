@@ -23,6 +23,7 @@ from flockana.base.checks import (
     ensure_kind,
     ensure_known,
     ensure_nonnegative,
+    ensure_numbers,
 )
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
@@ -63,6 +64,15 @@ class DelaySystem(ShortRepr):
     prompt: tuple[FloatArray, FloatArray]
     late: tuple[FloatArray, FloatArray]
     neutral: int = 0
+
+    def __post_init__(self) -> None:
+        wanted = "(K₀, D₀) and (K₁, D₁), square matrices of one size"
+        four = [ensure_numbers(name, each, wanted) for name in ("prompt", "late") for each in getattr(self, name)]
+        sizes = {each.shape for each in four}
+        if len(four) != 4 or len(sizes) > 1 or four[0].ndim != 2 or len(set(four[0].shape)) > 1:
+            raise ArgumentError(f"matrices of shapes {', '.join(str(each.shape) for each in four)}: expected {wanted}")
+        if not all(np.isfinite(each).all() for each in four):
+            raise ArgumentError(f"a matrix has a number that is not finite: expected {wanted}")
 
     @property
     def highest(self) -> float:

@@ -60,7 +60,8 @@ def delay_system(
     if isinstance(flock, DelayLinearisation):
         return flock.system
     if not isinstance(flock, Linearisation):
-        raise ArgumentError(f"{law.title} is a map: expected a continuous law; linearise(...) gives its map")
+        kind = "is a map" if law.is_map else "is of first order"
+        raise ArgumentError(f"{law.title} {kind}: expected a continuous law of second order; linearise(...) takes it")
     return delayed_flock(flock, delayed, carries, links)
 
 

@@ -9,7 +9,7 @@ from math import log, nan
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
 from flockana.stability.linear_flock import LinearFlock
@@ -172,6 +172,7 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] =
         raise ArgumentError(f"sizes = {tuple(sizes)}: expected rising numbers of agents, from 2 on")
     flocks = [chain(n) for n in counts]
     for n, flock in zip(counts, flocks, strict=True):
+        ensure_kind(f"chain({n})", flock, LinearFlock, "what linearise(law, q) returns")
         if len(flock.q) != n:
             raise ArgumentError(f"chain({n}) has {len(flock.q)} agents: expected {n}")
     found = [string_gains(flock) for flock in flocks]

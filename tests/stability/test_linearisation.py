@@ -10,6 +10,7 @@ from scipy.io import loadmat
 from flockana import (
     Algorithm1,
     Algorithm2,
+    AverageConsensus,
     DirectedNet,
     Gains,
     NetConsensus,
@@ -177,4 +178,7 @@ test_bad_input = refused(
     (lambda: CHAIN.delay_margin(delayed="pairs", links=[0, 1]), "expected pairs .i, j. of agents"),
     (lambda: ONE.delay_margin(carries="noise"), "unknown quantity that is late 'noise'"),
     (lambda: delay_system(TaylorStep(Algorithm1(), 0.1), [[0.0], [7.0]]), "TaylorStep is a map"),
+    (lambda: delay_system(AverageConsensus(np.eye(2)[::-1]), [[7.0], [7.0]]), "AverageConsensus is of first order"),
+    (lambda: DelaySystem((np.eye(2), np.eye(3)), (np.eye(2),) * 2), r"matrices of shapes \(2, 2\), \(3, 3\)"),
+    (lambda: DelaySystem((np.eye(1), np.eye(1)), (nan * np.eye(1),) * 2), "a number that is not finite"),
 )

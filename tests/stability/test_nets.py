@@ -101,6 +101,7 @@ def test_growth_before_decay_against_a_fine_grid(n):
 
 
 test_bad_input = refused(
+    (lambda: string_stability(lambda n: n, (2, 3)), r"chain\(2\) = 2: expected what linearise\(law, q\) returns"),
     (lambda: string_stability(chain_of(1.0, 1.0), (1, 3)), r"sizes = \(1, 3\): expected rising numbers of agents"),
     (lambda: string_stability(lambda n: net(np.eye(4), np.eye(4)), (3,)), r"chain\(3\) has 4 agents: expected 3"),
     (
