@@ -16,7 +16,6 @@ from flockana.recorded.velocities import motions
 _TIMES = 8.0  # of the law, which a window of samples is as long as
 _FEWEST = 40  # samples in a window
 _NUDGE = 1e-5  # relative change of a parameter for slopes
-_SMALL = 16  # coordinates of a flock whose slopes are differences
 _STEP = 0.4  # of the law's time, which a step of the integration is at most
 
 Neighbour = tuple[Any, Any, float]  # laws with a parameter increased and decreased, and by how much
@@ -175,14 +174,12 @@ def rescaled(parts: list[Window], factors: FloatArray) -> list[Window]:
 
 
 def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(∂u/∂q, ∂u/∂p), by differences where the law has none, or the flock is so small that these cost less."""
-    if q.size > _SMALL:
-        try:
-            a, b = law.derivatives(t, q, p)
-            return a.toarray(), b.toarray()
-        except (FlockanaError, NotImplementedError):
-            pass
-    return differences(lambda x: law.flow(t, x, p)[0], q), differences(lambda x: law.flow(t, q, x)[0], p)
+    """(∂u/∂q, ∂u/∂p), by differences where the law has none."""
+    try:
+        a, b = law.derivatives(t, q, p)
+        return a.toarray(), b.toarray()
+    except (FlockanaError, NotImplementedError):
+        return differences(lambda x: law.flow(t, x, p)[0], q), differences(lambda x: law.flow(t, q, x)[0], p)
 
 
 def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) -> FloatArray:

@@ -85,7 +85,10 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
         middle = middle or 1.0 / rate
         if steps.growth(middle) > 0.0:
             period = _refined(steps, before, middle) if before else low
-            return Growth(period, period)
+            beside = [steps.growth(period * (1.0 + side * CLOSE)) * side for side in (-1.0, 1.0)]
+            return Growth(
+                period, period if min(beside) > 10.0 * _ROUNDING else 0.0
+            )  # else rounding hides where it begins
         before = middle
     return Growth(inf, inf)
 

@@ -8,7 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, TaylorStep, find_equilibrium, linearise, simulate
+from flockana import (
+    Algorithm2,
+    ExplicitEuler,
+    Gains,
+    NetConsensus,
+    StaticTarget,
+    TaylorStep,
+    find_equilibrium,
+    linearise,
+    simulate,
+)
 from flockana.lattice import hexagonal_spiral
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.isola_2024.laws import MSNDiscretisation
@@ -132,3 +142,12 @@ test_bad_input_is_refused = refused(
         r"8 agents, 32 states in one component, would take about .* s and .* MB",
     ),
 )
+
+
+def test_a_margin_that_rounding_hides_is_not_called_certified():
+    """A directed ring of five so near its threshold that multipliers grow by less than their rounding."""
+    ring = np.roll(np.eye(5), 1, axis=1)
+    threshold = np.sqrt(0.5 / np.tan(np.pi / 5.0) ** 2)
+    for excess, certified in ((0.1, True), (1e-9, False)):
+        flock = linearise(NetConsensus(ring, velocity=threshold * (1.0 + excess)), np.zeros((5, 1)))
+        assert flock.sampling_margin().certified is certified

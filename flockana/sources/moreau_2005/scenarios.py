@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.moreau_2005.laws import NetAveraging
-from flockana.sources.moreau_2005.theorems import _HALF
+from flockana.sources.moreau_2005.theorems import HALVES
 
 _AGREES = verified("rooted-averaging", "rooted-averaging:hull") | vacuous("rooted-averaging:some-start")
 _OPEN = vacuous("rooted-averaging:agreement") | verified("rooted-averaging:hull")
@@ -58,7 +58,7 @@ SCENARIOS = {
     "averaging-ever-later": _net(
         "averaging-ever-later",
         "Three agents in turn, in rounds that grow",
-        NetAveraging(_HALF, lengths=(2, 1, 2, 1), growth=(1, 0, 1, 0)),
+        NetAveraging(HALVES, lengths=(2, 1, 2, 1), growth=(1, 0, 1, 0)),
         _OPEN | vacuous("rooted-averaging:some-start"),
         200,
     ),

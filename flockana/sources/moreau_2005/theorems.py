@@ -26,7 +26,7 @@ from flockana.theorems.toolkit import (
 _LAW = law_is("averaging over nets in turn", NetAveraging)
 _PROOF = "rooted-averaging"
 _GROWS = "growing-windows"
-_HALF = (  # agent 1 hears 0, is heard by 0, hears 2, is heard by 2
+HALVES = (  # agent 1 hears 0, is heard by 0, hears 2, is heard by 2
     ((1.0, 0.0, 0.0), (0.5, 0.5, 0.0), (0.0, 0.0, 1.0)),
     ((0.5, 0.5, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
     ((1.0, 0.0, 0.0), (0.0, 0.5, 0.5), (0.0, 0.0, 1.0)),
@@ -116,7 +116,7 @@ def growing(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     law, q = seen.law, seen.given.q[0]
     length, growth = law.lengths[0], law.growth[0]
-    like = law.nets == _HALF and law.lengths == (length, 1, length, 1) and law.growth == (growth, 0, growth, 0)
+    like = law.nets == HALVES and law.lengths == (length, 1, length, 1) and law.growth == (growth, 0, growth, 0)
     text = f"lengths {law.lengths}, growth {law.growth}"
     needs = [condition("agent 1 hears 0 and 2 in turn, ever longer", like and length >= 2 and growth >= 1, detail=text)]
     ends = sorted(q[[0, 2], 0].tolist()) if q.shape == (3, 1) else [0.0, 0.0]

@@ -5,17 +5,17 @@ import pytest
 
 import flockana as fl
 from flockana import NetAveraging
-from flockana.sources.moreau_2005.theorems import _HALF
+from flockana.sources.moreau_2005.theorems import HALVES
 from tests.refused import refused
 
-TURNS = NetAveraging(_HALF, lengths=(2, 1, 2, 1), growth=(1, 0, 1, 0))
+TURNS = NetAveraging(HALVES, lengths=(2, 1, 2, 1), growth=(1, 0, 1, 0))
 LINE = np.array([[0.0], [0.0], [1.0]])
 
 
 def test_nets_act_in_turn_for_lengths_that_grow():
     expected = [0, 0, 1, 2, 2, 3, 0, 0, 0, 1, 2, 2, 2, 3, *[0] * 4, 1, *[2] * 4, 3]
     assert [TURNS.net_at(step) for step in range(len(expected))] == expected
-    plain = NetAveraging(_HALF, lengths=(3, 1, 1, 2))
+    plain = NetAveraging(HALVES, lengths=(3, 1, 1, 2))
     assert [plain.net_at(step) for step in range(700, 707)] == [0, 0, 0, 1, 2, 3, 3]
 
 

@@ -84,7 +84,11 @@ def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
     moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
     limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
     least = min(limits, key=lambda one: float(one.mid())) if limits else None
-    room = Enclosure.of(0.0) if least is None else Enclosure.around(float(least.mid()) * degree - 1.0, 1e-9)
+    room = (
+        Enclosure.of(0.0)
+        if least is None
+        else Enclosure.around(float(least.mid()) * degree - 1.0, float(least.rad()) * degree + 8.0 * EPS)
+    )
     known = "no step is too long" if least is None else f"ε < min 2 Re μ/|μ|² = {least.str(8, radius=False)}"
     return judged("steps", room, [root], about="all", proof=_PROOF).described(
         computed=None if least is None else float(least.mid()),
