@@ -20,6 +20,7 @@ from flockana.base.checks import FloatArray
 
 MOST = 24  # states for which pairs of multipliers are looked at
 CLOSE = 1e-6  # relative distance of the certified bound from the margin
+_NEAR = 1e-2  # relative distance to which the margin must be told at least
 _REAL = 1e-4  # |Im μ|/|μ| of a root that may be real: more only divide an interval once more
 _INTERVALS = 60  # certified one after another
 _ROUNDING = 1e-14  # of a multiplier
@@ -85,12 +86,15 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
         middle = middle or 1.0 / rate
         if steps.growth(middle) > 0.0:
             period = _refined(steps, before, middle) if before else low
-            beside = [steps.growth(period * (1.0 + side * CLOSE)) * side for side in (-1.0, 1.0)]
-            return Growth(
-                period, period if min(beside) > 10.0 * _ROUNDING else 0.0
-            )  # else rounding hides where it begins
+            known = [_resolved(steps, period, width) for width in (_NEAR, CLOSE)]
+            return Growth(period if known[0] else nan, period if known[1] else 0.0)
         before = middle
     return Growth(inf, inf)
+
+
+def _resolved(steps: Steps, period: float, width: float) -> bool:
+    """Return whether a map falls and grows beyond rounding a share `width` below and above a step."""
+    return min(side * steps.growth(period * (1.0 + side * width)) for side in (-1.0, 1.0)) > 10.0 * _ROUNDING
 
 
 def _on_symmetric(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -270,6 +270,8 @@ def _first_to_grow(
             growth = Growth(0.0, 0.0)
         else:
             growth = first_growth(steps, part.pace, stable_below)
+            if growth.period == 0.0 and part.stable:  # shorter than any step that is looked at
+                growth = Growth(nan, 0.0)
         least = min(least, growth.least)
         if not growth.period >= first.period:
             first, part_of = growth, steps
