@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.memory import ResultCache
 from flockana.dynamics.between import Between, Course, merged
 from flockana.dynamics.tolerance import ErrorFloors, rounding_floors
-from flockana.laws.velocity import flow_of
+from flockana.laws.velocity import VelocityLaw
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
 from flockana.measures.metrics import cohesion_radius
@@ -39,9 +39,12 @@ class MeasuredRun(ResultCache):
 
     @cached_property
     def _flows(self) -> tuple[FloatArray, FloatArray]:
-        """(u, dH/dt) of the law at the samples."""
-        flow = flow_of(self.law)
-        flows = [flow(t, q, p) for t, q, p in zip(self.t, self.q, self.p, strict=True)]
+        """(u, dH/dt) of the law at the samples; a law of first order has no energy."""
+        first_order = isinstance(self.law, VelocityLaw)
+        flows = [
+            (self.law.acceleration(t, q), np.nan) if first_order else self.law.flow(t, q, p)
+            for t, q, p in zip(self.t, self.q, self.p, strict=True)
+        ]
         return np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
 
     @property

@@ -173,13 +173,6 @@ class VelocityLaw(LawOfMotion):
         return q, v
 
 
-def flow_of(law: Any) -> Any:
-    """Return `Law.flow`, or of a law of first order (t, q, p) -> (d²q/dt², NaN)."""
-    if isinstance(law, VelocityLaw):
-        return lambda t, q, p: (law.acceleration(t, q), float("nan"))
-    return law.flow
-
-
 def start_velocities(law: Any, t: float, q: Any, p: Any) -> Any:
     """Return the velocities of a start that gives none: those of a law of first order, else 0."""
     if p is not None:

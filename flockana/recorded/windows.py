@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.differences import ORDER_2, central_differences
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.recorded.recording import Recording
 from flockana.recorded.steps import led
@@ -179,17 +180,10 @@ def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[Floa
         a, b = law.derivatives(t, q, p)
         return a.toarray(), b.toarray()
     except (FlockanaError, NotImplementedError):
-        return differences(lambda x: law.flow(t, x, p)[0], q), differences(lambda x: law.flow(t, q, x)[0], p)
-
-
-def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) -> FloatArray:
-    """Return the slopes of a function by central differences, one column for each coordinate."""
-    unit, columns = _NUDGE * (float(np.ptp(x)) or float(np.abs(x).max()) or 1.0), []
-    for k in range(x.size):
-        nudge: FloatArray = np.zeros(x.shape)
-        nudge[np.unravel_index(k, x.shape)] = unit
-        columns.append((function(x + nudge) - function(x - nudge)).ravel() / (2.0 * unit))
-    return np.stack(columns, axis=1)
+        flows = (lambda x: law.flow(t, x, p)[0], q), (lambda x: law.flow(t, q, x)[0], p)
+        widths = [_NUDGE * (float(np.ptp(x)) or float(np.abs(x).max()) or 1.0) for _, x in flows]
+        slopes = (central_differences(*flow, width, ORDER_2)[0] for flow, width in zip(flows, widths, strict=True))
+        return next(slopes), next(slopes)
 
 
 def neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[Neighbour]:

@@ -9,7 +9,7 @@ K_L and D_L the entries that act on agents moved before, the equation is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ import numpy.typing as npt
 from numpy.polynomial import Polynomial
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
+from flockana.base.differences import ORDER_2, central_differences
 from flockana.base.errors import ArgumentError
 from flockana.base.shown import ShortRepr
 from flockana.equilibria.curvature import EPS
@@ -324,9 +325,9 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
             f"the state is no steady motion of {name}: {where} changes by {moved[worst]:.3g} of its unit in a step, "
             f"expected at most {_PARALLEL:g}; start from positions and velocities that the map keeps"
         )
-    matrix, kink = _differences(stepped, start, _WIDTH)
-    wide = _differences(stepped, start, 2.0 * _WIDTH)[0]
-    later = _differences(lambda x: stepped(x, 97), start, _WIDTH)[0]
+    matrix, kink = central_differences(stepped, start, _WIDTH, ORDER_2)
+    wide = central_differences(stepped, start, 2.0 * _WIDTH, ORDER_2)[0]
+    later = central_differences(lambda x: stepped(x, 97), start, _WIDTH, ORDER_2)[0]
     size, kink = float(np.linalg.norm(matrix)), max(kink, float(np.abs(wide - matrix).max()))
     if kink > _KINK * size:
         raise ArgumentError(
@@ -343,13 +344,3 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     return MapLinearisation(
         law, q, p, t, float(moved[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off
     )
-
-
-def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, width: float) -> tuple[FloatArray, float]:
-    """Derivative by central differences, and the largest difference between the slopes to either side."""
-    matrix, kink, here = np.empty((x.size, x.size)), 0.0, function(x)
-    for k, nudge in enumerate(width * np.eye(x.size)):
-        ahead, behind = function(x + nudge), function(x - nudge)
-        matrix[:, k] = (ahead - behind) / (2.0 * width)
-        kink = max(kink, float(np.abs(ahead - 2.0 * here + behind).max()) / width)
-    return matrix, kink
