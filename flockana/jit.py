@@ -7,7 +7,6 @@ function is a module's own, of a name and a signature that no other function has
 """
 
 import functools
-import hashlib
 import logging
 import os
 import re
@@ -25,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.digests import sha256
 from flockana.base.garbage import relaxed_gc
 from flockana.base.interrupts import origin_of
 from flockana.base.progress import show_part
@@ -245,7 +245,7 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
     """Return the path of the file that marks a function as compiled for these types by some process."""
     config, folder = load_numba().config, _folder(function)
     known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
-    return None if folder is None else folder / f"{hashlib.sha256(repr(known).encode()).hexdigest()[:16]}.known"
+    return None if folder is None else folder / f"{sha256([repr(known)])[:16]}.known"
 
 
 @contextmanager
@@ -309,7 +309,7 @@ def kernels_folder() -> Path | None:
     installation = repr((__file__, load_numba().__version__, sys.version))
     for place in places:
         with suppress(OSError, RuntimeError, AttributeError):  # no home folder, or no user ids
-            return sources_folder(_private(place()), hashlib.sha256(installation.encode()).hexdigest()[:16])
+            return sources_folder(_private(place()), sha256([installation])[:16])
     logging.getLogger("flockana").warning(
         "no folder can be written to for compiled kernels: each process compiles its own; set NUMBA_CACHE_DIR to one"
     )
@@ -347,10 +347,7 @@ def sources_digest(file: str) -> str:
     while found:
         known |= found
         found = {other for path in found for other in _imported(path)} - known
-    digest = hashlib.sha256(_FORM)
-    for path in sorted(known - {Path(__file__)}):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return sha256([_FORM, *(path.read_bytes() for path in sorted(known - {Path(__file__)}))])[:16]
 
 
 @cache

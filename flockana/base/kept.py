@@ -1,6 +1,5 @@
 """Plain data that are computed once for an installation and kept in the user's cache folder."""
 
-import hashlib
 import json
 import os
 import sys
@@ -9,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from flockana.base.digests import sha256
 from flockana.base.errors import FileError
 from flockana.base.files import write_atomic
 
@@ -39,4 +39,4 @@ def _installation() -> str:
     """Return a digest of the names, sizes and times of the package's files."""
     files = ((path, path.stat()) for path in sorted(ROOT.rglob("*.*")) if path.suffix != ".pyc")
     known = [sys.version, *((str(path), stat.st_size, stat.st_mtime_ns) for path, stat in files)]
-    return hashlib.sha256(repr(known).encode()).hexdigest()[:16]
+    return sha256([repr(known)])[:16]

@@ -6,9 +6,8 @@ fields, set by the function that computes it (`sealed`). Whatever rests on such 
 (`with_digest`), or the seal of the object in it. Both guard against accidents, not against an adversary.
 """
 
-import hashlib
 import json
-from collections.abc import Collection, Mapping, Set
+from collections.abc import Collection, Iterator, Mapping, Set
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from functools import cached_property, partial
@@ -19,6 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from flockana.base.digests import sha256
 from flockana.base.errors import ArgumentError, FileError
 
 SEAL = "digest"  # the key of a file's digest
@@ -30,7 +30,7 @@ _Evidence = TypeVar("_Evidence")
 
 def digest(data: Any) -> str:
     """Return the SHA-256 of plain data, independent of the order of keys."""
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+    return sha256([json.dumps(data, sort_keys=True)])
 
 
 def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -58,9 +58,7 @@ def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> s
     """
     # Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
     # field that takes no part in comparisons counts for nothing.
-    total = hashlib.sha256()
-    _feed(total, value, (), modules)
-    return total.hexdigest()
+    return sha256(_parts_of(value, (), modules))
 
 
 def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
@@ -106,20 +104,20 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
     raise ArgumentError(f"{name}: this {type(evidence).__name__} {fault}: expected {source}; {remedy}")
 
 
-def _feed(total: Any, value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -> None:
-    """Add a value to a hash; `within` are the objects that contain it."""
+def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -> Iterator[Any]:
+    """Yield the text and bytes by which a value is digested; `within` are the objects that contain it."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):
         numbers = _numbers(value)
         if numbers is not None:
-            total.update(f"array {numbers.shape if numbers.size else 0} {numbers.dtype.str}".encode())
-            total.update(numbers.data)  # without a copy
+            yield f"array {numbers.shape if numbers.size else 0} {numbers.dtype.str}"
+            yield numbers.data  # without a copy
             return
         items = value.tolist() if isinstance(value, np.ndarray) else value
-        total.update(f"sequence {len(items)}".encode())
+        yield f"sequence {len(items)}"
         for item in items:
-            _feed(total, item, within, modules)
+            yield from _parts_of(item, within, modules)
         return
     parts: Mapping[Any, Any] | None = None
     spelling = None if isinstance(value, type) else getattr(value, "spelling", None)  # of what files hold otherwise
@@ -148,11 +146,11 @@ def _feed(total: Any, value: Any, within: tuple[int, ...], modules: Mapping[str,
     else:
         text += getattr(value, "__name__", "")
         parts = _public(value)
-    total.update(f"{len(text)} {text}".encode())
+    yield f"{len(text)} {text}"
     if parts is not None and id(value) not in within:
         for key in sorted(parts, key=str):
-            total.update(f"{key!s} =".encode())
-            _feed(total, parts[key], (*within, id(value)), modules)
+            yield f"{key!s} ="
+            yield from _parts_of(parts[key], (*within, id(value)), modules)
 
 
 def _numbers(value: Any) -> npt.NDArray[Any] | None:

@@ -4,12 +4,13 @@ A row of the table lists what stands in the lecture and what may stand there ins
 together, in its question, solution and check.
 """
 
-import hashlib
 import re
 import tomllib
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
+
+from flockana.base.digests import sha256
 
 _VARY = {"exercise", "solution", "check"}
 
@@ -35,7 +36,7 @@ def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
 def draw_column(student: str, exercise: str, columns: int) -> int:
     """Return which of the columns a student gets in an exercise: the same for the same name, capitals apart."""
     name = " ".join(student.casefold().split())
-    return int.from_bytes(hashlib.sha256(f"{name}/{exercise}".encode()).digest()) % columns
+    return int(sha256([f"{name}/{exercise}"]), 16) % columns
 
 
 def give_own_numbers(cells: list[Any], number: str, rows_of: dict[str, list[list[str]]], student: str) -> None:

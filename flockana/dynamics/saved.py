@@ -8,7 +8,6 @@ damaged bytes; the seal holds where another program wrote the file anew, too.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from collections.abc import Callable, Mapping
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 
 from flockana._version import __version__
+from flockana.base.digests import sha256
 from flockana.base.errors import FileError
 from flockana.base.files import atomic_write, ensure_path
 from flockana.base.seals import checksum, is_sealed, seal_of, sealed
@@ -69,10 +69,9 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     """See `Trajectory.save`."""
     # in memory first: HDF5 tears itself apart on a disk that fills
     netcdf = dataset.to_netcdf(None, engine="h5netcdf")
-    total = hashlib.sha256(netcdf).hexdigest()
     with atomic_write(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
         file.write(netcdf)
-        file.write(_LINE % total.encode())
+        file.write(_LINE % sha256([netcdf]).encode())
     return Path(path)
 
 
@@ -112,11 +111,9 @@ def _ensure_whole(source: Path) -> None:
         if _MARK not in end:
             return  # another program wrote it, or flockana before there was such a line
         file.seek(0)
-        total, left = hashlib.sha256(), size - _LENGTH
-        while left > 0 and (block := file.read(min(left, _BLOCK))):
-            total.update(block)
-            left -= len(block)
-    if end[-_LENGTH:] != _LINE % total.hexdigest().encode():
+        whole = max(0, size - _LENGTH)
+        total = sha256(file.read(min(_BLOCK, whole - k)) for k in range(0, whole, _BLOCK))
+    if end[-_LENGTH:] != _LINE % total.encode():
         raise FileError(
             f"cannot read {source} as netCDF-4: it was cut short or altered, by the digest at its end; "
             "run the simulation again"

@@ -8,7 +8,6 @@ docstring keeps a store, and a changed kernel does not.
 """
 
 import ast
-import hashlib
 import json
 import platform
 import re
@@ -20,6 +19,7 @@ from importlib.metadata import version
 from importlib.util import cache_from_source
 from pathlib import Path
 
+from flockana.base.digests import sha256
 from flockana.base.errors import FileError
 from flockana.base.files import write_atomic
 
@@ -43,10 +43,10 @@ def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
     """Return `digest_of_sources`, cached in a folder by the files' contents."""
     # To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     # named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
-    exact = hashlib.sha256(repr((sys.version, _libraries(), Path(__file__).read_bytes())).encode())
+    exact: list[str | bytes] = [repr((sys.version, _libraries(), Path(__file__).read_bytes()))]
     for name, source in sorted(sources.items()):
-        exact.update(f"\0{name}\0{len(source)}\0".encode() + source)
-    kept = folder / f"mathematics.{exact.hexdigest()[:32]}.txt"
+        exact += [f"\0{name}\0{len(source)}\0", source]
+    kept = folder / f"mathematics.{sha256(exact)[:32]}.txt"
     with suppress(OSError, UnicodeDecodeError):
         if _DIGEST.fullmatch(digest := kept.read_text(encoding="ascii")):
             return digest
@@ -71,14 +71,13 @@ def source_files(root: Path) -> list[Path]:
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     """Return the digest of source files by name; comments, layout and docstrings do not count."""
     # each version of Python writes the syntax tree differently; the version is part of the digest anyway
-    total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
+    parts: list[str | bytes] = [json.dumps([platform.python_version_tuple()[:2], _libraries()])]
     for name, source in sorted(sources.items()):
-        total.update(f"\0{name}\0".encode())
-        total.update(_code_without_comments(source) if name.endswith(".py") else source)
-    return total.hexdigest()[:16]
+        parts += [f"\0{name}\0", _code_without_comments(source) if name.endswith(".py") else source]
+    return sha256(parts)[:16]
 
 
-def _code_without_comments(source: bytes) -> bytes:
+def _code_without_comments(source: bytes) -> str:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
@@ -86,4 +85,4 @@ def _code_without_comments(source: bytes) -> bytes:
             first = body[0]
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 del body[0]
-    return ast.dump(tree).encode()
+    return ast.dump(tree)

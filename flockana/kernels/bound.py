@@ -4,7 +4,6 @@ A template is a module of its own, in which a comment marks the lines that may b
 a file that is named by a digest of its text, so that numba keeps what it compiles of it.
 """
 
-import hashlib
 import itertools
 import re
 import sys
@@ -15,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from flockana.base.digests import sha256
 from flockana.base.files import write_atomic
 from flockana.jit import Kernel, is_modules_own, kernels_folder, sources_digest, sources_folder
 
@@ -53,7 +53,7 @@ def made(text: str, name: str, **functions: Kernel) -> ModuleType:
     future = "from __future__ import annotations\n"
     text = "\n".join([future, *imports, "", text.replace(future, "")])
     parts = (text, *(sources_digest(file) for file in sources if file), _of_text(text))
-    digest = hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+    digest = sha256(["\n".join(parts)])[:16]
     whole = f"flockana_{name}_{digest}"
     own = {key: known for key, known in functions.items() if key not in named}
     if not own and whole in sys.modules:

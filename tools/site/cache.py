@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from flockana.base.digests import sha256
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / "site" / "cache"
@@ -16,11 +17,8 @@ CACHE = ROOT / "site" / "cache"
 @cache
 def digest(folders: tuple[str, ...]) -> str:
     """Digest of every Python file in these folders of the checkout."""
-    mix = hashlib.sha256()
-    for folder in folders:
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            mix.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
-    return mix.hexdigest()[:16]
+    paths = (path for folder in folders for path in sorted((ROOT / folder).rglob("*.py")))
+    return sha256(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes() for path in paths)[:16]
 
 
 def place(kind: str, name: str, folders: Iterable[str]) -> Path:

@@ -1,0 +1,19 @@
+"""SHA-256 of text and bytes, by which files, seals, stores and caches know their contents."""
+
+import hashlib
+from collections.abc import Iterable
+from typing import Any
+
+
+def sha256(parts: Iterable[Any]) -> str:
+    """Return the SHA-256 of texts and buffers of bytes, one after another, as 64 hexadecimal digits.
+
+    Examples
+    --------
+    >>> sha256(["ab", b"c"])[:16]
+    'ba7816bf8f01cfea'
+    """
+    total = hashlib.sha256()
+    for part in parts:
+        total.update(part.encode() if isinstance(part, str) else part)
+    return total.hexdigest()
