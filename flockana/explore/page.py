@@ -6,7 +6,7 @@ from importlib.resources import files
 from typing import Any
 
 from flockana.explore.starts import law_names
-from flockana.player import script, style
+from flockana.player.page import script, style, templates
 from flockana.report.catalogues import scenario_entries
 
 _SCRIPTS = ("form.js", "handles.js", "answers.js", "history.js", "explore.js")
@@ -28,10 +28,6 @@ def page(first: dict[str, Any], nonce: str) -> str:
         groups.append({"label": "File", "kind": "file", "names": {first["name"]: ""}})
     data = json.dumps({"first": first, "groups": groups}).replace("<", "\\u003c")
     scripts = script() + "".join(map(_text, _SCRIPTS))
-    return (
-        _text("explore.html")
-        .replace("/*STYLE*/", style() + _text("explore.css"))
-        .replace("/*DATA*/", data)
-        .replace("/*SCRIPT*/", scripts)
-        .replace("NONCE", nonce)
-    )
+    page_style = style() + _text("explore.css")
+    template = templates().get_template("explore/explore.html.j2")
+    return template.render(style=page_style, data=data, scripts=scripts, nonce=nonce)

@@ -1,9 +1,15 @@
 """Player as parts of a page, and as a page of its own."""
 
+from __future__ import annotations
+
 import base64
 from functools import cache
 from html import escape
 from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 # The drawing takes what height the strip leaves of the window, or of a notebook's frame.
 _WHOLE = (
@@ -50,13 +56,16 @@ def framed(title: str, html: str, height: int) -> str:
     return f'<iframe title="{escape(title)}" sandbox="allow-scripts" style="{look}" srcdoc="{escape(html)}"></iframe>'
 
 
+def templates() -> Environment:
+    """Return the environment of all pages' templates, which escapes every value; each page has its own."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    return Environment(
+        loader=PackageLoader("flockana", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+
+
 def page(data: bytes, *, title: str = "A run") -> str:
     """Return a self-contained page with the player and one run."""
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        '<link rel="icon" href="data:,">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<style>{style()}\n{_WHOLE}</style></head>"
-        f'<body><main><h1 class="fp-hidden">{escape(title)}</h1><div id="player"></div></main>'
-        f"{played(data)}</body></html>"
-    )
+    template = templates().get_template("player/page.html.j2")
+    return template.render(title=title, style=style(), look=_WHOLE, code=played(data))

@@ -14,13 +14,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import atomic_write, ensure_path
-from flockana.player.page import script, style
+from flockana.player.page import script, style, templates
 from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, scenario_id, verdict_id
@@ -143,10 +143,7 @@ def _run_facts(seed: int, seconds: float | None, complete: bool) -> dict[str, An
 
 def page_environment() -> Environment:
     """Return the template environment of one page; it numbers the page's figures."""
-    environment = Environment(
-        loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    numbers = count(1)
+    environment, numbers = templates(), count(1)
 
     def figure(picture: Picture) -> Markup:
         return Markup(named(picture.source, picture.caption, next(numbers)))
@@ -163,7 +160,7 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
     verdicts, whole = [finding.verdict for _, finding, _ in shown], run["of"] is None
     return (
         page_environment()
-        .get_template("template.html.j2")
+        .get_template("report/template.html.j2")
         .render(
             run=run,
             opening=opening_sentence([finding for _, finding, _ in shown]),

@@ -20,7 +20,7 @@ from flockana.theorems.catalogue import catalogue
 
 _LEVEL = 0.95  # confidence of each interval
 _DRAWN = 12  # combinations of parameters whose shares fit one picture
-TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
+TEMPLATE = "report/statistics.html.j2"  # takes `statistics`, the section
 
 
 @dataclass(frozen=True)
