@@ -30,6 +30,7 @@ from .environment.obstacles import Obstacle as Obstacle
 from .environment.obstacles import Sphere as Sphere
 from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
+from .environment.polygon import SimplePolygon as SimplePolygon
 from .environment.spring import Spring as Spring
 from .environment.system import SystemTarget as SystemTarget
 from .environment.table_target import TableTarget as TableTarget
@@ -129,7 +130,6 @@ from .sources.jond_2025 import Alien as Alien
 from .sources.jond_2025 import Box as Box
 from .sources.jond_2025 import DiscreteMinimalFlocking as DiscreteMinimalFlocking
 from .sources.jond_2025 import MinimalFlocking as MinimalFlocking
-from .sources.jond_2025 import SimplePolygon as SimplePolygon
 from .sources.jond_2025 import ZoneFlocking as ZoneFlocking
 from .sources.jond_2025 import ZoneNoise as ZoneNoise
 from .sources.jond_2025 import ZoneRadii as ZoneRadii

@@ -5,6 +5,7 @@ from .obstacles import Obstacle as Obstacle
 from .obstacles import Sphere as Sphere
 from .obstacles import Wall as Wall
 from .polygon import Polygon as Polygon
+from .polygon import SimplePolygon as SimplePolygon
 from .spring import Spring as Spring
 from .system import SystemTarget as SystemTarget
 from .table_target import TableTarget as TableTarget

@@ -35,14 +35,6 @@ class BetaAgents(NamedTuple):
     clearance: FloatArray
 
 
-def ensure_corners(vertices: Any) -> FloatArray:
-    """Return the corners of a polygon in the plane, shape (V, 2)."""
-    corners = ensure_points("vertices", vertices)
-    if corners.shape[0] < 3 or corners.shape[1] != 2:
-        raise ArgumentError(f"vertices have shape {corners.shape}: expected (V, 2) with V >= 3")
-    return corners
-
-
 class Obstacle(ShortRepr, ABC):
     """Base class of convex obstacles: frozen dataclasses with `par`, `ball` and `kernels`.
 

@@ -1,5 +1,4 @@
 from .environment.zone_obstacles import Box as Box
-from .environment.zone_obstacles import SimplePolygon as SimplePolygon
 from .environment.zone_world import Alien as Alien
 from .environment.zone_world import ZoneWorld as ZoneWorld
 from .interactions.zone_noise import ZoneNoise as ZoneNoise

@@ -12,7 +12,8 @@ from flockana.base.errors import ArgumentError
 from flockana.base.shown import ShortRepr
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
+from flockana.environment.polygon import SimplePolygon
+from flockana.sources.jond_2025.environment.zone_obstacles import Box, ball_clearance_along
 from flockana.sources.jond_2025.kernels.zones import World
 
 

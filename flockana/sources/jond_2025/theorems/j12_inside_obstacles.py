@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon
+from flockana.environment.polygon import SimplePolygon
+from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking

@@ -8,7 +8,8 @@ import shapely
 
 from flockana import Alien, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
 from flockana.base.errors import ArgumentError
-from flockana.sources.jond_2025.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
+from flockana.environment.polygon import SimplePolygon
+from flockana.sources.jond_2025.environment.zone_obstacles import Box, ball_clearance_along
 from tests.refused import refused
 
 C, BASE = 3.0, 0.5
