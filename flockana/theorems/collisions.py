@@ -10,18 +10,17 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
+from flockana.theorems.claims import counted, judged
 from flockana.theorems.meeting import above_least, meeting
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
-from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, counted, judged, positive_room
+from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, Trajectory, condition, lengths, positive_room
 
 Pair = tuple[int, int]
 IndexArray = npt.NDArray[np.intp]

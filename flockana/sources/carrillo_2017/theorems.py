@@ -3,24 +3,10 @@
 import numpy as np
 
 from flockana.sources.carrillo_2017.laws import SingularAlignment
+from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.collisions import least_distance
-from flockana.theorems.toolkit import (
-    EPS,
-    Checked,
-    Claim,
-    Enclosure,
-    Hypothesis,
-    Needs,
-    Observed,
-    Tolerances,
-    condition,
-    judged,
-    law_is,
-    positive_room,
-    run_theorem,
-    unmet,
-    vacuous,
-)
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, positive_room
 
 _LAW = law_is("alignment with a singular weight", SingularAlignment)
 _PAIR = "singular-pair"

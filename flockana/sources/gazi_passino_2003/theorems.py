@@ -5,19 +5,8 @@ from math import log, sqrt
 import numpy as np
 
 from flockana.sources.gazi_passino_2003.laws import GaziPassino
-from flockana.theorems.toolkit import (
-    Checked,
-    Claim,
-    Enclosure,
-    Hypothesis,
-    Observed,
-    Tolerances,
-    condition,
-    judged,
-    law_is,
-    limit_claim,
-    run_theorem,
-)
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem
 
 _PROOF = "gazi-passino"
 

@@ -3,20 +3,8 @@
 import numpy as np
 
 from flockana.sources.wang_xiao_2010.laws import FiniteTimeAlignment
-from flockana.theorems.toolkit import (
-    EPS,
-    Checked,
-    Enclosure,
-    Hypothesis,
-    Observed,
-    Tolerances,
-    condition,
-    judged,
-    law_is,
-    run_theorem,
-    unmet,
-    vacuous,
-)
+from flockana.theorems.theorem import Checked, Hypothesis, Tolerances, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, run_theorem, vacuous
 
 _PROOF = "finite-time"
 

@@ -5,21 +5,9 @@ import numpy as np
 from flockana.certified.balls import exact
 from flockana.certified.second_order import laplacian_of, moving_eigenvalues, stable_off_agreement, velocity_threshold
 from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
-from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.rooted import has_root
-from flockana.theorems.toolkit import (
-    Checked,
-    Claim,
-    Enclosure,
-    Hypothesis,
-    Needs,
-    Observed,
-    Tolerances,
-    condition,
-    law_is,
-    limit_claim,
-    vacuous,
-)
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances
+from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem, vacuous
 
 _PROOF = "net-consensus"
 _MORE = "raise β or lower α"

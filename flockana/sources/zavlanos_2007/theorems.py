@@ -6,11 +6,10 @@ from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import run_theorem
 from flockana.theorems.energy import balance, never_rises
 from flockana.theorems.sampling import polygons
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths, run_theorem
 
 _PROOF = "links-kept"
 

@@ -6,13 +6,12 @@ from math import floor
 import numpy as np
 
 from flockana.theorems import sampling
-from flockana.theorems.claims import run_theorem
 from flockana.theorems.enclosure import Real
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import has_lattice
 from flockana.theorems.leads import bridge
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged, run_theorem
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 

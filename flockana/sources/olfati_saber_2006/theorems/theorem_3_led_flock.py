@@ -7,12 +7,11 @@ from flockana.sources.olfati_saber_2006.theorems import any_potential
 from flockana.theorems import collisions
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.attraction import final_basin
-from flockana.theorems.claims import run_theorem
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.gamma_agent import consistent
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
+from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, run_theorem, vacuous
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)
 _PROOFS = ("cohesion", "collisions")  # of (i) and of (iv), for the paper's own pair law

@@ -5,14 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.measures.windows import joint_windows
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.sources.vicsek_1995.theorems import averaging
 from flockana.theorems.claim import does_not_hold
-from flockana.theorems.claims import run_theorem
+from flockana.theorems.claims import by_count, run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, Observed, Trajectory, by_count, condition, law_is, limit_claim
+from flockana.theorems.toolkit import Certificate, FloatArray, Observed, Trajectory, condition, law_is, limit_claim
 
 _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart
