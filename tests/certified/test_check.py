@@ -2,7 +2,6 @@
 
 import copy
 import json
-from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil, floor
 from pathlib import Path
@@ -24,19 +23,6 @@ from flockana.cli.main import main
 from flockana.equilibria.record import smallest_strained
 from flockana.lattice import hexagonal_patch
 from tests.certified.conftest import ALL, basin_of, leaf, resealed, with_leaf
-
-
-def numbers(data, path=()) -> Iterator[tuple]:
-    """Where the numbers of a certificate stand, in text or not; not those of the statement."""
-    if isinstance(data, dict):
-        for key in data:
-            if key not in ("statement", "prose", "digest", "made_with", "format", "kind", "algorithm"):
-                yield from numbers(data[key], (*path, key))
-    elif isinstance(data, list):
-        for k, item in enumerate(data):
-            yield from numbers(item, (*path, k))
-    else:
-        yield path
 
 
 def value(text):
@@ -79,18 +65,6 @@ def test_the_checker_knows_nothing_of_the_prover():
             lines = (folder / f"{module}.py").read_text(encoding="utf-8").splitlines()
             imports = [line for line in lines if line.startswith(("from", "import"))]
             assert not any(f"flockana.certified.{name} " in line for line in imports for name in others), module
-
-
-def test_a_change_of_any_one_number_is_rejected():
-    data = small()
-    places = list(numbers(data))
-    assert len(places) > 60
-    for path in places:
-        inner = leaf(data, path)
-        old = value(inner)
-        for new in (old + 1, old - 1) if isinstance(inner, int) else (old * 1001 / 1000 + (old == 0), old + 1):
-            assert rejected(with_value(data, path, new)), path
-    assert not rejected(data)
 
 
 CLAIMS = ["radius", "level", "curvature", "rate", "overshoot", "distance", "surplus", "second_eigenvalue", "degree"]
@@ -325,15 +299,9 @@ def test_a_key_that_is_given_twice_is_refused_at_every_depth(name, tmp_path):
             check_certificate(tmp_path / "twice.json")
 
 
-def test_the_sphere_and_the_clearance_of_the_review_are_refused():
-    """Algorithm 1 has neither: both were believed unseen."""
+def test_a_clearance_is_refused_where_there_is_no_sphere():
     with pytest.raises(RejectedError, match="clearance = '1000': expected null"):
         check_data(resealed_whole(DATA["tube"] | {"clearance": "1000"}))
-    sphere = {"centre": ["3"], "radius": "1"}
-    for key, value in (("beta_d", "4.2"), ("c1_beta", "1"), ("spheres", []), ("spheres", [sphere])):
-        other = DATA["tube"] | {"law": DATA["tube"]["law"] | {key: value}}
-        with pytest.raises(RejectedError, match=f"law holds '{key}'"):
-            check_data(resealed_whole(other))
 
 
 NUMBERS = [

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import AlphaSymbols, BetaSymbols, phi_alpha, phi_beta, potentials
+from flockana.symbolic import AlphaSymbols, BetaSymbols, potentials
 from flockana.symbolic.potentials import derive_psi_alpha, derive_psi_beta, psi_alpha, psi_beta
 
 Z = potentials.Z
@@ -45,24 +45,6 @@ def test_reference_values(parameters: tuple[float, ...], at_zero: float, at_cuto
     assert float(numeric(named, numbers, 2 * r_alpha)) == pytest.approx(at_cutoff, rel=1e-15, abs=0)
 
 
-@pytest.mark.parametrize("parameters", [TABLE[0][0], TABLE[1][0], PLATEAU])
-@pytest.mark.parametrize("fraction", [0, 0.1, 0.3, 0.7, 0.85, 0.95, 1, 1.5])
-def test_psi_alpha_is_the_integral_of_phi_alpha(parameters: tuple[float, ...], fraction: float) -> None:
-    """Direct quadrature of the whole phi_alpha, split at its joints, in both cases of the constant."""
-    alpha, numbers = AlphaSymbols(*parameters), values(parameters)
-    z = (alpha.r_alpha * sp.Rational(str(fraction))).evalf(30)
-    force = sp.lambdify([Z, *numbers], phi_alpha(Z, alpha=potentials.ALPHA_NAMED), "mpmath")
-    with mpmath.workdps(30):
-        fixed = [mpmath.mpmathify(x) for x in numbers.values()]
-        ends = [mpmath.mpmathify(x.evalf(30)) for x in (alpha.d_alpha, z)]
-        joints = [mpmath.mpmathify(x.evalf(30)) for x in (alpha.h * alpha.r_alpha, alpha.r_alpha)]
-        inside = sorted((j for j in joints if min(ends) < j < max(ends)), reverse=ends[0] > ends[1])
-        direct = mpmath.quad(lambda s: force(s, *fixed), [ends[0], *inside, ends[1]])
-    derived = numeric(psi_alpha(Z, alpha=potentials.ALPHA_NAMED), numbers, z)
-    assert abs(derived - direct) < 1e-20  # both are good to about 25 digits of values below 100
-    assert derived >= 0
-
-
 def test_the_two_cases_agree_where_they_meet() -> None:
     """h r_alpha = d_alpha = 2 exactly: the value at 0 is closed, from either case."""
     alpha = AlphaSymbols(eps=1, h=0.5, a=1, b=1, d=sp.sqrt(8), r=sp.sqrt(24))
@@ -83,21 +65,6 @@ def test_pieces_hold_where_they_say() -> None:
             assert len(met) == 1
             difference = met[0].equation.rhs - psi_alpha(Z, alpha=potentials.ALPHA_NAMED)
             assert abs(numeric(difference, numbers, z)) < 1e-25
-
-
-@pytest.mark.parametrize("fraction", [0, 0.5, 0.9, 0.95, 1, 1.2])
-def test_psi_beta_is_the_integral_of_phi_beta(fraction: float) -> None:
-    named, beta = potentials.BETA_NAMED, BetaSymbols(eps=0.1, h=0.9, d=4.2)
-    numbers = {named.h: beta.h, named.d_beta: beta.d_beta.evalf(30)}
-    z = sp.Rational(str(fraction)) * numbers[named.d_beta]
-    force = sp.lambdify([Z, *numbers], phi_beta(Z, beta=named), "mpmath")
-    with mpmath.workdps(30):
-        fixed = [mpmath.mpmathify(x.evalf(30)) for x in numbers.values()]
-        ends = [fixed[1], min(max(fixed[0] * fixed[1], mpmath.mpmathify(z)), fixed[1]), mpmath.mpmathify(z)]
-        direct = mpmath.quad(lambda s: force(s, *fixed), ends)
-    derived = numeric(psi_beta(Z, beta=named), numbers, z)
-    assert abs(derived - direct) < 1e-20  # as for psi_alpha
-    assert (derived > 0) == (fraction < 1)
 
 
 def test_an_indicator_has_no_taper() -> None:
