@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.font_manager import FontProperties
 from matplotlib.path import Path
-from matplotlib.transforms import IdentityTransform
+from matplotlib.transforms import Bbox, IdentityTransform
 
 from flockana.base.checks import FloatArray
 
@@ -112,6 +112,12 @@ class PlainScale(Artist):
             return *ends, depth + (0.0 if label else extra), 0.0
         sides = (depth, 0.0) if self.side == "left" else (0.0, depth)
         return *sides, ends[0], max(ends[1], extra)
+
+    def get_window_extent(self, renderer: Any = None) -> Bbox:
+        """Return the axes with the room of this scale, in pixels, for matplotlib's layout."""
+        left, right, below, above = self.room(renderer)
+        box = self.ax.bbox
+        return Bbox.from_extents(box.x0 - left, box.y0 - below, box.x1 + right, box.y1 + above)
 
     def _kinds(self) -> tuple[Ticks, Ticks]:
         return self.ticks("major"), self.ticks("minor")

@@ -49,17 +49,22 @@ def svg(draw: Callable[[Any], object], size: tuple[float, float]) -> str:
 
 def placed(draw: Callable[[Any], object], size: tuple[float, float], dpi: float) -> Any:
     """Return the canvas of a figure whose axes have what room their texts leave."""
+    from matplotlib import rcParams
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     from flockana.plots.scales import plain_scales
-    from flockana.report.layout import place_axes
 
-    figure = Figure(figsize=size, dpi=dpi)  # not pyplot's: nothing to close, safe in any process
-    figure.set_layout_engine("none")
+    figure: Any = Figure(figsize=size, dpi=dpi, layout="constrained")  # not pyplot's: nothing to close
     canvas: Any = FigureCanvasAgg(figure)
     draw(figure)
-    place_axes(figure, canvas.get_renderer(), plain_scales(figure))
+    for ax, scales in plain_scales(figure).items():
+        above = max(scale.room(canvas.get_renderer())[3] for scale in scales)
+        for side in ("left", "center", "right"):
+            if title := ax.get_title(side):  # above what else is there
+                ax.set_title(title, loc=side, pad=rcParams["axes.titlepad"] + above * 72.0 / dpi)
+    figure.get_layout_engine().execute(figure)
+    figure.set_layout_engine("none")
     return canvas
 
 
