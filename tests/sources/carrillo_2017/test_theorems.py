@@ -7,7 +7,6 @@ import pytest
 
 import flockana as fl
 from flockana import SingularAlignment, SingularWeight, verify
-from flockana.scenarios import scenario
 from tests.refused import refused
 from tests.theorems.made_up import statuses
 
@@ -77,12 +76,6 @@ def test_a_run_that_ended_at_the_contact_is_judged_too():
     other = closing(5.0, end=0.2)
     later = verify("singular-pair", law=HALF, q0=PAIR[::-1], p0=[[0.0], [5.0]], t_span=(0.0, 0.2))
     assert later.claim("meet").status == verify("singular-pair", other).claim("meet").status == "verified"
-
-
-def test_scenarios_say_what_is_expected_of_them():
-    for name in ("singular-slow", "singular-critical", "singular-fast", "singular-never", "singular-crowd"):
-        entry = scenario(name)
-        assert [line for verdict in entry.verify(entry.run()) for line in entry.surprises(verdict)] == []
 
 
 test_what_is_refused = refused(

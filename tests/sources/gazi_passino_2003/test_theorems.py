@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.scenarios import scenario
 from tests.theorems.made_up import statuses
 
 Q = np.random.default_rng(5).uniform(-4.0, 4.0, (6, 2))
@@ -42,11 +41,3 @@ def test_what_is_known_of_the_start_alone():
     own = table[table.theorem == "gazi-passino"].set_index("claim").status
     assert own["bounded"] == own["apart"] == "met"
     assert own["collapse"] == "unmet"
-
-
-def test_scenarios_say_what_is_expected_of_them():
-    for name in ("swarm", "swarm-pair", "swarm-above", "swarm-equal", "swarm-collapse"):
-        item = scenario(name)
-        assert [line for verdict in item.verify(item.run()) for line in item.surprises(verdict)] == []
-    pair = scenario("swarm-pair").run()
-    assert pair.metric("cohesion_radius")[-1] == pytest.approx(0.5 * pair.law.radius, rel=1e-6)

@@ -68,19 +68,6 @@ def test_the_neighbourhood_of_one_link(side):
     assert 0.0 < verdict.claim("nearby").computed <= 3.0 * (sqrt(0.5) - 0.5)
 
 
-def test_scenarios_say_what_is_expected_of_them():
-    for name in ("formation-near", "formation-rhomb", "formation-far", "formation-line"):
-        item = scenario(name)
-        run = item.run()
-        assert [line for verdict in item.verify(run) for line in item.surprises(verdict)] == []
-    assert fl.verify("distance-formation", run).claim("collinear").status == "verified"  # the last is on a line
-    redundant = fl.DistanceFormation(tuple((i, j) for i in range(4) for j in range(i)), (1.0, 1.0, 1.0, 1.0, 1.0, 1.7))
-    told = statuses(
-        fl.verify("distance-formation", law=redundant, q0=scenario("formation-rhomb").q0, t_span=(0.0, 0.1))
-    )
-    assert told["formation"] == "vacuous"  # six links of four agents depend on each other
-
-
 test_what_is_refused = refused(
     (lambda: fl.DistanceFormation(()), "expected at least one link"),
     (lambda: fl.DistanceFormation(TRIANGLE, (1.0, 2.0)), "2 lengths of 3 links"),

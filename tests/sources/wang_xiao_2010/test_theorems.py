@@ -6,7 +6,6 @@ import pytest
 import flockana as fl
 from flockana import FiniteTimeAlignment, verify
 from flockana.base.errors import ArgumentError
-from flockana.scenarios import scenario
 from tests.refused import refused
 from tests.theorems.made_up import statuses
 
@@ -54,12 +53,6 @@ def test_the_bound_of_a_ring_in_other_units():
     verdict = verify("finite-time", law=law, q0=10.0 * q, p0=40.0 * p, t_span=(0.0, 0.1))
     assert verdict.claim("settle").stated == f"all velocities are p̄ from T = {0.25 * last:.6g} on"
     assert statuses(verdict) == {"bound": "verified", "settle": "verified", "some-start": "vacuous"}
-
-
-def test_scenarios_say_what_is_expected_of_them():
-    for name in ("finite-time-ring", "finite-time-linear", "finite-time-parted"):
-        entry = scenario(name)
-        assert [line for verdict in entry.verify(entry.run()) for line in entry.surprises(verdict)] == []
 
 
 test_what_is_refused = refused(

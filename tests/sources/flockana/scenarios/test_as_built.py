@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from flockana.scenarios import scenario
-
-
-@pytest.mark.parametrize("name", ["as-built", pytest.param("wind", marks=pytest.mark.slow)])
-def test_what_is_expected_of_it(name):
-    case = scenario(name)
-    found = case.verify(case.run())
-    assert {verdict.theorem: verdict.status for verdict in found} == dict(case.expected)
 
 
 def test_a_seed_is_another_wind_and_other_noise():
