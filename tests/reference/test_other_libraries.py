@@ -3,7 +3,6 @@
 import networkx as nx
 import numpy as np
 import pytest
-import shapely
 from scipy.spatial import cKDTree
 
 import flockana as fl
@@ -39,14 +38,3 @@ def test_links_are_those_of_a_tree_and_components_those_of_networkx(n, m, size):
     )
     assert lattice.coordination(n, found).tolist() == [degree for _, degree in net.degree()]
     assert lattice.is_planar(n, found) == nx.check_planarity(net)[0]
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_crossings_are_those_of_shapely(seed):
-    q = flock(30, 2, 14.0, seed)
-    pairs = fl.links(q, 8.4)
-    lines = shapely.linestrings(q[pairs])
-    first, second = shapely.STRtree(lines).query(lines, predicate="crosses")
-    expected = sorted({(min(a, b), max(a, b)) for a, b in zip(first.tolist(), second.tolist(), strict=True)})
-    assert len(expected) > 10
-    assert sorted(tuple(sorted(pair)) for pair in lattice.crossings(q, pairs).tolist()) == expected
