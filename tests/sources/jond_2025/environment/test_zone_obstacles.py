@@ -8,7 +8,7 @@ import shapely
 
 from flockana import Alien, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
 from flockana.base.errors import ArgumentError
-from flockana.environment.polygon import SimplePolygon
+from flockana.environment.polygon import Polygon, SimplePolygon
 from flockana.sources.jond_2025.environment.zone_obstacles import Box, ball_clearance_along
 from tests.refused import refused
 
@@ -83,7 +83,7 @@ def test_zones_look_ahead_only():
 
 
 def test_inside_an_obstacle_the_letter_pushes_deeper():
-    block = ZoneWorld((SimplePolygon([(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)]),))
+    block = ZoneWorld((Polygon([(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)]),))  # a simple one too
     q, heading = (1.0, 4.0), (-1.0, 0.0)  # the boundary is 1 to the left
     np.testing.assert_allclose(force(block, q, heading), [-4.0, 0.0])
     np.testing.assert_allclose(force(block, q, heading, inside="literal", trigger="three-segments"), [2.0, 0.0])
