@@ -305,26 +305,3 @@ def test_who_watches_a_run_cannot_edit_it():
 
     watched, alone = make(t_eval=[0.0, 0.7, 1.0], watch=centred), make(t_eval=[0.0, 0.7, 1.0])
     np.testing.assert_array_equal(watched.q, alone.q)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"t": [0.0, 2.0, 1.0]}, r"t\[1\] = 2 and t\[2\] = 1: expected rising times"),
-        ({"t": [0.0, np.nan, 1.0]}, r"t\[1\] = nan: expected finite numbers"),
-        ({"q": np.full((3, 1, 1), np.inf)}, r"q\[0, 0, 0\] = inf: expected finite numbers \(3 bad\)"),
-        ({"u": np.full((3, 1, 1), np.nan)}, r"u\[0, 0, 0\] = nan"),
-        ({"p": np.zeros((3, 1, 1), complex)}, "p: expected real numbers at 3 samples, got complex128"),
-        ({"q": np.array([[["1"]]] * 3)}, "q: expected real numbers"),
-        ({"extra": {"work": [0.0, np.nan, 0.0]}}, r"extra\['work'\]\[1\] = nan"),
-        ({"extra": {"work": [0.0]}}, "expected real numbers at 3 samples"),
-        ({"status": "finished"}, "status = 'finished': expected one of complete, interrupted, failed"),
-        ({"law": None}, "law = None: expected a law"),
-        ({"law": fl.Algorithm1}, "did you forget the parentheses"),
-    ],
-)
-def test_a_trajectory_holds_real_finite_numbers_at_rising_times(change, message):
-    zeros = np.zeros((3, 1, 1))
-    given = {"t": [0.0, 1.0, 2.0], "q": zeros, "p": zeros, "u": zeros, "law": fl.Algorithm1()}
-    with pytest.raises(ArgumentError, match=message):
-        Trajectory(**(given | change))

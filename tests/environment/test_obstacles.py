@@ -213,14 +213,10 @@ def test_no_obstacles_no_sums() -> None:
 
 
 test_bad_obstacles_are_refused = refused(
-    (lambda: Sphere((0.0, 0.0), 0.0), "radius = 0: expected a number > 0"),
-    (lambda: Sphere((0.0, 0.0), -2.0), "radius = -2: expected a number > 0"),
     (lambda: Sphere((0.0, math.nan), 1.0), "centre = .*expected finite"),
-    (lambda: Sphere(5.0, 1.0), "centre has shape .*expected a vector"),
     (lambda: Wall((0.0, 0.0), (0.0, 0.0)), r"normal = \(0.0, 0.0\): expected a vector that is not zero"),
     (lambda: Wall((0.0, 0.0), (0.0, 0.0, 1.0)), "normal has 3 components: expected 2"),
     (lambda: Capsule((1.0, 1.0), (1.0, 1.0), 1.0), "expected two different points; a ball is a Sphere"),
-    (lambda: Capsule((1.0, 1.0), (2.0, 1.0), 0.0), "radius = 0"),
     (lambda: Capsule((1.0,), (2.0,), 1.0), "on a line the obstacle is a Sphere"),
     (lambda: Polygon([(0.0, 0.0), (1.0, 0.0)]), r"expected \(V, 2\) with V >= 3"),
     (lambda: Polygon([(0.0, 0.0), (2.0, 0.0), (0.5, 0.5), (0.0, 2.0)]), "strictly convex polygon in order"),

@@ -52,11 +52,8 @@ def test_arrays_are_kept_as_tuples_that_hash_compare_pickle_and_serialise():
 
 test_bad_gains = refused(
     ({"c1_gamma": [1.0, -2.0]}, r"c1_gamma\[1\] = -2: expected a gain >= 0"),
-    ({"c2_gamma": (1.0, np.nan)}, r"c2_gamma\[1\] = nan: expected a finite number"),
     ({"c2_gamma": []}, r"c2_gamma has shape \(0,\): expected one number, or one for each agent"),
     ({"c1_gamma": [[1.0]]}, r"c1_gamma has shape \(1, 1\): expected one number, or one"),
-    ({"c1_gamma": "12"}, "c1_gamma = '12': expected one real number"),
-    ({"c1_alpha": [1.0, 2.0]}, r"c1_alpha = \[1.0, 2.0\]: expected one real number"),
     make=Gains,
 )
 

@@ -20,24 +20,17 @@ from flockana.lattice import hexagonal_patch
 @pytest.mark.parametrize(
     ("cls", "options", "message"),
     [
-        (AlphaInteraction, {"d": 0.0}, "d = 0: expected a number > 0"),
-        (AlphaInteraction, {"d": np.nan}, "d = nan: expected a finite number"),
-        (AlphaInteraction, {"r": "x"}, "r = 'x': expected one real number"),
         (AlphaInteraction, {"r": 7.0}, "r = 7 and d = 7: expected r > d; the paper takes r = 1.2 d"),
-        (AlphaInteraction, {"eps": -0.1}, "eps = -0.1: expected a number > 0"),
         (AlphaInteraction, {"h": 0.0}, "h = 0: expected 0 < h < 1; at h = 1 the bump jumps"),
         (AlphaInteraction, {"h": 1.0}, "h = 1: expected 0 < h < 1"),
-        (AlphaInteraction, {"a": 0.0}, "a = 0: expected a number > 0"),
         (AlphaInteraction, {"a": 9.0}, "a = 9 and b = 5: expected a <= b (attraction at most repulsion)"),
         (AlphaInteraction, {"a": 1e-9, "b": 1e9}, "expected b <= 1e+12 a"),
         (AlphaInteraction, {"d": 1e200, "r": 2e200}, "expected 0 < d_sigma < r_sigma, all finite"),
         (AlphaInteraction, {"d": 1e-200, "r": 2e-200}, "their σ-norms are 0 and 0"),
-        (BetaInteraction, {"d": -1.0}, "d = -1: expected a number > 0"),
         (BetaInteraction, {"r": 4.2}, "r = 4.2 and d = 4.2: expected r > d; the paper takes r' = 1.2 d'"),
         (BetaInteraction, {"h": 1.5}, "h = 1.5: expected 0 < h < 1"),
         (BetaInteraction, {"d": 1e-200}, "their σ-norms are 0"),
         (Gains, {"c2_alpha": -1.0}, "c2_alpha = -1: expected a gain >= 0; a negative one feeds energy in"),
-        (Gains, {"c1_gamma": np.inf}, "c1_gamma = inf: expected a finite number"),
     ],
 )
 def test_bad_parameters(cls, options, message):

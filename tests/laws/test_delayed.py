@@ -95,7 +95,6 @@ def test_who_hears_whom_late_is_told_link_by_link():
 
 
 test_bad_input = refused(
-    (lambda: Delayed(LAW, -0.1), "delay = -0.1: expected a number >= 0"),
     (lambda: Delayed(LAW, 0.3, **PAST), "delay = 0.3: the history given goes back 0.2, expected one as long as the"),
     (
         lambda: simulate(Delayed(Delayed(LAW, 0.2, **PAST), 0.1), [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), dt=0.1),

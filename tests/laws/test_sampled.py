@@ -29,7 +29,6 @@ def test_each_agent_samples_by_its_own_clock():
 
 
 test_bad_input = refused(
-    (lambda: Sampled(LAW, 0.0), "period = 0: expected a number > 0"),
     (lambda: Sampled(LAW, 0.1, offsets=(0.1,)), r"offsets = .*: expected one for each agent, 0 <= offset < 0.1"),
     (lambda: simulate(Sampled(LAW, 0.1, offsets=(0.0,)), Q, Q, (0, 1), dt=0.1), "there are 1 offsets and 7 agents"),
     (lambda: simulate(Sampled(LAW, 0.1), Q, Q, (0, 1), dt=0.2), "divides the delay or period 0.1, such as 0.1"),

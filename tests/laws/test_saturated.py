@@ -27,6 +27,5 @@ def test_a_falling_agent_by_hand():
 
 
 test_bad_input = refused(
-    (lambda: Saturated(LAW, 0.0), "limit = 0: expected a number > 0"),
     (lambda: Saturated(LAW, 1.0, "axis"), "by = 'axis': expected one of length, component"),
 )

@@ -178,11 +178,7 @@ def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():
 
 
 test_tolerances_are_validated = refused(
-    ({"energy": 0.0}, r"tolerances.energy = 0: expected a number > 0"),
-    ({"force": float("nan")}, r"tolerances.force = nan"),
     ({"settle": 1.0}, r"tolerances.settle = 1: expected a share below 1"),
     ({"giant": 2.0}, r"tolerances.giant = 2: expected a share below 1"),
-    ({"contact": "x"}, r"tolerances.contact = 'x'"),
-    ({"settle": -0.1}, r"tolerances.settle = -0.1: expected a number >= 0"),
     make=Tolerances,
 )
