@@ -65,7 +65,6 @@ def test_options_are_read_as_what_they_look_like():
     [
         (["hexagon", "--set", "m=2"], "hexagon has no option m"),
         (["hexagon", "--seeds", 100_000_000_000], "seeds: there are more than 1000000; expected at most so many"),
-        (["hexagon", "--level", 95], "level = 95"),
         (["phase", "--set", "n=1,2", "--set", "ratio=1,2", "--set", "density=1,2", "--plot", "x.png"], "two at most"),
     ],
 )

@@ -24,10 +24,7 @@ def test_the_nearest_consensus_can_be_chosen(call, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("gromacs", "hexagon"), "gromacs"),
-        (("lammps", "hexagone"), "unknown scenario 'hexagone'"),
         (("lammps", "minimal-2d"), "has no pair term for LAMMPS to tabulate"),
-        (("lammps", "hexagon", "--dt", "-1"), "expected a number > 0"),
     ],
 )
 def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, message):

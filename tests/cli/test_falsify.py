@@ -96,11 +96,9 @@ def test_parameters_and_the_state_are_chosen(call):
     ("arguments", "message"),
     [
         ([], "expected THEOREM --on CASE"),
-        (["E8", "--on", "head-on"], "E8 is not about a run"),
         (["os-1", "--on", "head-on", "--claim", "x"], "unknown claim 'x'"),
         (["os-1", "--on", "head-on", "--vary", "x"], "expected 'q', 'p', both"),
         (["os-1", "--on", "head-on", "--set", "gains.c1_alpha=1"], "expected NAME=LOW,HIGH"),
-        (["os-1", "--on", "head-on", "-o", "c.txt"], "expected a file name that ends in .json"),
         (["os-1", "--replay", "c.json"], "brings its own theorem"),
     ],
 )

@@ -102,12 +102,9 @@ def test_a_state_as_given(call, found, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("nosuch",), "unknown scenario, file or builder 'nosuch'"),
         (("hexagon", "--law", 1), "hexagon has a law of its own"),
-        (("hexagonal-patch:1", "--plot", "poles.txt"), "expected a file name that ends in .png or .svg or .pdf"),
         (("zone-51",), "ZoneFlocking"),
         (("hexagonal-patch:1", "--law", 3), "--law"),
-        (("line:3", "--delay", "--modes", 0), "--modes"),
         (("line:200000",), "n = 200000: expected at most 30000 agents, or 150000 with --as-given"),
         (("line:200000", "--as-given"), "n = 200000: expected at most 150000 agents"),
     ],
