@@ -43,7 +43,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade, is_own
+from flockana.course import Prediction, figures, grade, is_own
 
 times = np.linspace(0.0, 6.0, 400)
 two = fl.simulate(fl.Algorithm1(), [[0.0], [6.7]], [[0.0], [0.0]], (0.0, 6.0), t_eval=times)
@@ -58,12 +58,21 @@ _ = axes[1].set(xlabel="time", ylabel="distance of the two (length)")
 # %% [markdown]
 # **Figure 0.1.** Two agents that start at rest 6.7 apart. Left: they move by the same amount in opposite directions,
 # so that their middle stays at 3.35. Right: the distance swings about 7 (dotted) and settles there.
-#
+
+# %% tags=["predict"]
+guess = ...  # in lengths
+Prediction(
+    "And if they start 6 apart instead of 6.7: how far apart are they at t = 6?",
+    guess,
+    np.ptp(fl.simulate(fl.Algorithm1(), [[0.0], [6.0]], [[0.0], [0.0]], (0.0, 6.0)).q[-1]),
+)
+
+# %% [markdown]
 # Three things are worth a look already. The *middle* does not move: what one agent gains the other loses. The
 # distance *overshoots*: the law is a spring with a damper, and a control engineer will ask for its damping ratio
 # (lecture 06). And the two keep 7 only because of their start. An agent sees no farther than a *range* $r$, here
-# 8.4: from 9 apart they would not have moved at all. From 6 apart they would have pushed so hard that they leave
-# each other's range and never return. Such failures are the subject of lecture 02.
+# 8.4: from 9 apart they would not have moved at all. From 6 apart they push so hard that they leave each other's range
+# and never return. Such failures are the subject of lecture 02.
 #
 # ## The law
 #

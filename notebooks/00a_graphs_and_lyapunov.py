@@ -80,7 +80,7 @@ from scipy.linalg import expm
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 nets = {
     "path": [(k, k + 1) for k in range(5)],
@@ -99,13 +99,17 @@ for name, L in laplacians.items():
 # **Figure 0a.1.** Four nets of six agents, with unit weights. The more links, the larger is $\lambda_2$; the two
 # triangles have two components, hence two eigenvalues 0, hence $\lambda_2 = 0$.
 #
-# *One of them by hand.* On the ring try a wave that closes after six steps, $z_k = \cos(60°k)$. Row $k$ of $Lz$ is
+# <details><summary>One of them by hand</summary>
+#
+# On the ring try a wave that closes after six steps, $z_k = \cos(60°k)$. Row $k$ of $Lz$ is
 #
 # $$2\cos(60°k) - \cos(60°(k-1)) - \cos(60°(k+1)) = (2 - 2\cos60°)\cos(60°k),$$
 #
 # by the formula for the sum of two cosines. So the wave is an eigenvector, with the eigenvalue $2 - 2\cos60° = 1$.
 # Shorter waves, with 120° and 180° in the place of 60°, give 3 and 4: *the smoother a vector, the smaller its
 # eigenvalue*, and $\lambda_2$ belongs to the smoothest one that is not constant.
+#
+# </details>
 #
 # ## Consensus
 #
@@ -130,9 +134,23 @@ for name, L in laplacians.items():
 #    never exceeds its value at 0, which is the claim. $\square$
 #
 # The convoy agrees on the mean of its initial speeds, without anyone having computed it. For two robots $\lambda_2 =
-# 2a_{12}$: the rate that we found by hand. For six the theorem bounds the time in which the disagreement shrinks to a
-# hundredth, $\ln(100)/\lambda_2$: on the complete net $4.6/6 = 0.77$ time units, on the ring 4.6, and on the path, with
-# $\lambda_2 = 0.268$, 17.2. One more link closes the path to a ring, and makes it almost four times as fast.
+# 2a_{12}$: the rate that we found by hand.
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "One more link closes the path of six to a ring. How many times as fast does it then agree?",
+    guess,
+    np.divide(*(np.linalg.eigvalsh(laplacians[name])[1] for name in ("ring", "path"))),
+)
+
+# %% [markdown]
+# <details><summary>Times</summary>
+#
+# The theorem bounds the time in which the disagreement shrinks to a hundredth, $\ln(100)/\lambda_2$: on the complete
+# net $4.6/6 = 0.77$ time units, on the ring 4.6, and on the path, with $\lambda_2 = 0.268$, 17.2.
+#
+# </details>
 
 # %%
 start = np.array([4.0, -1.0, 0.5, 2.0, -3.0, 1.0])

@@ -22,14 +22,14 @@
 # the vector between them and nothing else, and have to answer with a force. **What should that force be, as a
 # function of the distance?** Nearer than $d$ it must push, farther it must pull, at $d$ it must vanish. Out of radio
 # range it must be zero, and it must not jump to zero there, because a thrust that jumps breaks motors and, as we
-# shall see, theorems. When the two are in one place, it must not be infinite. This lecture builds such a force, the
+# shall see, integrators. When the two are in one place, it must not be infinite. This lecture builds such a force, the
 # one of Olfati-Saber (2006, section II), and with it the potential that every later lecture uses.
 #
 # ## Two agents on a line: a first try
 #
 # Let $x > 0$ be the distance of two agents. The simplest force is a spring, $x - d$, cut off at the range $r$. It
-# has two faults. At $r$ it jumps from $r - d$ to 0, so the agents gain or lose energy depending on how they cross.
-# And in the plane the spring acts along the unit vector $(q_j - q_i)/\|q_j - q_i\|$, which has no limit where the
+# has two faults. At $r$ it jumps from $r - d$ to 0, which neither a motor nor an integrator follows (lecture 09). And
+# in the plane the spring acts along the unit vector $(q_j - q_i)/\|q_j - q_i\|$, which has no limit where the
 # agents meet: the force on an agent that flies past another at a hair's breadth turns around in no time. Both faults
 # are repaired by smoothing: the second by a norm without a corner, the first by a bump.
 #
@@ -39,7 +39,9 @@
 #
 # $$\|z\|_\sigma = \frac{1}{\varepsilon}\left(\sqrt{1 + \varepsilon \|z\|^2} - 1\right).$$
 #
-# Its gradient, by the chain rule:
+# Its gradient, by the chain rule, is $z/\sqrt{1+\varepsilon\|z\|^2}$.
+#
+# <details><summary>In two lines</summary>
 #
 # $$\begin{aligned}
 # \nabla\|z\|_\sigma &=
@@ -48,6 +50,8 @@
 # &= \frac1\varepsilon\cdot\frac{2\varepsilon z}{2\sqrt{1+\varepsilon\|z\|^2}} =
 #   \frac{z}{\sqrt{1+\varepsilon\|z\|^2}} . && \nabla\|z\|^2 = 2z
 # \end{aligned}$$
+#
+# </details>
 #
 # The denominator is at least 1, so the gradient exists everywhere and is smooth, at $z = 0$ too, where it is 0. The
 # gradient at $z = q_j - q_i$ is the vector with which all forces of this course act,
@@ -62,7 +66,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 figure, axes = plots.subplots(1, 2, size=(10, 3.6))
 _ = figures.pair_vector(eps=0.1, axes=axes)
@@ -95,11 +99,16 @@ _ = figures.norms(ax=ax)
 # $$\rho_h(z) = \begin{cases} 1 & 0 \le z < h \\ \tfrac12\bigl[1 + \cos\bigl(\pi\tfrac{z-h}{1-h}\bigr)\bigr] & h \le
 #   z \le 1 \\ 0 & z > 1 . \end{cases}$$
 #
-# Is it differentiable where the pieces meet? On the taper its derivative is
+# It is once continuously differentiable and no more, which integrators will notice.
+#
+# <details><summary>Where the pieces meet</summary>
+#
+# On the taper its derivative is
 # $-\tfrac{\pi}{2(1-h)}\sin\bigl(\pi\tfrac{z-h}{1-h}\bigr)$, which is 0 at $z = h$, because $\sin 0 = 0$, and at
 # $z = 1$, because $\sin\pi = 0$. So both derivatives agree on both sides. The *second* derivative does not: at $h$
-# it jumps from 0 to $-\tfrac{\pi^2}{2(1-h)^2}$. The bump is once continuously differentiable and no more, which
-# integrators will notice.
+# it jumps from 0 to $-\tfrac{\pi^2}{2(1-h)^2}$.
+#
+# </details>
 
 # %%
 figure, ax = plots.subplots(size=(5.4, 3.4))
@@ -117,7 +126,9 @@ _ = figures.bumps(ax=ax)
 #
 # $$\phi(z) = \tfrac12\left[(a+b)\,\sigma_1(z+c) + (a-b)\right], \qquad c = \frac{b-a}{\sqrt{4ab}} .$$
 #
-# Why this $c$? Because the curve has to pass through 0:
+# With this $c$ the curve passes through 0.
+#
+# <details><summary>Why</summary>
 #
 # $$\begin{aligned}
 # 1 + c^2 &= \frac{4ab + (b-a)^2}{4ab} = \frac{(a+b)^2}{4ab} && \text{one denominator} \\
@@ -127,7 +138,11 @@ _ = figures.bumps(ax=ax)
 # \end{aligned}$$
 #
 # Without $a \le b$ the printed formula $c = |a-b|/\sqrt{4ab}$ would have the wrong sign, and the balance would not
-# be at $d$. As $\sigma_1' = (1+z^2)^{-3/2} > 0$, $\phi$ rises strictly, so 0 is its only zero. Shift the zero to
+# be at $d$.
+#
+# </details>
+#
+# As $\sigma_1' = (1+z^2)^{-3/2} > 0$, $\phi$ rises strictly, so 0 is its only zero. Shift the zero to
 # $d_\alpha$, and cut the curve off with the bump:
 #
 # $$\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha) .$$
@@ -157,10 +172,15 @@ _ = figures.bumps(ax=ax)
 #    \phi_\alpha(\|q_j-q_i\|_\sigma)\cdot\nabla_{q_i}\|q_j-q_i\|_\sigma$, and
 #    $\nabla_{q_i}\|q_j-q_i\|_\sigma = -n_{ij}$, because $q_i$ stands there with a minus sign: (iv). $\square$
 #
-# **Closed form.** Where the bump is 1, an antiderivative of $\phi$ is
-# $\tfrac12\bigl[(a+b)\sqrt{1+(z+c)^2} + (a-b)z\bigr]$: differentiate it,
-# $\tfrac{d}{dz}\sqrt{1+(z+c)^2} = \sigma_1(z+c)$. On the taper the integrand is a cosine times a root, and there is
-# no elementary antiderivative; the library integrates it to $10^{-13} c^*$. sympy goes the same way, step by step:
+# <details><summary>Closed form</summary>
+#
+# Where the bump is 1, an antiderivative of $\phi$ is $\tfrac12\bigl[(a+b)\sqrt{1+(z+c)^2} + (a-b)z\bigr]$:
+# differentiate it, $\tfrac{d}{dz}\sqrt{1+(z+c)^2} = \sigma_1(z+c)$. On the taper the integrand is a cosine times a
+# root, and there is no elementary antiderivative; the library integrates it to $10^{-13} c^*$.
+#
+# </details>
+#
+# sympy integrates it step by step:
 
 # %%
 symbolic.derive_psi_alpha()
@@ -180,8 +200,19 @@ print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out 
 # %% [markdown]
 # **Figure 1.4.** Left: the action over the distance. Right: the potential, and in the inset the well about $d = 7$,
 # enlarged. Pulling a pair apart costs 0.74, pushing it together 52.4.
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "At 8 a pair attracts each other, at 6 it repels. How many times the pull at 8 is the push at 6?",
+    guess,
+    -np.divide(*(float(alpha.phi_alpha(alpha.sigma_norm(x))) * x / np.sqrt(1.0 + 0.1 * x**2) for x in (6.0, 8.0))),
+)
+
+# %% [markdown]
+# <details><summary>Both forces by hand</summary>
 #
-# **One force by hand.** Let two agents be 8 apart, between $d$ and $r$. Go through the formulas in order:
+# Let two agents be 8 apart, between $d$ and $r$. Go through the formulas in order:
 #
 # | what | formula | value |
 # |---|---|---|
@@ -194,15 +225,17 @@ print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out 
 # | length of $n_{ij}$ | $8/\sqrt{7.4}$ | 2.941 |
 # | force | $0.0747\cdot2.941$ | 0.220 |
 #
-# The agents attract each other, as they should. At 95 % of the range the bump has taken
-# 98 % of the force away. Whoever draws $\phi$ without the bump expects a strong hold at the rim of the range; there is
-# next to none. Now do it for 6, where $\phi_\alpha = -2.148$ and the force is $-6.01$: *the push at 6 is 27 times the
-# pull at 8.* The pair is a hard wall with a soft leash, and most of what flocks do wrong in this course comes from the
-# leash.
+# The agents attract each other, as they should. At 95 % of the range the bump has taken 98 % of the force away. Now do
+# it for 6, where $\phi_\alpha = -2.148$ and the force is $-6.01$: *the push at 6 is 27 times the pull at 8.*
+#
+# </details>
+#
+# Whoever draws $\phi$ without the bump expects a strong hold at the rim of the range; there is next to none. The pair
+# is a hard wall with a soft leash, and most of what flocks do wrong in this course comes from the leash.
 #
 # <details><summary>Both potentials in the head</summary>
 #
-# Estimate both potentials in the head. From $d_\alpha = 14.29$ to $r_\alpha = 18.38$ it is 4.09, and the rim is 0.736
+# From $d_\alpha = 14.29$ to $r_\alpha = 18.38$ it is 4.09, and the rim is 0.736
 # high, so the mean pull is $0.736/4.09 = 0.18$. From 0 to $d_\alpha$ it is 14.29, and the wall is 52.4 high, so the
 # mean push is 3.7, of at most 5. That is how an uneven pair comes from an even $\phi$, with $a = b$: both sides have
 # the same strength 5, but the bump weakens the pull, which comes last, and hardly the push.

@@ -61,7 +61,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))
 figure, axes = plots.subplots(1, 2, size=(11, 3.8))
@@ -182,13 +182,23 @@ print(fl.verify("E1").status)
 
 # %%
 run = fl.scenario("paper-fragmentation").run()
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "The forty agents start in 35 pieces. In how many are they at t = 40?",
+    guess,
+    len(set(fl.components(run.n, fl.links(run.q[-1], 8.4)))),
+)
+
+# %%
 figure, axes = plots.subplots(1, 2, size=(10, 4.5))
 plots.snapshot(run, time=0.0, ax=axes[0], bar=False)
 _ = plots.snapshot(run, ax=axes[1])
 
 # %% [markdown]
-# **Figure 2.2.** The start, in 35 components, and $t = 40$, in 24. Inside each component the distances are near 7
-# and the velocities alike; the components drift apart.
+# **Figure 2.2.** The start and $t = 40$. Inside each component the distances are near 7 and the velocities alike; the
+# components drift apart.
 
 # %%
 figure, axes = plots.subplots(1, 3, size=(12, 3))

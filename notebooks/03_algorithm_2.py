@@ -83,7 +83,7 @@ import sympy
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 split = symbolic.derive_split(m=2)
 print("exact:", split.holds)
@@ -319,6 +319,16 @@ def gain(k_v, omega):
 
 
 true = fl.simulate(fl.Algorithm2(case4.law.alpha, case4.law.gains, circle), case4.q[0], case4.p[0], case4.t[[0, -1]])
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "And with the true velocity: how large is the flock's circle then, over the target's?",
+    guess,
+    float(gain(1.0, omega)),
+)
+
+# %%
 for k_v, run in ((0.009, case4), (1.0, true)):
     radius = np.linalg.norm(run.q[-1].mean(axis=0) - 50.0)  # of the centre about (50, 50), at the end
     print(f"k_v = {k_v:5}: ratio {gain(k_v, omega):.3f} predicted, {radius / 100.0:.3f} measured")

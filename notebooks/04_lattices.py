@@ -43,7 +43,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 for name in ("triangular", "square", "honeycomb", "simple_cubic", "fcc", "hcp", "bcc"):
     print(f"{name:>12}: κ at most {lattice.max_ratio(name):.4f}")
@@ -120,7 +120,7 @@ _ = figures.crossing_links(ax=ax)
 # 1. Let $z_i = q_i - q_n$, $i = 1, \dots, n-1$. Then $\|z_i\|^2 = d^2$, and from $\|z_i - z_j\|^2 = d^2$ follows
 #    $\langle z_i, z_j\rangle = \tfrac12d^2$ for $i \ne j$.
 # 2. So the matrix of scalar products is $\tfrac12d^2(I + \mathbf 1\mathbf 1^\top)$. Its eigenvalues are
-#    $\tfrac12d^2$ and $\tfrac12d^2n$: it is regular.
+#    $\tfrac12d^2$ and $\tfrac12d^2n$: it is invertible.
 # 3. Vectors with an invertible matrix of scalar products are linearly independent. But there are $n - 1 \ge m + 1$ of
 #    them in $\mathbb R^m$. Contradiction. $\square$
 #
@@ -166,6 +166,12 @@ run = fl.scenario("paper-flocking").run()
 end = run.q[-1] - run.q[-1].mean(axis=0)
 net = lattice.links(end, r)
 length = np.linalg.norm(end[net[:, 0]] - end[net[:, 1]], axis=1)
+
+# %% tags=["predict"]
+guess = ...
+Prediction("Links are to be 7 long. How long is the longest of this flock at rest?", guess, float(length.max()))
+
+# %%
 plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / d - 1)
 print(f"links {length.min():.2f} to {length.max():.2f} long, crossings {len(lattice.crossings(end, net))}")
 

@@ -50,13 +50,18 @@
 # $\hat q_{ik} = Pq_i + (I-P)y$. Differentiate: $\hat p_{ik} = Pp_i$.
 #
 # **A sphere** with centre $y$ and radius $R_k$. Let $e = (q_i-y)/\|q_i-y\|$ be the direction to the agent,
-# $P = I - ee^\top$ and $\mu = R_k/\|q_i-y\|$. The closest point is $\hat q_{ik} = y + R_ke$, and
+# $P = I - ee^\top$ and $\mu = R_k/\|q_i-y\|$. The closest point is $\hat q_{ik} = y + R_ke$, and its velocity is
+# $\hat p_{ik} = \mu Pp_i$.
+#
+# <details><summary>In three lines</summary>
 #
 # $$\begin{aligned}
 # \dot e &= \frac{p_i}{\|q_i-y\|} - \frac{(q_i-y)\,\langle q_i-y, p_i\rangle}{\|q_i-y\|^3} && \text{quotient rule} \\
 # &= \frac{1}{\|q_i-y\|}\,(I - ee^\top)\,p_i && \text{pull out the distance} \\
 # \hat p_{ik} &= R_k\dot e = \mu Pp_i . && \hat q_{ik} = y + R_ke
 # \end{aligned}$$
+#
+# </details>
 #
 # So on a sphere the β-agent keeps the tangential part of the velocity, reduced by $\mu \le 1$, as a shadow does that
 # is nearer to the lamp.
@@ -66,7 +71,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 figure, axes = plots.subplots(1, 2, size=(10, 4))
 _ = figures.projections(axes=axes)
@@ -76,11 +81,15 @@ _ = figures.projections(axes=axes)
 # $\hat p_{ik}$ (diamond), on a sphere and on a wall (grey). On the wall the β-agent keeps the whole velocity along
 # it; on the sphere it is slower.
 #
-# *With numbers.* A sphere of radius 3 about the origin, an agent at $(0, 5)$ with the velocity $(2, -1)$. Then
+# <details><summary>With numbers</summary>
+#
+# A sphere of radius 3 about the origin, an agent at $(0, 5)$ with the velocity $(2, -1)$. Then
 # $e = (0, 1)$ and $\mu = \tfrac35$; $P$ keeps the first component, so $Pp_i = (2, 0)$, and the β-agent sits at $(0, 3)$
 # with the velocity $(1.2, 0)$. Friction between the two pulls the agent's velocity along
 # $\hat p_{ik} - p_i = (-0.8, 1)$: a little against its motion along the sphere, and fully against its motion
 # towards it. Its power is $\langle p_i, \hat p_{ik} - p_i\rangle = -1.6 - 1 = -2.6$, a loss.
+#
+# </details>
 #
 # With $d_\beta = \|d'\|_\sigma$, $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ for numbers and vectors, and the bump of lecture
 # 01, the β-agents repel, and brake, within the distance $d'$:
@@ -111,10 +120,15 @@ _ = figures.projections(axes=axes)
 #
 # **Whether it gets through on the way.** With the energy $\tfrac12p^2$ at the distance $d'$ and a constant pull
 # $c_1^\gamma$, an agent reaches the wall only if $\tfrac12p^2 + c_1^\gamma d' \ge c_1^\beta\psi_\beta(0)$: kinetic
-# energy and the work of the pull must pay for the whole wall. Friction only helps. By hand, with the numbers of the
-# flock below, $c_1^\beta = 1500$, $d' = 4.2$, and a pull of 12: $\psi_\beta(0) = 11.93$, so the wall is
-# $1500\cdot11.93 = 17898$ high; the pull pays $12\cdot4.2 = 50$ of it; what is left, 17848, needs the speed
+# energy and the work of the pull must pay for the whole wall. Friction only helps.
+#
+# <details><summary>By hand</summary>
+#
+# With the numbers of the flock below, $c_1^\beta = 1500$, $d' = 4.2$, and a pull of 12: $\psi_\beta(0) = 11.93$, so the
+# wall is $1500\cdot11.93 = 17898$ high; the pull pays $12\cdot4.2 = 50$ of it; what is left, 17848, needs the speed
 # $\sqrt{2\cdot17848} = 189$.
+#
+# </details>
 
 # %%
 beta = fl.BetaInteraction(d=4.2, r=5.04, eps=0.1, h=0.9)
@@ -133,10 +147,9 @@ print(f"strongest repulsion {wall_force.max():.0f}, rests at {outer:.2f}, breaks
 # **Figure 5.2.** The repulsion of a wall over the distance, with the gains of this lecture, and a pull of 12. They
 # balance at 4.19 and once more at 0.004, close to the wall, where the balance is unstable.
 #
-# With $c_1^\beta = 1500$ the strongest repulsion, 6564, is 547 times the pull, and an agent would need a speed
-# of 189 to break through. That is the reason for the large gain, and its price is a stiff equation: the
-# integrator must take small steps while an agent touches a wall. In the flocks below nobody comes near such a speed.
-# For 37 agents the energies add up, and the same bound, applied to the whole flock, says nothing any more.
+# With $c_1^\beta = 1500$ the strongest repulsion, 6564, is 547 times the pull, and an agent would need a speed of 189
+# to break through. That is the reason for the large gain, and its price is a stiff equation. For 37 agents the energies
+# add up, and the same bound, applied to the whole flock, says nothing any more.
 #
 # ## A flock around a pillar
 
@@ -221,7 +234,13 @@ _ = plots.components(run, ax=axes[1])
 #
 # The first term is $\le 0$ by the quadratic form, the second by 3, the third by the condition. $\square$
 #
-# With $p_d = 0$ the condition is trivial. Otherwise, what does it ask? Split $T = \tfrac n2\|p_c\|^2 + K$ with the
+# With $p_d = 0$ the condition is trivial. Otherwise, for a flock that flies as one, *its velocity must lie outside the
+# ball that has the segment from 0 to $p_d$ as a diameter*: the condition fails while the flock is slower, roughly, than
+# the γ-agent says it should be. Then the γ-agent does work on it.
+#
+# <details><summary>Why a ball</summary>
+#
+# Split $T = \tfrac n2\|p_c\|^2 + K$ with the
 # mismatch $K = \tfrac12\sum\|p_i - p_c\|^2$, as in lecture 02. Then
 #
 # $$\begin{aligned}
@@ -230,11 +249,11 @@ _ = plots.components(run, ax=axes[1])
 # &\iff \bigl\|p_c - \tfrac12p_d\bigr\|^2 \ge \tfrac14\|p_d\|^2 - \tfrac2nK . && \text{complete the square}
 # \end{aligned}$$
 #
-# For a flock that flies as one, $K = 0$: *its velocity must lie outside the ball that has the segment from 0 to $p_d$
-# as a diameter*. So the condition fails exactly while the flock is slower, roughly, than the γ-agent says it should be:
-# then the γ-agent does work on it. Take $p_d = (5, 0)$ and 37 agents with the common velocity $(2, 1)$, on a lattice
-# away from all obstacles. The square on the left is $(-0.5)^2 + 1^2 = 1.25 < 6.25$, so the condition fails, and with
-# $c_2^\gamma = 2$ the energy *rises* at the rate $-2\cdot(37\cdot5 - 37\cdot10) = 370$.
+# For a flock that flies as one, $K = 0$. Take $p_d = (5, 0)$ and 37 agents with the common velocity $(2, 1)$, on a
+# lattice away from all obstacles. The square on the left is $(-0.5)^2 + 1^2 = 1.25 < 6.25$, so the condition fails, and
+# with $c_2^\gamma = 2$ the energy *rises* at the rate $-2\cdot(37\cdot5 - 37\cdot10) = 370$.
+#
+# </details>
 #
 # Note also the words *for all $t \ge t_0$*: they ask about the whole future, and one instant at which the condition
 # holds proves nothing (exercise 3).
@@ -243,6 +262,16 @@ _ = plots.components(run, ax=axes[1])
 
 # %%
 trapped = fl.scenario("paper-trapped").run()
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Forty agents, a target at rest behind the U, and an energy that falls as Theorem 6 says: how many arrive?",
+    guess,
+    int(np.sum(trapped.q[-1, :, 0] > 100.0)),
+)
+
+# %%
 print(fl.verify("os-6", trapped).status, "- arrived:", int(np.sum(trapped.q[-1, :, 0] > 100.0)), "of", trapped.n)
 figure, axes = plots.subplots(1, 3, size=(13, 3.6))
 plots.snapshot(trapped, ax=axes[0], bar=False)

@@ -73,7 +73,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots, stability
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 from flockana.lattice.rigidity import rigidity_matrix
 from flockana.stability.zero_modes import complement
 
@@ -212,6 +212,12 @@ print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")
 
 # %%
 margin = L.delay_margin()
+
+# %% tags=["predict"]
+guess = ...
+Prediction("The centre bears a delay of 0.617. How much does the flock of nineteen bear?", guess, float(margin.delay))
+
+# %%
 print(margin)
 for share in (0.9, 1.1):
     root = fl.linearise(fl.Delayed(law, share * margin.delay), rest).rightmost(1)[0]

@@ -47,11 +47,11 @@
 # 3. If agents $i$ and $j$ coincided at the time $t$, the pair alone would cost $\psi_\alpha(0) = c^*$, and all other
 #    pairs cost at least 0. So $V(q(t)) \ge c^*$, against 2. $\square$
 #
-# The proof is correct, and three lines long. Read it again with a pencil, and ask of each line what it *wastes*. Line
-# 2 throws the kinetic energy away: harmless, it ends small. Line 3 throws all other pairs away: "at least 0". But
-# **every pair out of range costs $\psi_\alpha(r_\alpha)$**, and of $n$ agents that are not all on top of each other
-# about $n^2/2$ pairs are out of range. So line 3 gives away an amount that grows like $n^2$, while $c^*$ stays what it
-# is. The waste of a proof shows up as a hypothesis that is hard to deliver.
+# The proof is correct, and three lines long. Read it again with a pencil, and ask of each line what it *wastes*. Line 2
+# throws the kinetic energy away: harmless, it ends small. Line 3 throws all other pairs away: "at least 0". But **every
+# pair out of range costs $\psi_\alpha(r_\alpha)$**, and of $n$ agents on a lattice all pairs are out of range, about
+# $n^2/2$, but for its links, fewer than $3n$. So line 3 gives away an amount that grows like $n^2$, while $c^*$ stays
+# what it is. The waste of a proof shows up as a hypothesis that is hard to deliver.
 #
 # ## A true statement that says nothing
 
@@ -60,21 +60,29 @@ import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots
-from flockana.course import grade
+from flockana.course import Prediction, grade
 from flockana.equilibria.barrier import energy_floor, lattice_reach, least_infeasible_size
 
 alpha = fl.AlphaInteraction()
 sizes = np.arange(2, 31)
 best = [alpha.potential_energy(lattice.hexagonal_spiral(n, alpha.d)) for n in sizes.tolist()]
 floor = [energy_floor(alpha, n) for n in sizes.tolist()]
+rim = float(alpha.psi_alpha(alpha.r_alpha))
+largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "The hypothesis asks for V below c*. From how many agents on does no state at all deliver that?", guess, empty
+)
+
+# %%
 figure, ax = plots.subplots(size=(6, 3.4))
 ax.plot(sizes, best, "o-", label="V of the best α-lattice")
 ax.plot(sizes, floor, "s--", label="proved floor of V, any state")
 ax.axhline(alpha.c_star, color="black", linestyle=":", label="c*")
 ax.set(xlabel="n, agents", ylabel="energy", ylim=(0, 150))
 ax.legend()
-rim = float(alpha.psi_alpha(alpha.r_alpha))
-largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
 print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
@@ -105,16 +113,18 @@ print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no s
 # 6. At $n = 23$ the bracket is $253 - 176 = 77$, and $77\,\psi_\alpha(r_\alpha) = 56.7 > 52.4 = c^*$; at $n = 22$ it is
 #    70, that is 51.5. From 23 on the bracket grows with $n$. $\square$
 #
-# Do the sum for a small number. Take $n = 7$. At most $\lfloor 49/3\rfloor = 16$ of the 21 pairs are cheap, so 5 pairs
+# At $n = 14$ the best lattice costs 45.6, which is below $c^*$, at $n = 15$ it costs 54.5. So from 15 agents on *no
+# lattice, even at rest* meets the hypothesis, and a lattice is where the theorem's flock is meant to end.
+#
+# <details><summary>By counting</summary>
+#
+# Take $n = 7$. At most $\lfloor 49/3\rfloor = 16$ of the 21 pairs are cheap, so 5 pairs
 # cost 0.736 each, and every state costs at least 3.68. (The best hexagon has 12 links, not 16, so 9 pairs are
 # expensive and it costs 6.62: Turán's graph cannot be drawn in the plane with all its edges equally long. The floor
-# is true and not sharp.) At $n = 14$ the best lattice has 29 links of 91 pairs, costs $62\cdot0.736 = 45.6$, and is
-# below $c^*$; at $n = 15$ it has 31 of 105 and costs 54.5, which is above. So from 15 agents on *no lattice, even at
-# rest* meets the hypothesis, and a lattice is where the theorem's flock is meant to end.
+# is true and not sharp.) At $n = 14$ the best lattice has 29 links of 91 pairs and costs $62\cdot0.736 = 45.6$; at
+# $n = 15$ it has 31 of 105.
 #
-# That is worth a pause. The theorem promises safety on the way to a lattice. Its hypothesis says that $H(0) < c^*$. As
-# $H$ falls, the end has $V \le H(0)$. So for 15 agents or more the hypothesis excludes the very end that the next
-# theorem promises.
+# </details>
 #
 # **How to mend it.** Keep what line 3 threw away. Replace $c^*$ by the *barrier*, the least energy of a state in which
 # two agents coincide, all other pairs counted: $\min\{V : \text{two agents coincide}\}$. Exercise 8 asks for the
@@ -161,14 +171,22 @@ assert all(found.height > 48.0 for found in barriers.values())
 #
 # Put two agents into **one place**. Their vector $n_{ij}$ is zero, so they exert no force on each other, and if all
 # places form a lattice, nobody feels anything: an equilibrium. Is it a minimum? Separate the two by a small distance
-# $y$, half of it each. Two things happen.
+# $y$, half of it each. They repel, and win $2.49\,y^2$; their links stretch or shrink, and cost
+# $1.86\,y^2\sum_k\cos^2x_k$ if the move makes the angle $x_k$ with link $k$.
+#
+# <details><summary>Both numbers</summary>
 #
 # 1. *They repel.* At small distances the force is $|\phi_\alpha(0)|\,y$ with $\phi_\alpha(0) = -4.99$, so they win
 #    the energy $\tfrac12\cdot4.99\,y^2 = 2.49\,y^2$.
 # 2. *Their links stretch or shrink.* A link is a spring of the stiffness 7.44 along its line (in lecture 06 we found
 #    $\phi_\alpha'(d_\alpha)\,d^2/(1+\varepsilon d^2) = 0.896\cdot8.31$), and of none across it, because it is at its
-#    rest length. If the move makes the angle $x_k$ with link $k$, both agents pay
+#    rest length. So both agents pay
 #    $2\cdot\tfrac12\cdot7.44\sum_k\bigl(\tfrac12y\cos x_k\bigr)^2 = 1.86\,y^2\sum_k\cos^2 x_k$.
+#
+# For two directions at 60° the sum of squares is $1 + \tfrac12\cos2x$, for $x$ counted from their middle. For three
+# at 60° it is 1.5 in all directions, because the doubled angles are spread evenly.
+#
+# </details>
 #
 # So a place that holds two agents is stable exactly if $1.86\sum_k\cos^2 x_k > 2.49$ in every direction, that is
 # if the sum is above 1.34. Now count.
@@ -179,8 +197,7 @@ assert all(found.height > 48.0 for found in barriers.values())
 # | sharp corner of a rhombus | 2, at 60° | 0.5 | no |
 # | blunt corner of a rhombus | 3, at 60° to the next | 1.5 | **yes** |
 #
-# (For two directions at 60° the sum is $1 + \tfrac12\cos2x$, for $x$ counted from their middle. For three
-# at 60° it is 1.5 in all directions, because the doubled angles are spread evenly.) A rhombus has four places, one of
+# A rhombus has four places, one of
 # them doubled makes five agents: **five agents suffice**, and four, a triangle with a doubled corner, do not. The
 # margin is small, $1.5$ against $1.34$, and nobody sees it in a run that happens to avoid it.
 
@@ -208,7 +225,7 @@ axes[1].set(xlabel="y, distance of the two (length)", ylabel="V above the double
 _ = axes[1].legend()
 
 # %% [markdown]
-# **Figure 7.2.** Left: four places at mutual distance 7. Right: the energy when the two agents of a doubled corner
+# **Figure 7.2.** Left: the places of a rhombus of side 7. Right: the energy when the two agents of a doubled corner
 # separate, along the line of the two blunt corners ($x$) or at right angles to it ($y$). The blunt corner is a minimum
 # in both directions, and a shallow one: 0.03 deep, lost when the two are half a length apart. The sharp corner is a
 # maximum along $x$.
@@ -349,13 +366,9 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
 # word makes it *ambiguous*; readers fill the gap with what they need. In all three cases the proof showed where to
 # look, and no run did.
 #
-# What does this lecture **not** say? That agents of a flock of 23 collide: the theorem claims nothing about them, and
-# nothing is not "no". That Algorithm 1 is bad: up to eight agents, where it was computed, the mended bound covers
-# starts with some fifty units of energy above rest. And how often a flock ends in a lattice: one minimum that is none
-# says nothing about shares, and a share has to be counted, over starts of a stated kind (lecture 10).
-#
-# Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
-# be wrong.
+# This lecture does **not** say that agents of a flock of 23 collide: nothing is not "no". Nor how often a flock
+# ends in a lattice: a share has to be counted, over starts of a stated kind (lecture 10). Errata are no disgrace: every
+# source of this course is worth reading *because* its statements are sharp enough to be wrong.
 #
 # ## Questions that come up
 #

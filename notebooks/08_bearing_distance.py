@@ -29,7 +29,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 from flockana.measures.perception import edge_vectors
 from flockana.sources.jond_2025 import MinimalFlocking, ZoneFlocking
 from flockana.stability import linearise
@@ -248,6 +248,16 @@ assert np.allclose(terms["speed"], [10.0, 0.0])
 
 # %%
 tree = fl.scenario("zone-tree").run()
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Every edge is to be 2 long; the theorem says x → 0. How long is the shortest edge at t = 100?",
+    guess,
+    float(np.linalg.norm(edge_vectors(tree.q[-1], tree.law.edges), axis=1).min()),
+)
+
+# %%
 figure, axes = plots.subplots(1, 2, size=(11, 4))
 plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
 _ = plots.snapshot(tree, ax=axes[1], velocities=False)

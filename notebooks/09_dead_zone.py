@@ -28,10 +28,9 @@
 #
 # Let two robots stand just inside 3.5, where they repel. They move apart, cross 3.5, and enter the dead zone, in
 # which only a weak pull is left. It brings them back to 3.5, slowly, and there the full repulsion throws them out
-# again, in no time. Friction makes each throw shorter, and the switches come faster and faster, without end. The robots
-# settle at 3.5, pushed from one side and pulled from the other. Filippov (1960) gave this a meaning: at a jump the
-# force may be any mean of its two one-sided values, and the robots take the one that keeps them there. A computer that
-# steps in time cannot take a mean; it rattles.
+# again, in no time. Friction makes each throw shorter, and the switches come faster and faster, without end. Filippov
+# (1960) gave this a meaning: at a jump the force may be any mean of its two one-sided values, and the robots take the
+# one that keeps them there. A computer that steps in time cannot take a mean; it rattles.
 #
 # Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
 # above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $d_{ij} =
@@ -50,7 +49,7 @@ from scipy.integrate import solve_ivp
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 hard, ramped = fl.DeadZoneInteraction(ramp=0.0), fl.DeadZoneInteraction()
 figure, axes = plots.subplots(1, 2, size=(11, 3.4))
@@ -68,16 +67,27 @@ for jump in hard.jumps():
 # %% [markdown]
 # On the right a *ramp* of width 0.25 takes the place of the jumps beside the dead zone. The one at $r$ stays.
 #
-# **Check the first jump by hand.** With $k_r = 200$, $k_\delta = 1.3$, $k_1 = 0.01$, $\eta = 1$, at $d_{ij} = 3.5$:
+# <details><summary>The first jump by hand</summary>
+#
+# With $k_r = 200$, $k_\delta = 1.3$, $k_1 = 0.01$, $\eta = 1$, at $d_{ij} = 3.5$:
 # just below, $f = -(400/12.25 + 1.3) = -33.95$. The vector $(q_j-q_i)/\sqrt{1+\eta d_{ij}^2}$ has the length
 # $3.5/\sqrt{13.25} = 0.9615$, and $k_1$ pulls with $0.035$. Together $-33.95\cdot0.9615 + 0.035 = -32.61$: they repel.
-# Just above only the pull is left, $+0.035$. A thousandth of the repulsion, and yet it is this thousandth that brings
-# the robots back to the edge.
+# Just above only the pull is left, $+0.035$.
+#
+# </details>
+#
+# Above $d_1$ a thousandth of the repulsion pulls, and yet it is this thousandth that brings the robots back to the
+# edge.
 #
 # ## The potential, in closed form
 #
 # The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/d_{ij}^2$. What is its
 # potential? The force along the line is $f$ times the length of its vector, so for the repulsion (without $k_\delta$)
+#
+# $$\psi(x) = 2k_r\Bigl(\operatorname{arsinh}\frac{1}{\sqrt\eta\,x} -
+#   \operatorname{arsinh}\frac{1}{\sqrt\eta\,d_1}\Bigr) .$$
+#
+# <details><summary>In three lines</summary>
 #
 # $$\begin{aligned}
 # F(x) &= -\frac{2k_r}{x^2}\cdot\frac{x}{\sqrt{1+\eta x^2}} = -\frac{2k_r}{x\sqrt{1+\eta x^2}} && \text{force along
@@ -88,6 +98,8 @@ for jump in hard.jumps():
 # \psi(x) &= 2k_r\Bigl(\operatorname{arsinh}\frac{1}{\sqrt\eta\,x} - \operatorname{arsinh}\frac{1}{\sqrt\eta\,d_1}\Bigr)
 #   && \psi' = F, \ \psi(d_1) = 0
 # \end{aligned}$$
+#
+# </details>
 #
 # For small $x$ this grows like $-2k_r\ln x$: without bound, but slowly, because the vector $q_j - q_i$ is short when
 # the agents are near. To halve a small distance always costs the same, $2k_r\ln2 = 277$. The library derives all parts,
@@ -224,7 +236,7 @@ _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 #    $\dot y = 0$ for ever. There $y$ is constant and 0 is an admissible acceleration, which it is near $d_1$ at
 #    $d_1$ only. $\square$
 #
-# So the vibration of a program with fixed steps is no motion of the law: the law's motion comes to rest.
+# So the law's motion comes to rest.
 
 # %%
 figure, axes = plots.subplots(1, 2, size=(11, 3.6))
@@ -235,7 +247,9 @@ _ = figures.held_at_a_jump(axes=axes)
 # every value of the dashed segment, 0 among them. Right: distance and its rate. Each turn crosses the jump twice, and
 # each is smaller than the one before; the turns are wide on the side of the weak pull.
 #
-# How fast does the bouncing die out? Let the pair leave $d_1$ outwards with a small rate $\dot y = v$. Above $d_1$ it
+# ## How fast the bouncing dies out
+#
+# Let the pair leave $d_1$ outwards with a small rate $\dot y = v$. Above $d_1$ it
 # is slowed down by nearly $f_2$, and returns after about $2v/f_2$. On the way friction takes energy out:
 #
 # $$\begin{aligned}
@@ -281,26 +295,15 @@ slope = np.polyfit(returns[500:, 0], np.log(returns[500:, 1]), 1)[0]
 print(f"2000 bounces in {t:.1f}; the rate at the jump falls like exp({slope:.3f} t), by hand exp(-0.667 t)")
 
 # %% [markdown]
-# **How large is the vibration of a program?** Let it step by $\Delta t$, semi-implicitly (first the rate, then the
-# distance with the new rate). The pair falls slowly past $d_1$, and one step later feels the whole repulsion for one
-# step: its rate becomes about $2\cdot32.6\,\Delta t = 65.2\,\Delta t$. Outside only friction and the weak pull act.
-# With friction alone, $\ddot y = -2k_2\dot y$, it would get as far as $\dot y/(2k_2) = 32.6\,\Delta t$. So every throw
-# is shorter than $32.6\,
-# \Delta t$: 1.63 for $\Delta t = 0.05$, 0.33 for 0.01, 0.16 for 0.005. *It shrinks with the step, and it is there for
-# every step.* That is the signature of an artefact.
+# ## What a program makes of it
 #
-# With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
-# jump nor sliding; it goes on, and chatters (erratum L7):
+# A fixed step sees neither jump nor sliding; it goes on, and chatters (erratum L7). With the ramp the force is
+# continuous there, and the pair comes to rest.
 
 # %%
 for name in ("chatter", "ramp"):
     print(fl.verify("L7").claim(name).detail)
 
-# %% [markdown]
-# As a film: a pair near $d_1$, step after step. With the jump every step that ends below $d_1$ throws the pair out, the
-# less far the shorter the step, for ever; with the ramp it comes to rest.
-
-# %%
 from flockana.course.frames import film
 
 
@@ -315,8 +318,32 @@ def stepped(interaction, dt, end=80.0):
 
 curves = {"jump, steps of 0.05": stepped(hard, 0.05), "jump, steps of 0.01": stepped(hard, 0.01)}
 curves["ramp, steps of 0.05"] = stepped(ramped, 0.05)
+print(f"with steps of 0.05 a pair at the jump is thrown out to {curves['jump, steps of 0.05'][1].max():.2f}")
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "To which distance is the pair at the jump, 3.5, thrown out with steps of 0.01?",
+    guess,
+    curves["jump, steps of 0.01"][1].max(),
+)
+
+# %% [markdown]
+# With the jump every step that ends below $d_1$ throws the pair out, the less far the shorter the step, for ever. *The
+# vibration shrinks with the step, and it is there for every step*: the signature of an artefact.
+#
+# <details><summary>How large it is</summary>
+#
+# Let the program step by $\Delta t$, first the rate, then the distance with the new rate. The pair falls slowly past
+# $d_1$, and one step later feels the whole repulsion for one step: its rate becomes about $2\cdot32.6\,\Delta t =
+# 65.2\,\Delta t$. Outside only friction and the weak pull act. With friction alone, $\ddot y = -2k_2\dot y$, it would
+# get as far as $\dot y/(2k_2) = 32.6\,\Delta t$. So every throw is shorter than that: 1.63 for $\Delta t = 0.05$, 0.33
+# for 0.01, 0.16 for 0.005.
+#
+# </details>
 
 
+# %%
 def until(ax, end):
     for name, (t, length) in curves.items():
         ax.plot(t[t <= end], length[t <= end], label=name)
@@ -361,8 +388,9 @@ print(fl.verify("dead-zone-1-printed", wide))
 
 # %% [markdown]
 # The flock that stays one ends a little wider than $r$, and at rest: it stays so. For the other, a finite run refutes
-# "in the end they are together" only if it is certain that they part. How can a finite run say something about all
-# later times? By an argument in three steps, of which each uses a quantity that cannot change its mind.
+# "in the end they are together" only if it is certain that they part: by momentum, energy and geometry.
+#
+# <details><summary>How a finite run speaks of all later times</summary>
 #
 # 1. *Momentum.* Forces and friction of a pair are opposite, so within a component they cancel in the sum. As long as
 #    the component meets nobody, its centre moves at *constant velocity*.
@@ -373,8 +401,9 @@ print(fl.verify("dead-zone-1-printed", wide))
 # 3. *Geometry.* Two components whose centres move apart at constant velocity, and whose agents stay within known
 #    distances of the centres, have a gap which grows for ever once it has begun to grow.
 #
-# So a run need only be continued until the gap of every two components is certain to stay above $r$. It is the same
-# pattern as in lecture 07: energy bounds what can happen at one instant, at *all* instants, and so for ever.
+# So a run need only be continued until the gap of every two components is certain to stay above $r$.
+#
+# </details>
 #
 # > **Corrected theorem.** Let each pair's potential be held constant beyond $r$, let $\bar H$ be the sum over all
 # > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
@@ -415,14 +444,10 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # ## What surprised, and what the corrected theorem does not say
 #
 # Students usually guess that the jump of the force is the problem and the energy is innocent. It is the other way
-# round: a jumping force is harmless for the theory (its potential has a corner, and Filippov's definition takes care of
-# the rest), and the *energy as printed* is what breaks the proof.
-#
-# The energy that the source wrote down rises, and the one that it meant falls; they differ by a constant for each
-# pair, that is switched on and off. Filippov's idea, a convex combination at the jump, is the definition that makes
-# sliding a solution and not an artefact; the ramp is its smooth neighbour. The corrected theorem does not promise
-# one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match in the
-# limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
+# round: a jumping force is harmless for the theory, and the *energy as printed* is what breaks the proof. It differs
+# from the one that falls by a constant for each pair, that is switched on and off. The corrected theorem does not
+# promise one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match
+# in the limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
 #
 # ## Questions that come up
 #
@@ -537,18 +562,18 @@ grade(nearest, [1.79401084, 1.15723845], digits=4, hint="the formula is above; k
 
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★ (1 point, player) Play the film of the pair at the jump to its end. At which distance does the pair with the
-# ramp come to rest? Give it to within 0.05.
+# **7.** ★ (1 point, player) Play the film of the pair at the jump. How many times is the pair with steps of 0.01 thrown
+# out until $t = 80$? (A whole number.)
 
 # %% tags=["answer"]
-rest_distance = ...
+throws = ...
 
 # %% tags=["solution"]
-rest_distance = curves["ramp, steps of 0.05"][1][-1]
-print(rest_distance)
+throws = np.sum(np.diff((curves["jump, steps of 0.01"][1] < hard.d1).astype(int)) == 1)
+print(throws)
 
 # %% tags=["check"]
-grade(rest_distance, 3.49973, within=0.05, hint="look at the last quarter of the film")
+grade(throws, 9, hint="count the turns at 3.5 of the curve with the shorter steps")
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★★ (3 points, proof) Let no pair have a negative potential, and let $\bar H$ never rise. (a) Derive the bound

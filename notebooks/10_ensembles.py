@@ -44,14 +44,23 @@
 #
 # "Almost every solution converges" is a statement about all initial states. One run verifies nothing; $k$ successes
 # in $N$ runs say that the probability of success lies, with 95 % confidence, in the interval of Clopper and Pearson
-# (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
+# (1934). Even $N$ of $N$ leaves room.
 
 # %%
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 from flockana.ensemble import phases
 
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Sixty runs of sixty succeed. Down to which probability of success is that still compatible with the runs?",
+    guess,
+    float(fl.clopper_pearson(60, 60)[0]),
+)
+
+# %%
 for N in (10, 60, 200):
     low, high = fl.clopper_pearson(N, N)
     print(f"{N} of {N}: between {low:.3f} and {high:.3f}")
@@ -87,11 +96,17 @@ _ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60)))
 # probability 0.861, the lower end, 57 or more (filled) come out in 2.5 % of all experiments. Right: with 0.990, the
 # upper end, 57 or fewer do.
 #
-# **By hand: 4 of 5.** The upper end has the tail "4 or fewer", which is everything but "all 5":
+# <details><summary>By hand: 4 of 5</summary>
+#
+# The upper end has the tail "4 or fewer", which is everything but "all 5":
 # $1 - p^5 = 0.025$, so $p = 0.975^{1/5} = 0.995$. The lower end has the tail "4 or 5":
 # $5p^4(1-p) + p^5 = 0.025$. Try $p = 0.3$: $0.0284 + 0.0024 = 0.0308$, too much; $p = 0.28$: $0.0221 + 0.0017 =
 # 0.0239$, too little; the end is 0.284. So 4 of 5 says "between 28 % and 99.5 %", which is nearly nothing, and it is
-# honest. If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
+# honest.
+#
+# </details>
+#
+# If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
 #
 # **And Wald's formula?** The share $\hat p = k/N$ plus and minus $1.96\sqrt{\hat p(1-\hat p)/N}$ is in every
 # textbook. Put $k = N$ into it: the root is 0, and the interval is the single point 1, for one run as for a million. It
@@ -126,13 +141,19 @@ _ = ax.legend(loc="lower center")
 # less than 95 % of all cases, as the theorem says (and mostly in more: it is cautious). Wald's falls to
 # a tenth near 0 and 1.
 #
-# **Several claims at once.** A table with five claims has five intervals. Each is wrong with a probability of at most
+# <details><summary>Several claims at once</summary>
+#
+# A table with five claims has five intervals. Each is wrong with a probability of at most
 # 5 %; that *some* is wrong may then have up to 25 %. For the table as a whole to be right with 95 %, give each interval
 # $5/5 = 1\,\%$: the probability of a union is at most the sum of the probabilities, whether the claims depend on each
 # other or not. A student who looks at forty measures and reports the two that came out "significant" at 5 % has found
 # what forty tests of nothing give on average.
 #
-# **How many runs do I need?** Decide how wide the interval may be, and solve for $N$. In the middle, where successes
+# </details>
+#
+# <details><summary>How many runs do I need?</summary>
+#
+# Decide how wide the interval may be, and solve for $N$. In the middle, where successes
 # and failures are both frequent, Wald's formula will do for planning; where all runs succeed, the end has a
 # closed form:
 #
@@ -150,8 +171,12 @@ _ = ax.legend(loc="lower center")
 #
 # *In the middle a further digit costs a hundred times the runs, at the edge ten times.* So a table of shares about one
 # half does not deserve three digits, whatever the computer prints, and a claim of "always" is cheaper to support than a
-# claim of "in 50 %". To support "at most one failure in a million starts" takes 3.7 million runs without a failure. For
-# claims of that kind one has to search, or to prove.
+# claim of "in 50 %".
+#
+# </details>
+#
+# To support "at most one failure in a million starts" takes 3.7 million runs without a failure. For claims of that kind
+# one has to search, or to prove.
 
 # %% tags=["facts"]
 needed = [

@@ -67,9 +67,14 @@
 # ## A law in five lines
 #
 # Two agents are to repel each other nearer than $d$, to attract each other from $d$ to $r$, and to feel nothing beyond,
-# without a jump at $r$. So let the potential have the derivative $\psi'$ below, whose first factor changes its sign at
-# $d$ only. To integrate it, put $z = r^2 - \|q_j - q_i\|^2$ for the square that is left to the range, and $z_d = r^2 -
-# d^2$ for its value at $d$ (with the strength `k` of the code left out):
+# without a jump at $r$. So let the potential have the derivative $\psi'$ below. To integrate it, put $z = r^2 - \|q_j -
+# q_i\|^2$ for the square that is left to the range, and $z_d = r^2 - d^2$ for its value at $d$ (with the strength `k`
+# of the code left out):
+#
+# $$\psi' = x\,(x^2 - d^2)\,(r^2 - x^2)^2, \qquad \psi = \tfrac12\Bigl(\tfrac14 z^4 - \tfrac13 z_dz^3 +
+#   \tfrac1{12} z_d^4\Bigr), \qquad x = \|q_j - q_i\| .$$
+#
+# <details><summary>The integral, and numbers</summary>
 #
 # $$\begin{aligned}
 # \psi' &= x\,(x^2 - d^2)\,(r^2 - x^2)^2 && x = \|q_j - q_i\| \\
@@ -83,7 +88,11 @@
 # $0.01\cdot2.5\cdot2.25\cdot2.75^2 = 0.425$, a pull; at 2.9 it is $0.01\cdot2.9\cdot4.41\cdot0.59^2 = 0.045$, nearly
 # nothing. To pull a pair out of range costs $0.01\cdot5^4/24 = 0.26$; to press it from $d$ to 0 costs the difference of
 # the potentials there, 2.39, nine times as much. Compare with the flock's potential in lecture 01, a hard wall with a
-# soft leash: where the pull has to fade at the range, it is easily so. Why each factor? $x$ makes the force vanish
+# soft leash: where the pull has to fade at the range, it is easily so.
+#
+# </details>
+#
+# Why each factor? $x$ makes the force vanish
 # where agents meet; $x^2 - d^2$ changes its sign at $d$ and *nowhere else*; the square of $r^2 - x^2$ makes force and
 # stiffness vanish at $r$. A first power would do for the force and leave a corner in it, which costs an integrator its
 # accuracy.
@@ -101,7 +110,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade, is_own
+from flockana.course import Prediction, grade, is_own
 
 warnings.simplefilter("ignore", fl.PairLawWarning)  # we look at faults ourselves here: law.faults
 
@@ -149,19 +158,37 @@ law.derivation()
 # %% [markdown]
 # ## What a formula may lack
 #
-# Every formula is taken, and what is missing is said. A theorem that needs it then claims nothing. Before you run the
-# next cell, take a pencil: what does each of the four formulas lack, on the range from 0 to 3?
+# Every formula is taken, and what is missing is said. A theorem that needs it then claims nothing. Take a pencil: what
+# does each of these four lack, on the range from 0 to 3?
 
 # %%
-for potential in ("1/s + s", "(s - 1)**2*s**2", "Piecewise((s**2, s < 1), (s, True))", "s**2/(r - s)"):
+potentials = ("1/s + s", "(s - 1)**2*s**2", "Piecewise((s**2, s < 1), (s, True))", "s**2/(r - s)")
+print(*potentials, sep="\n")
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "How many things do the four lack together, at 0, at the range 3 and between?",
+    guess,
+    sum(len(fl.pair_law(potential, adjacency=0, range=3.0, length=1.0).faults) for potential in potentials),
+)
+
+# %%
+for potential in potentials:
     print(f"{potential:38}", fl.pair_law(potential, adjacency=0, range=3.0, length=1.0).faults)
 
 # %% [markdown]
+# <details><summary>What each of them means</summary>
+#
 # The first has a pole where agents meet: they never do, which is a virtue, but theorems on coincident agents say
 # nothing then. The second looks harmless, a well at 1, and its force at 3 is far from 0: when a third agent strays out
 # of range, a large force is switched off at once. The third has the slope 2 on one side of 1 and the slope 1 on the
 # other. The last has a pole *at the range*: to leave would take infinite energy, so links never break, which is exactly
-# what some theorems of lecture 12 want. A fault for one theorem is the hypothesis of another.
+# what some theorems of lecture 12 want.
+#
+# </details>
+#
+# A fault for one theorem is the hypothesis of another.
 
 # %%
 cut = fl.Algorithm1(fl.pair_law("(s - 1)**2*s**2", adjacency=0, range=3.0, length=1.0))
@@ -215,10 +242,14 @@ print(f"the balance closes to {abs(run.energy_residual).max() / run.energy()[0]:
 # number for each instant that must be positive. Each number in it is an enclosure, so rounding and the error of the
 # integrator come along by themselves, and the verdict says *inconclusive* where they are larger than the margin.
 #
+# <details><summary>Two agents</summary>
+#
 # Check the theorem with two agents on a line, at the distance $x$ with the relative velocity
 # $v$. Then $K = \tfrac12\bigl((\tfrac12v)^2 + (\tfrac12v)^2\bigr) = \tfrac14v^2$, each weight is $\tfrac
 # g2(1+x^2)^{-\beta}$, and $\dot v = -2\cdot\tfrac g2(1+x^2)^{-\beta}v$. So $\dot K = \tfrac12v\dot v = -\tfrac
 # g2(1+x^2)^{-\beta}v^2 = -2g(1+x^2)^{-\beta}K$: for two agents the inequality is an equality, and cannot be improved.
+#
+# </details>
 
 # %%
 from own_law.theorem import THEOREM
@@ -350,9 +381,7 @@ for step in PROOF.steps():
 # That a function which is no energy proves that a flock stays together is the surprise of this lecture. In lectures 02
 # and 03 a potential did it.
 #
-# A formula can look right and be wrong in a way that no run shows: a potential that repels again beyond some
-# distance still holds agents at $d$, and fails only when somebody strays. The check "does the force change its sign
-# once?" costs a line. A symbolic proof of an identity for one generic pair is a proof for all $n$, *because* the
+# A symbolic proof of an identity for one generic pair is a proof for all $n$, *because* the
 # energy is a sum over pairs; for a law that is no such sum, like a normalised mean, the same computation for $n = 3$
 # proves the case $n = 3$. Say which of the two you have. And the rate that `flow` returns is a promise of yours: the
 # residual tests it along runs, the proof tests it for all.

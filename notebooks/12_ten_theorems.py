@@ -54,7 +54,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 from flockana.scenarios.one_start import compare, entries, one_start
 
 q, p = one_start()
@@ -77,8 +77,6 @@ print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diamet
 # | links kept | $\psi = x^2/(r-x)$, infinite at the range | constant friction | links of the start |
 # | averaged headings | none | the mean of the headings | all within $r$ |
 #
-# **Predict**, and write it down: which of them will keep these ten together, and which of them *promise* to?
-#
 # ## What is promised
 #
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
@@ -97,6 +95,16 @@ for entry in entries():
 
 # %%
 outcomes = compare()
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Under how many of the ten laws are the agents one group at the end?",
+    guess,
+    sum(outcome.groups == 1 for outcome in outcomes),
+)
+
+# %%
 axes = plots.side_by_side(outcomes)
 
 # %% [markdown]

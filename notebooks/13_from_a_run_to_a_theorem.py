@@ -46,7 +46,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots
-from flockana.course import figures, grade
+from flockana.course import Prediction, figures, grade
 
 law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
 rest = fl.find_equilibrium(law, lattice.hexagonal_spiral(3, 7.0))
@@ -152,6 +152,16 @@ _ = figures.orbit_ball_level(ax=ax)
 
 # %%
 basin = fl.certify(rest)
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Within which distance of the orbit, as a share of d, is convergence proved for three agents?",
+    guess,
+    float(basin.share),
+)
+
+# %%
 print(f"radius {basin.share:.4f} d, level {float(basin.level):.3f}, no two agents nearer than {float(basin.distance)}")
 print(f"U + |v|^2/2 - U* is at most {float(basin.overshoot):.3g} exp(-{2 * float(basin.rate):.3f} t) of its start")
 print(f"the net stays connected: {basin.connected}")

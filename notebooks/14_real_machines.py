@@ -40,8 +40,6 @@
 # | centre | 1.1 | 2.10 | 1.05 | 1 |
 # | pair | 447 | 3.93 | 21.1 | 0.093 |
 #
-# **Predict**, and write it down: which of the four limits of the scene is the worst for the centre, and for the pair?
-#
 # ## Saturation
 #
 # A motor gives $|u| \le u_{\max}$. Let $\operatorname{sat}$ be the function that cuts a number off at
@@ -86,7 +84,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots, stability
-from flockana.course import grade
+from flockana.course import Prediction, grade
 
 start = 0.93 * lattice.hexagonal_patch(1, 7.0)
 start[0] += [0.5, 0.2]
@@ -140,8 +138,18 @@ _ = ax.legend()
 #    $\Delta t < 2c_2^\gamma/c_1^\gamma$. And $\det > -1$ follows from 3 and 4, added: $2 + 2\det > 0$. $\square$
 #
 # The first bound is about friction that acts too long and turns the velocity around; the second about a spring that
-# pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81. For a pair they
-# are 0.51 and 0.0176: **the pair asks for a sample rate fifty times that of the centre.**
+# pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81.
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Below which period is the pair stable, with its stiffness 447 and friction 3.93?",
+    guess,
+    min(2.0 / 3.9275, 2.0 * 3.9275 / 446.6),
+)
+
+# %% [markdown]
+# **The pair asks for a sample rate fifty times that of the centre.**
 #
 # <details><summary>By hand, beyond the bound</summary>
 #

@@ -53,7 +53,7 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade, is_own
+from flockana.course import Prediction, grade, is_own
 from flockana.course.unknown import unknown_program
 
 law = fl.Algorithm1()
@@ -173,7 +173,18 @@ for error, (t, q, p) in logs.items():
     gains, *_ = np.linalg.lstsq(np.column_stack([f.ravel(), g.ravel()]), u.ravel(), rcond=None)
     rest = u - gains[0] * f - gains[1] * g
     fitted[error] = [*gains, np.linalg.norm(rest) / np.linalg.norm(u)]
-    print(f"{error:>11}: c1 = {gains[0]:7.3f}, c2 = {gains[1]:8.3f}, residual {fitted[error][2]:.1e} of the whole")
+
+# %% tags=["predict"]
+guess = ...
+Prediction(
+    "Of the four programs with an error, how many leave a residual at the best gains?",
+    guess,
+    sum(share > 1e-3 for *_, share in fitted.values()),
+)
+
+# %%
+for error, gains in fitted.items():
+    print(f"{error:>11}: c1 = {gains[0]:7.3f}, c2 = {gains[1]:8.3f}, residual {gains[2]:.1e} of the whole")
 print(f"the law has c1 = {c1:.3f}, c2 = {c2:.3f}")
 
 # %% [markdown]

@@ -4,5 +4,6 @@ Grading needs no more than numpy and scipy; writing notebooks needs what ``pip i
 """
 
 from flockana.course.grading import Grade, answered, form_of, grade, is_own, shows
+from flockana.course.prediction import Prediction
 
-__all__ = ["Grade", "answered", "form_of", "grade", "is_own", "shows"]
+__all__ = ["Grade", "Prediction", "answered", "form_of", "grade", "is_own", "shows"]

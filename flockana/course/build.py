@@ -2,8 +2,8 @@
 
 A lecture is a text in jupytext's percent format whose cells are tagged: ``exercise`` poses, ``answer`` is what the
 student fills in, ``solution`` is our answer, and ``check`` grades it by one call of `grade`. Answers in sentences have
-no check, and their solutions end with a rubric. ``facts`` asserts what the text says about the output above it; it is
-kept beside the solutions, where CI runs it.
+no check, and their solutions end with a rubric. ``predict`` asks for a guess by one `Prediction`; no later cell needs
+it. ``facts`` asserts what the text says about the output above it; it is kept beside the solutions, where CI runs it.
 """
 
 import ast

@@ -13,7 +13,7 @@ from nbformat.v4 import new_markdown_cell
 from flockana.course.build import companions, notebook, sources, tags
 from flockana.course.delivery import deliver, notebook_bytes
 
-_LEFT_OUT = {"exercise", "answer", "check", "install"}
+_LEFT_OUT = {"exercise", "answer", "check", "install", "predict"}
 _SENTENCE = r"(?s:.+?[.?])(?=\s+[A-Z*$#]|\s*\Z)"
 _PART = re.compile(
     rf"(?m)^# (?P<title>.+)$|^\*\*Aims\.\*\* (?P<aims>{_SENTENCE})|^## (?P<head>.+)$"

@@ -41,6 +41,8 @@ def lecture(source: Path) -> Any:
             cell.source = f"````{{admonition}} Solution\n:class: dropdown\n\n{cell.source}\n````"
         elif "solution" in tags or "check" in tags:
             cell.metadata["tags"] = [*tags, "hide-cell"]
+        elif "predict" in tags:
+            cell.metadata["tags"] = [*tags, "hide-input"]
     return book
 
 
