@@ -476,17 +476,17 @@ assert fl.min_distance(settle(patch[:2], 1.1 * needed).q) < 1e-6
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point, derivation) Case 4 has $c_1^\gamma = 70$. Which $c_2^\gamma$ makes the centre of mass critically
-# damped ($\zeta = 1$)? (Four significant digits.)
+# **1.** ★ (1 point, derivation) Let $c_1^\gamma = 50$. Which $c_2^\gamma$ makes the centre of mass critically damped
+# ($\zeta = 1$)? (Four significant digits.)
 
 # %% tags=["answer"]
 c2_gamma = ...
 
 # %% tags=["solution"]
-c2_gamma = 2 * np.sqrt(70)
+c2_gamma = 2 * np.sqrt(50)
 
 # %% tags=["check"]
-grade(c2_gamma, 16.733201, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
+grade(c2_gamma, 14.1421356, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
 
 # %% [markdown] tags=["exercise"]
 # **2.** ★★ (2 points, design) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of

@@ -80,7 +80,7 @@ slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal l
 # > $n > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
 #
 # A net is *planar* if it can be drawn in the plane without crossing links, *complete* if all pairs are linked. (The
-# slides print (ii) without $n \ge 3$, and for two agents $3n - 6 = 0$ links is wrong: erratum E6.)
+# slides print (ii) without $n \ge 3$: erratum E6, exercise 4.)
 #
 # *Proof of (i) in the plane.* The positions of the agents are a drawing. We show that its links do not cross.
 #

@@ -489,33 +489,33 @@ print("in the plane these drift:", drifting)
 grade(zeros, 9, hint="put x = a + tb into the linear equation: for which a and b does it solve it?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points, derivation) Two agents under Algorithm 1 with its default gains, 7 apart, at rest, as in the
-# lecture. (a) What is the damping ratio of their distance? (b) Which $c_2^\alpha$, with $c_1^\alpha = 30$, would
-# make it 1? Give the list, each to three significant digits.
+# **2.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart, at rest, as in the lecture, but with
+# $c_1^\alpha = 60$. (a) What is the damping ratio of their distance with $c_2^\alpha = 2\sqrt{30}$? (b) Which
+# $c_2^\alpha$ would make it 1? Give the list, each to three significant digits.
 
 # %% tags=["answer"]
 pair_damping = ...
 
 # %% tags=["solution"]
-ratio = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0].damping_ratio
+ratio = fl.linearise(fl.Algorithm1(gains=fl.Gains(c1_alpha=60.0)), [[0.0], [7.0]]).modes[0].damping_ratio
 pair_damping = [ratio, 2.0 * np.sqrt(30.0) / ratio]  # the ratio is proportional to c2α
 print(pair_damping)
 
 # %% tags=["check"]
-grade(pair_damping, [0.09291926, 117.892148], digits=3, hint="there is one mode; how does its damping depend on c2α?")
+grade(pair_damping, [0.06570384, 166.724675], digits=3, hint="there is one mode; how does its damping depend on c2α?")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★ (1 point, derivation) For which $c_2^\gamma$ does the centre of mass return fastest, with
-# $c_1^\gamma = 1.1$ as it is? (Four significant digits.)
+# $c_1^\gamma = 2.5$? (Four significant digits.)
 
 # %% tags=["answer"]
 best = ...
 
 # %% tags=["solution"]
-best = 2 * np.sqrt(1.1)
+best = 2 * np.sqrt(2.5)
 
 # %% tags=["check"]
-grade(best, 2.0976177, digits=4, hint="where do two real poles meet?")
+grade(best, 3.16227766, digits=4, hint="where do two real poles meet?")
 
 # %% [markdown] tags=["exercise"]
 # **4.** ★★ (2 points, reading) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19

@@ -114,7 +114,7 @@ potential
 # ## Which energy falls
 #
 # The source sums $\psi$ over *neighbours*. That sum jumps up by $\psi(r)$ whenever a pair comes into range: just
-# outside the pair is not counted, just inside it counts 5.8. Hold each pair's potential constant beyond $r$ instead,
+# outside the pair is not counted, just inside it is. Hold each pair's potential constant beyond $r$ instead,
 # and count *all* pairs:
 #
 # $$\bar H = \tfrac12\sum_i\|p_i\|^2 + \sum_{i<j}\psi\bigl(\min(d_{ij}, r)\bigr).$$
@@ -435,11 +435,20 @@ assert abs(ramped.least_distance(H0) * np.sinh(H0 / (2 * ramped.k_r) + np.arcsin
 # %%
 equilibrium = fl.find_equilibrium(fl.DeadZoneFlocking(), near.q[-1])
 print(f"a {equilibrium.kind}, contacts shorter than d1 by at most {equilibrium.strain():.1%}")
-figure, ax = plots.subplots(size=(6, 5))
-_ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
+contacts = equilibrium.q[fl.links(equilibrium.q, 3.6)]
+figure, axes = plots.subplots(1, 2, size=(11, 4.2))
+plots.configuration(equilibrium.q, d=ramped.d1, r=3.6, ax=axes[0], bar=False)
+axes[1].plot(
+    np.linalg.norm(contacts.mean(axis=1) - equilibrium.q.mean(axis=0), axis=1),
+    np.linalg.norm(contacts[:, 1] - contacts[:, 0], axis=1),
+    "o",
+)
+axes[1].axhline(ramped.d1, color="black", linestyle=":")
+_ = axes[1].set(xlabel="distance of the contact from the centre (length)", ylabel="its length")
 
 # %% [markdown]
-# **Figure 9.5.** The middle of the flock is squeezed (dark), its rim is not.
+# **Figure 9.5.** Contacts, pairs nearer than 3.6, and their lengths: in the middle of the flock they are squeezed below
+# $d_1$ (dotted), at its rim hardly.
 #
 # ## What surprised, and what the corrected theorem does not say
 #

@@ -428,7 +428,7 @@ grade(lacking, 2, hint="look at the force at both ends of the range: morse.fault
 
 # %% [markdown] tags=["exercise"]
 # **2.** ★★ (2 points, derivation) By hand or by `sympy`, for `well`: (a) how stiff is a link at its length $d$, that is
-# the slope of the force there? (b) How much energy does it take to pull a pair out of range? Give the list, each to
+# the slope of the force there? (b) How much energy does it take to pull a pair at rest to 2.5? Give the list, each to
 # four significant digits.
 
 # %% tags=["answer"]
@@ -437,10 +437,11 @@ stiffness = ...
 # %% tags=["solution"]
 force = k * s * (s**2 - d**2) * (r**2 - s**2) ** 2
 numbers = {d: 2, r: 3, k: sp.Rational(1, 100)}
-stiffness = [float(sp.diff(force, s).subs({s: 2} | numbers)), float((k * (r**2 - d**2) ** 4 / 24).subs(numbers))]
+work = sp.integrate(force.subs(numbers), (s, 2, sp.Rational(5, 2)))
+stiffness = [float(sp.diff(force, s).subs({s: 2} | numbers)), float(work)]
 
 # %% tags=["check"]
-grade(stiffness, [2.0, 0.260416667], digits=4, hint="product rule: one factor of the force vanishes at d")
+grade(stiffness, [2.0, 0.158598633], digits=4, hint="product rule: one factor of the force vanishes at d")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★★ (2 points, experiment) Leave out the factor ½ in the rate that `flow` returns. What is the largest energy

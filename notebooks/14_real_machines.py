@@ -459,19 +459,19 @@ friction = 1.0  # 2/c2γ falls and 2 c2γ rises: they meet at 1
 grade(friction, 1.0, hint="one bound falls with c2γ, the other rises")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points, experiment) What is the sampling margin of the square of four agents under Algorithm 1,
-# `lattice.square(2, 2, 7.0)` with its default gains? (`stability.sampling_margin(law, q).period`, three significant
-# digits.)
+# **3.** ★★ (2 points, experiment) What is the sampling margin of the rhombus of four agents under Algorithm 1,
+# `lattice.hexagonal_spiral(4, 7.0)` with its default gains? (`stability.sampling_margin(law, q).period`, three
+# significant digits.)
 
 # %% tags=["answer"]
-square_period = ...
+rhombus_period = ...
 
 # %% tags=["solution"]
-square_period = stability.sampling_margin(fl.Algorithm1(), lattice.square(2, 2, 7.0)).period
-print(square_period)
+rhombus_period = stability.sampling_margin(fl.Algorithm1(), lattice.hexagonal_spiral(4, 7.0)).period
+print(rhombus_period)
 
 # %% tags=["check"]
-grade(square_period, 0.0175867, digits=3, hint="fl.Algorithm1() and the positions are all it needs")
+grade(rhombus_period, 0.0207228, digits=3, hint="fl.Algorithm1() and the positions are all it needs")
 
 # %% [markdown] tags=["exercise"]
 # **4.** ★★ (2 points, counterexample) Counterexample hunt: "A sampled agent is the safer, the more friction it has."

@@ -170,11 +170,12 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
     if not solids:
         return "there are no obstacles"
     t, q = trajectory.t, trajectory.q
-    width, alpha = line_width_and_opacity(2 * len(solids))
+    (width, alpha), few = line_width_and_opacity(2 * len(solids)), len(solids) <= 3
     for k, solid in enumerate(solids):
         least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
-        name = "each obstacle, at the samples" if k == 0 else None
-        ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
+        name = f"{type(solid).__name__.lower()} {k + 1}" if few else None if k else "each obstacle, at the samples"
+        colour, dash = ((BLUE, "-"), (PURPLE, "-."), (INK, (0, (5, 1))))[k if few else 0]
+        ax.plot(t, least, color=colour, linestyle=dash, linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
     if np.isfinite(bound):  # of samples alone nothing is known between them
         levels(ax, [(bound, "lower bound for all times", VERMILLION, "--")])
