@@ -49,7 +49,7 @@
 #
 # <details><summary>With numbers</summary>
 #
-# *With numbers.* Let $c_1^\alpha = 1$ and $c_2^\alpha = 0.2$. The rim is $\psi_\alpha(r_\alpha) = 0.736$ high. A pair
+# *With numbers.* Let $c_1^\alpha = 1$. The rim is $\psi_\alpha(r_\alpha) = 0.736$ high. A pair
 # at rest 6.6 apart has the energy 0.635, below the rim, and stays together. At rest 6.5 apart it has 0.967, above the
 # rim: without friction it parts. Only 0.1 of a length lies between the two fates, because the potential is steep where
 # agents are too close, and its rim is low.
@@ -63,10 +63,10 @@ import flockana as fl
 from flockana import plots, symbolic
 from flockana.course import Prediction, figures, grade
 
-law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.2))
+law = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=1.5))
 figure, axes = plots.subplots(1, 2, size=(11, 3.8))
 figures.three_orbits(law.alpha, ax=axes[0])
-couple = fl.simulate(law, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 60.0), t_eval=np.linspace(0.0, 60.0, 1500))
+couple = fl.simulate(law, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 30.0), t_eval=np.linspace(0.0, 30.0, 1500))
 distance, rate = np.diff(couple.q, axis=1)[:, 0], np.diff(couple.p, axis=1)[:, 0]
 x, v = np.linspace(6.2, 8.6, 200), np.linspace(-2.5, 2.5, 200)
 _ = plots.phase_portrait(
@@ -192,13 +192,17 @@ Prediction(
 )
 
 # %%
-figure, axes = plots.subplots(1, 2, size=(10, 4.5))
-plots.snapshot(run, time=0.0, ax=axes[0], bar=False)
-_ = plots.snapshot(run, ax=axes[1])
+figure, axes = plots.subplots(1, 3, size=(13, 4.2))
+for ax, time in zip(axes, (0.0, 40.0, 40.0), strict=True):
+    plots.snapshot(run, time=time, ax=ax, bar=False)
+labels = np.array(fl.components(run.n, fl.links(run.q[-1], 8.4)))
+group = run.q[-1, labels == np.bincount(labels).argmax()]
+axes[2].set_aspect("equal", adjustable="box")
+_ = axes[2].set(xlim=group[:, 0].mean() + np.array([-20.0, 20.0]), ylim=group[:, 1].mean() + np.array([-20.0, 20.0]))
 
 # %% [markdown]
-# **Figure 2.2.** The start and $t = 40$. Inside each component the distances are near 7 and the velocities alike; the
-# components drift apart.
+# **Figure 2.2.** The start, $t = 40$, and the largest component then, enlarged. Inside each component the distances are
+# near 7 and the velocities alike; the components drift apart.
 
 # %%
 figure, axes = plots.subplots(1, 3, size=(12, 3))
@@ -219,8 +223,8 @@ assert f"{float(np.sum(inputs * speeds)):.2f}" == "-3.93"
 assert couple.energy()[0] < law.alpha.psi_alpha(law.alpha.r_alpha)  # inside the separatrix
 heights = [law.alpha.r_alpha, law.alpha.sigma_norm(6.6), law.alpha.sigma_norm(6.5)]
 assert [f"{float(law.alpha.psi_alpha(z)):.3f}" for z in heights] == ["0.736", "0.635", "0.967"]
-stiffer = fl.Algorithm1(gains=fl.Gains(c1_alpha=100.0, c2_alpha=2.0))
-faster = fl.simulate(stiffer, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 6.0), t_eval=couple.t / 10.0)
+stiffer = fl.Algorithm1(gains=fl.Gains(c1_alpha=100.0, c2_alpha=15.0))
+faster = fl.simulate(stiffer, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 3.0), t_eval=couple.t / 10.0)
 assert abs(faster.q - couple.q).max() < 1e-5
 parted = run.n * (run.n - 1) // 2 - len(fl.links(run.q[-1], 8.4))
 rims = parted * run.law.gains.c1_alpha * float(run.law.alpha.psi_alpha(run.law.alpha.r_alpha))
@@ -417,7 +421,7 @@ assert f"{rim:.2f} {gain * alpha.potential_energy(ring):.1f} {9.0 * rim:.1f}" ==
 # *Would a larger $c_1^\alpha$ hold the flock together? It raises the rim.* Not if the flock starts at rest. Measure
 # time in units of $1/\sqrt{c_1^\alpha}$: the law becomes $\ddot q = -\nabla V - (c_2^\alpha/\sqrt{c_1^\alpha})\hat
 # L\dot q$. Force and rim grow alike, and what counts is $c_2^\alpha/\sqrt{c_1^\alpha}$. So a larger $c_1^\alpha$ alone
-# makes the friction relatively *weaker*. The pair of Figure 2.1 with $c_1^\alpha = 100$ and $c_2^\alpha = 2$ moves
+# makes the friction relatively *weaker*. The pair of Figure 2.1 with $c_1^\alpha = 100$ and $c_2^\alpha = 15$ moves
 # along the same path, ten times as fast.
 #
 # *Is Theorem 1 wrong?* (ii) and (iii) are proved above. (i) is false as printed. But the more important defect is

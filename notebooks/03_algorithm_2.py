@@ -289,15 +289,13 @@ print(f"period: {2.0 * np.pi:.4f} predicted, {2.0 * half:.4f} measured")
 
 # %%
 case4 = fl.scenario("msn-case4").run()
-figure, axes = plots.subplots(1, 3, size=(13, 3.6))
-plots.snapshot(case4, ax=axes[0], bar=False)
-plots.trajectories(case4, ax=axes[1])
-_ = plots.centre_path(case4, ax=axes[2])
+figure, axes = plots.subplots(1, 2, size=(10, 4.2))
+plots.trajectories(case4, ax=axes[0])
+_ = plots.centre_path(case4, ax=axes[1])
 case4.player(height=460)
 
 # %% [markdown]
-# **Figure 3.3.** Case 4 of the project: the flock at the end, all paths, and the path of the centre beside the
-# target's.
+# **Figure 3.3.** Case 4 of the project: all paths, and the path of the centre beside the target's.
 #
 # ## Why is the circle smaller?
 #
@@ -335,7 +333,8 @@ for k_v, run in ((0.009, case4), (1.0, true)):
 frequencies = np.geomspace(0.3, 100.0, 200)
 figure, ax = plots.subplots(size=(6, 3.4))
 for k_v in (0.009, 1.0):
-    ax.loglog(frequencies, gain(k_v, frequencies), label=f"k_v = {k_v:g}")
+    ax.semilogx(frequencies, gain(k_v, frequencies), label=f"k_v = {k_v:g}")
+    ax.plot(omega, gain(k_v, omega), "o", color="black")
 ax.axvline(omega, color="0.5", linestyle=":")
 ax.set(xlabel="ω (1/time)", ylabel="|q_c/q_r|")
 _ = ax.legend()

@@ -264,14 +264,19 @@ eight = np.array([[0, 0, 0], [1, 0, 1], [2, 1, 1], [1, 1, 0], [2, 2, 0], [2, 1, 
 fragment = eight * d / np.sqrt(2)
 edges = lattice.links(fragment, r)
 print(f"α-lattice: {lattice.is_alpha_lattice(fragment, d, r)}, crossings: {len(lattice.crossings(fragment, edges))}")
-print(f"planar: {lattice.is_planar(8, edges)}; {lattice.kuratowski(8, edges)}")
+witness = lattice.kuratowski(8, edges)
+print(f"planar: {lattice.is_planar(8, edges)}; {witness}")
 figure, ax = plots.subplots(m=3, size=(5, 4.5))
-_ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
+plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
+for link in witness.links:
+    ax.plot(*fragment[link].T, color="black", linestyle="-", linewidth=2.5)
+for corners, marker in ((witness.corners[:3], "s"), (witness.corners[3:], "^")):
+    ax.plot(*fragment[list(corners)].T, marker, color="black", linestyle="none", markersize=9)
 
 # %% [markdown]
 # **Figure 4.4.** Eight agents in space, all neighbours exactly 7 apart, no links crossing, and a net that no drawing
 # in the plane can avoid to cross. By Kuratowski's theorem such a net contains five nodes or three and three, joined
-# by paths all to all, and the output names them.
+# by paths all to all: here squares to triangles, along the heavy links.
 #
 # ## Rigidity
 #

@@ -366,7 +366,7 @@ left.plot(np.cos(turn), np.sin(turn), linewidth=0.8)
 for share, mark in ((0.5, "o"), (1.1, "x")):
     z = fl.linearise(fl.TaylorStep(law, share * held.period), rest).multipliers
     left.plot(z.real, z.imag, mark, markersize=4, label=f"{share} of the margin")
-left.set(xlabel="Re z", ylabel="Im z", aspect="equal")
+left.set(xlabel="Re z", ylabel="Im z", aspect="equal", xlim=(0.2, 1.1), ylim=(-0.05, 1.05))
 left.legend(loc="lower left")
 right.plot(1e3 * predicted, 1e3 * shaken, "o", markersize=4)
 right.axline((2.6, 2.6), slope=1.0, linewidth=0.8)
@@ -379,9 +379,9 @@ assert swing > 1e-2
 assert np.abs(shaken / predicted - 1.0).max() < 0.1
 
 # %% [markdown]
-# **Figure 6.4.** Left: multipliers of the sampled flock, and the unit circle; at 1.1 times the margin a pair is
-# outside. Right: how much each link vibrates in white noise, predicted by Lyapunov's equation and measured in a
-# nonlinear run; on the line both agree.
+# **Figure 6.4.** Left: multipliers of the sampled flock (those above the real axis), and the unit circle; at 1.1 times
+# the margin a pair is outside. Right: how much each link vibrates in white noise, predicted by Lyapunov's equation and
+# measured in a nonlinear run; on the line both agree.
 #
 # Every link vibrates within ten percent as predicted, the outer ones most: they have fewer neighbours that hold them.
 # Both lessons point the same way. Sampling and delay are about the *stiffest* modes, noise is about the *softest and
@@ -399,12 +399,15 @@ assert np.abs(shaken / predicted - 1.0).max() < 0.1
 sweep = stability.gain_sweep(
     law, rest.q, "c2_gamma", np.linspace(0.2, 4.0, 20) * 2.0 * np.sqrt(law.gains.c1_gamma), follow=False
 )
-_ = plots.gain_sweep(sweep)
+figure, axes = plots.subplots(1, 2, size=(11, 3.6))
+plots.gain_sweep(sweep, ax=axes[0])
 rates = {}
-for c2 in (4.0, 12.0, 16.0, 20.0, 40.0, 100.0):
+for c2 in (4.0, 8.0, 12.0, 16.0, 20.0, 40.0, 100.0):
     damped = fl.Algorithm2(gains=fl.Gains(c2_gamma=c2), target=law.target)
     rates[c2] = fl.linearise(damped, rest.q).structural_decay_rate
     print(f"c2γ = {c2:5.1f}: the structure decays at the rate {rates[c2]:.3f}")
+axes[1].semilogx(list(rates), list(rates.values()), "o-")
+_ = axes[1].set(xlabel="$c_2^\\gamma$ (1/time)", ylabel="decay rate of the structure (1/time)", ylim=(0.0, None))
 
 # %% tags=["facts"]
 best_drawn = sweep.values[int(np.argmin(sweep.abscissa))]
@@ -430,8 +433,8 @@ assert [grows(share * 0.05, 450.0, 40.0) for share in (0.99, 1.01)] == [False, T
 assert slow.name == "breathing"
 
 # %% [markdown]
-# **Figure 6.5.** The rightmost pole over $c_2^\gamma$. The table below the figure is for the structure alone: its
-# decay rate grows until about $c_2^\gamma = 16$, to 8.6, and falls to 5.1 at 20 and to 0.87 at 100.
+# **Figure 6.5.** Left: the rightmost pole over $c_2^\gamma$. Right: the structure alone, whose decay rate grows until
+# about $c_2^\gamma = 16$, to 8.6, and falls to 5.1 at 20 and to 0.87 at 100.
 #
 # So "more damping is better" is false twice: for the centre beyond 2.1, for the structure beyond 16.
 #

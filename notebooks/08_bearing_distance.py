@@ -214,6 +214,7 @@ axes[0].set(xlabel="speed (m/s)", ylabel="speed one step later (m/s)", xlim=(1.2
 axes[0].legend()
 for ax, run, title in zip(axes[1:], (printed, clipped), ("as printed", "as recommended: a plain clip"), strict=True):
     plots.zone_speeds(run, ax=ax)
+    ax.set(xlabel="t (s)", ylabel="speed (m/s)")
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
 # %% tags=["facts"]
@@ -260,10 +261,12 @@ Prediction(
 # %%
 figure, axes = plots.subplots(1, 2, size=(11, 4))
 plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
-_ = plots.snapshot(tree, ax=axes[1], velocities=False)
+plots.snapshot(tree, ax=axes[1], velocities=False)
+for ax, places in zip(axes, tree.q[[0, -1]], strict=True):
+    ax.plot(*places[0], "s", color="black", markersize=9)
 
 # %% [markdown]
-# **Figure 8.4.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
+# **Figure 8.4.** A tree of eight agents at the start and at $t = 100$. An arrow leads from the root (square) outwards;
 # colour shows how far an edge is from its desired length. At the end every edge is right, and none is 0.
 
 # %%

@@ -207,7 +207,16 @@ printed = fl.ensemble("zone-51-printed", range(60))
 mended = fl.ensemble("zone-51", range(60))
 figure, axes = plots.subplots(1, 2, size=(12, 3.4))
 plots.share_bars(fl.shares(printed, level=0.99), ax=axes[0], title="as printed")
-_ = plots.share_bars(fl.shares(mended, level=0.99), ax=axes[1], title="as recommended")
+plots.share_bars(fl.shares(mended, level=0.99), ax=axes[1], title="as recommended")
+words = {
+    "distances": "above 1.5 m",
+    "coordination": "aligned in 2 s",
+    "radius": "compact",
+    "speed": "as fast as desired",
+}
+for ax in axes:
+    names = [label.get_text().removeprefix("source:") for label in ax.get_yticklabels()]
+    ax.set_yticks(ax.get_yticks(), [words.get(name, f"within {name}") for name in names])
 
 # %% [markdown]
 # **Figure 10.3.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
@@ -230,7 +239,8 @@ print(f"least distance as recommended:         median {float(mended['min_distanc
 # %%
 grid = {"ratio": [1e-4, 1e-2, 0.1, 1.0], "density": [0.3, 3.0], "n": [12]}
 runs = fl.ensemble("phase", range(3), parameters=grid, theorems=())
-_ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
+ax = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
+_ = ax.set(xlabel="pull of the target over pair force, $c_1^\\gamma/c_1^\\alpha$", ylabel="density of the start")
 
 # %% [markdown]
 # **Figure 10.4.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is

@@ -279,6 +279,7 @@ def interval_tails(k: int, runs: int, interval: tuple[float, float], *, axes: An
         said = f"filled: {k} {words}, {mass[tail].sum():.1%}"
         ax.text(0.03, 0.9, said, transform=ax.transAxes, fontsize=8, color=INK)
         ax.set_xlim(max(-1, k - 0.3 * runs), min(runs, k + 0.3 * runs) + 1)
+        ax.xaxis.get_major_locator().set_params(integer=True)
         write_title(ax, f"success with probability {p:.3f}")
         finish(ax, f"successes in {runs} runs", "probability")
     return axes
