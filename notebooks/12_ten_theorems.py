@@ -59,7 +59,7 @@ from flockana.scenarios.one_start import compare, entries, one_start
 
 q, p = one_start()
 ax = plots.configuration(q, p, r=8.4, title="the start of them all")
-ax.margins(0.12)
+ax.margins(0.2)
 print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diameter {fl.diameter(p):.3g}")
 
 # %% [markdown]
