@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
-from flockana.cli.options import AsJson, Seed, output
+from flockana.cli.options import AsJson, CaseName, Seed, output
 from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
 
 
 def animate_command(
-    name: Annotated[str, typer.Argument(metavar="CASE", help="A scenario, a saved run, or FILE.py:NAME.")],
+    name: CaseName,
     film: Annotated[Path, output("GIF or MP4 file to write.")],
     seed: Seed = 0,
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 15.0,

@@ -27,7 +27,10 @@ def ensemble_command(
     first: Annotated[int, typer.Option("--first-seed", min=0, help="First seed.")] = 0,
     theorem: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Theorem to check, or 'source' for the source's reports. May be repeated."),
+        typer.Option(
+            metavar="NAME",
+            help="Theorem, FILE.py:NAME (a claim of yours), or 'source' for the source's reports. May be repeated.",
+        ),
     ] = None,
     options: Annotated[
         list[str] | None, typer.Option("--set", metavar="OPTION=V1,V2,…", help="Values of an option. May be repeated.")
@@ -48,6 +51,7 @@ def ensemble_command(
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
     from flockana.base.binomial import ensure_level
+    from flockana.cli.own import is_own, read_own, read_theorem
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
 
@@ -60,9 +64,11 @@ def ensemble_command(
     ensure_file(plot)
     if plot is not None and len(axes) > 2:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
-    wanted: dict[str, Any] = {"theorems": theorem or None, "parameters": parameters, "jobs": jobs, "store": store}
+    checked = [read_theorem(name) for name in theorem or ()] or None
+    wanted: dict[str, Any] = {"theorems": checked, "parameters": parameters, "jobs": jobs, "store": store}
     try:
-        runs = ensemble(scenario, range(first, first + seeds), **wanted, retry=retry, progress=True)
+        case = read_own(scenario) if is_own(scenario) else scenario
+        runs = ensemble(case, range(first, first + seeds), **wanted, retry=retry, progress=True)
     except KeyboardInterrupt as stopped:
         typer.echo(stopped, err=True)
         return INTERRUPTED

@@ -7,12 +7,14 @@ from typing import Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.cli.options import OWN
 from flockana.cli.show import OK
 
 
 def explore_command(
     name: Annotated[
-        str, typer.Argument(metavar="[NAME|FILE]", help="A scenario, law, saved run (.nc) or counterexample (.json).")
+        str,
+        typer.Argument(metavar="[CASE]", help=f"A scenario, law, saved run (.nc), counterexample (.json), or {OWN}."),
     ] = "paper-flocking",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 picks a free one.")] = 8642,
     seconds: Annotated[float, typer.Option(help="Longest computing time of a run; a longer one is refused.")] = 60.0,
@@ -25,12 +27,14 @@ def explore_command(
     `pip install 'flockana[explore]'`.
     """
     import asyncio
+    import tempfile
     import webbrowser
 
     from flockana.base.checks import ensure_positive
 
     ensure_positive("--seconds", seconds)
-    first = _first(name)
+    folder = tempfile.TemporaryDirectory(prefix="flockana-")
+    first = _first(name, folder.name)
     try:
         from flockana.explore.server import Server, kept_token, serve
     except ModuleNotFoundError as error:
@@ -41,18 +45,23 @@ def explore_command(
         if not no_browser:
             webbrowser.open(address)
 
-    asyncio.run(serve(Server(kept_token(), first, seconds), port, opened))
+    with folder:
+        asyncio.run(serve(Server(kept_token(), first, seconds), port, opened))
     return OK
 
 
-def _first(name: str) -> dict[str, str]:
-    """Return the case that the page begins with; raise on an unknown name or a bad file."""
+def _first(name: str, folder: str) -> dict[str, str]:
+    """Return the case that the page begins with, a flock of one's own as a saved run in a folder; raise on others."""
     import os
     from pathlib import Path
 
+    from flockana.cli.own import is_own, read_case
+    from flockana.explore.own import save_case
     from flockana.explore.starts import FILES, from_file, law_names
     from flockana.scenarios import scenarios
 
+    if is_own(name):
+        return save_case(read_case(name), folder)
     if name in scenarios():
         return {"kind": "scenario", "name": name}
     if name in law_names():

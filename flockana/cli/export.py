@@ -7,13 +7,13 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from flockana.cli.options import AsJson, ScenarioName, Seed, output
+from flockana.cli.options import AsJson, CaseName, Seed, output
 from flockana.cli.show import OK, show, show_files, show_json
 
 
 def export_command(
     to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="Target program.")],
-    name: ScenarioName,
+    name: CaseName,
     *,
     folder: Annotated[Path, output("Folder to write to.", metavar="DIR")],
     seed: Seed = 0,
@@ -30,10 +30,10 @@ def export_command(
 
     An earlier export in the folder is replaced. If another file there has one of these names, nothing is written.
     """
+    from flockana.cli.own import read_flock
     from flockana.lammps.export import export_lammps
-    from flockana.scenarios import scenario
 
-    item = scenario(name, seed)
+    item = read_flock(name, seed)
     options: dict[str, Any] = {"points": points, "inner": inner, "dt": dt, "samples": samples, "consensus": consensus}
     exported = export_lammps(item.law, item.q0, item.p0, item.t_span, folder, **options)
     if as_json:

@@ -16,10 +16,14 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from flockana.falsify import Falsification
+    from flockana.theorems import Theorem
 
 
 def falsify_command(
-    theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Theorem, such as os-3.")] = None,
+    theorem: Annotated[
+        str | None,
+        typer.Argument(metavar="[THEOREM]", help="Theorem, such as os-3, or FILE.py:NAME, a claim of yours."),
+    ] = None,
     *,
     on: On = None,
     budget: Annotated[int, typer.Option(min=1, help="Largest number of runs.")] = 200,
@@ -43,26 +47,27 @@ def falsify_command(
     """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
     THEOREM must be about runs. The search covers a box about the start of the case. -o writes a counterexample as JSON;
-    --replay simulates such a file again and checks it. A search that finds nothing proves nothing.
+    --replay simulates such a file again and checks it (a claim of yours is named before it). A search that finds nothing proves nothing.
 
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
-    from flockana.cli.own import read_flock
+    from flockana.cli.own import is_own, read_flock, read_theorem
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.falsify import falsify
     from flockana.plots.falsify import falsification
 
     if replay is not None:
-        if (theorem, on, claim, save_to, plot) != (None,) * 5:
+        own = read_theorem(theorem) if is_own(theorem) else None
+        if (theorem if own is None else None, on, claim, save_to, plot) != (None,) * 5:
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
-        return _replay(replay, as_json=as_json)
+        return _replay(replay, own, as_json=as_json)
     if theorem is None or on is None:
         raise ArgumentError("expected THEOREM --on CASE, such as os-3 --on three-agents-1d, or --replay FILE")
     ensure_file(save_to, (".json",))
     ensure_file(plot)
     search = falsify(
-        theorem,
+        read_theorem(theorem),
         read_flock(on, seed),
         budget=budget,
         seed=seed,
@@ -118,14 +123,14 @@ def search_facts(search: Falsification) -> dict[str, Any]:
     return facts | {"broken": list(search.broken), "parameters": dict(search.parameters)}
 
 
-def _replay(path: Path, *, as_json: bool) -> int:
+def _replay(path: Path, own: Theorem | None, *, as_json: bool) -> int:
     from rich.console import Console
 
     from flockana.falsify import Counterexample
     from flockana.report.console import details
 
     counterexample = Counterexample.load(path)
-    verdict = counterexample.check()
+    verdict = counterexample.check(theorem=own)
     status = {claim.name: claim.status for claim in verdict.claims}.get(counterexample.claim, "not judged")
     again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
     claim = f"{counterexample.theorem}:{counterexample.claim}"

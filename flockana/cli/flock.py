@@ -39,13 +39,14 @@ def read_motion(
     >>> law.title, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
+    from flockana.cli.own import is_own
     from flockana.cli.source import ensure_source, read_source
     from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction
     from flockana.laws import Algorithm1, Algorithm2
     from flockana.scenarios import scenarios
 
-    if source in scenarios():
+    if source in scenarios() or is_own(source):
         _refuse(source, "has a law of its own", time=time, algorithm=algorithm, d=d, r=r)
         return _of_scenario(source, start or "end", seed or 0, potential)
     ensure_source(source, scenarios())
@@ -88,11 +89,11 @@ def _refuse(name: str, reason: str, **given: object) -> None:
 
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray, FloatArray]:
+    from flockana.cli.own import read_flock
     from flockana.cli.source import integrated_law
     from flockana.equilibria.classify import ensure_small
-    from flockana.scenarios import scenario
 
-    item = scenario(name, seed)
+    item = read_flock(name, seed)
     law = _ensured(integrated_law(item.law), item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":

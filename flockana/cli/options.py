@@ -8,8 +8,12 @@ from typing import Annotated, Any, Literal
 import typer
 
 # what to start from
-ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help="Scenario of the catalogue.")]
-SourceName = Annotated[str, typer.Argument(metavar="SOURCE", help="A scenario, a file, or a builder with its size.")]
+OWN = "FILE.py:NAME, a flock of yours"
+CaseName = Annotated[str, typer.Argument(metavar="CASE", help=f"A scenario, a saved run (.nc), or {OWN}.")]
+ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help=f"A scenario, or {OWN}.")]
+SourceName = Annotated[
+    str, typer.Argument(metavar="SOURCE", help=f"A scenario, a file, a builder with its size, or {OWN}.")
+]
 Start = Annotated[
     Literal["end", "start"] | None, typer.Option(help="Use the end of a scenario's run (by default), or its start.")
 ]
@@ -17,7 +21,7 @@ AnySeed = Annotated[int | None, typer.Option("--seed", min=0, help="Seed of a sc
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
 On = Annotated[
     str | None,
-    typer.Option("--on", metavar="CASE", help="A scenario, a saved run (.nc), or FILE.py:NAME, a flock of yours."),
+    typer.Option("--on", metavar="CASE", help=f"A scenario, a saved run (.nc), or {OWN}."),
 ]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]
 

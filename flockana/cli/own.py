@@ -1,14 +1,17 @@
-"""What a command is about: a scenario, a saved run, or a flock of the user's own as ``FILE.py:NAME``."""
+"""What a command is about: a scenario, a saved run, or a flock or claim of the user's own as ``FILE.py:NAME``."""
 
 from __future__ import annotations
 
 import os
 import runpy
+import sys
 import traceback
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from flockana.base.errors import ArgumentError, FileError, FlockanaError, UnknownNameError
+from flockana.base.errors import ArgumentError, FileError, FlockanaError, UnknownNameError, format_value
 
 KIND = "FILE.py:NAME"
 
@@ -48,26 +51,56 @@ def read_own(name: str) -> Any:
     from flockana.scenarios import Scenario
     from flockana.scenarios.flock import Flock
 
+    return _one_of(
+        name, "flock", (Flock, Scenario, Trajectory), "fl.Flock(law, q0) makes one; a claim is checked --on it"
+    )
+
+
+def read_theorem(name: str) -> Any:
+    """Return the name of a theorem, or the claim of the user's own that a Python file defines."""
+    from flockana.theorems import Theorem
+
+    return _one_of(name, "claim", (Theorem,), "fl.claim(name, margin) makes one") if is_own(name) else name
+
+
+def _one_of(name: str, kind: str, classes: tuple[type, ...], remedy: str) -> Any:
+    """Return what a file defines under a name, or the only one of these classes; raise unless it is one of them."""
     file, _, wanted = name.partition(".py:")
+    path = _path_of(file)
+    defined = _names_in(path)
+    items = {key: value for key, value in defined.items() if isinstance(value, classes)}
+    if wanted in items:
+        return items[wanted]
+    if wanted in defined:
+        raise ArgumentError(f"{name} is {format_value(defined[wanted])}: expected a {kind}; {remedy}")
+    if wanted:
+        raise UnknownNameError(f"{kind} in {path}", wanted, tuple(items))
+    if len(items) != 1:
+        listed = ", ".join(items) or "none"
+        raise ArgumentError(f"{path} holds {len(items)} {kind}s ({listed}): expected one, or {KIND}; {remedy}")
+    return next(iter(items.values()))
+
+
+def _path_of(file: str) -> Path:
     path = Path(file if file.endswith(".py") else f"{file}.py")
     if not path.is_file():
-        raise FileError(f"{path} is no file: expected {KIND}, a Python file and the name of a flock in it")
+        raise FileError(f"{path} is no file: expected {KIND}, a Python file and the name of a flock or claim in it")
+    return path
+
+
+def _names_in(path: Path) -> dict[str, Any]:
+    """Return what a Python file defines: imported as a module, so that worker processes find its functions."""
+    full = path.resolve()
+    if str(full.parent) not in sys.path:
+        sys.path.append(str(full.parent))
     try:
-        defined = runpy.run_path(str(path), run_name="__flockana__")
+        spec = find_spec(path.stem) if path.stem.isidentifier() else None
+        if spec is not None and spec.origin == str(full):
+            return vars(import_module(path.stem))
+        return runpy.run_path(str(full), run_name="__flockana__")  # its name is another module's
     except FlockanaError as error:
         raise ArgumentError(f"{path}: {error}") from error
     except Exception as error:
-        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(full)]
         where = f", line {lines[-1]}" if lines else ""
         raise ArgumentError(f"{path}{where}: {type(error).__name__}: {error}") from error
-    flocks = {key: value for key, value in defined.items() if isinstance(value, (Flock, Scenario, Trajectory))}
-    if wanted and wanted in flocks:
-        return flocks[wanted]
-    if wanted:
-        raise UnknownNameError(f"flock in {path}", wanted, tuple(flocks))
-    if len(flocks) != 1:
-        listed = ", ".join(flocks) or "none"
-        raise ArgumentError(
-            f"{path} holds {len(flocks)} flocks ({listed}): expected one, or {KIND}; fl.Flock makes one"
-        )
-    return next(iter(flocks.values()))

@@ -11,24 +11,24 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_folder_of, ensure_target
-from flockana.cli.options import AsJson, ScenarioName, Seed, output
+from flockana.cli.options import AsJson, CaseName, Seed, output
 from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 
 def run_command(
-    name: ScenarioName,
+    name: CaseName,
     save_to: Annotated[Path, output("netCDF file to write.")],
     seed: Seed = 0,
     progress: Annotated[bool, typer.Option("--progress", help="Show a progress bar.")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Simulate a scenario and save the run, its law included, as netCDF."""
+    """Simulate a case and save the run, its law included, as netCDF; a saved run is made anew from its start."""
+    from flockana.cli.own import read_flock
     from flockana.report.console import run_table
-    from flockana.scenarios import scenario
 
-    item = scenario(name, seed)
+    item = read_flock(name, seed)
     if os.path.isdir(save_to):
-        raise ArgumentError(f"{save_to} is a folder: expected a file name, such as {save_to / name}.nc")
+        raise ArgumentError(f"{save_to} is a folder: expected a file name, such as {save_to / item.name}.nc")
     ensure_target(save_to)
     ensure_folder_of(save_to)
     run = item.run(progress=progress)

@@ -11,7 +11,7 @@ import typer
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AnySeed, AsJson, Jobs, On, output
-from flockana.cli.own import is_own
+from flockana.cli.own import is_own, read_theorem
 from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.streams import in_output_encoding
 from flockana.cli.threads import one_thread_for_matrices
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from flockana.report.statistics import StatisticsSection
     from flockana.report.surveys import Survey
     from flockana.report.work import Done, Work
+    from flockana.theorems import Theorem
 
 
 @one_thread_for_matrices()
@@ -30,7 +31,8 @@ def verify_command(
     name: Annotated[
         str | None,
         typer.Argument(
-            help="A scenario, a theorem, 'errata', or FILE.py:NAME, a flock of yours; by default the whole catalogue.",
+            help="A scenario, a theorem, 'errata', or FILE.py:NAME, a flock of yours, with --on a claim of yours; "
+            "by default the whole catalogue.",
             metavar="[NAME]",
         ),
     ] = None,
@@ -61,16 +63,17 @@ def verify_command(
     from flockana.report.surveys import SurveyResult
 
     started, name = time.perf_counter(), _id_of(name)
-    if is_own(name):
-        return _verify_own(str(name), seed, on, None if no_report else report or Path("report"), seeds, as_json=as_json)
+    if is_own(name) and on is None:
+        return _verify_own(str(name), seed, None if no_report else report or Path("report"), seeds, as_json=as_json)
     if no_report and report is not None:
         raise ArgumentError(f"--output {report}: --no-report writes none; leave out one of them")
     if on is not None:
         _ensure_checkable(name, on, seeds, seed)
-    seed = seed or 0
+    checked = None if name is None else read_theorem(name)
+    seed, name = seed or 0, getattr(checked, "id", name)
     work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
     folder = None if no_report else ensure_directory(report or report_folder(name))
-    saved = [] if on is None else [_case_page(name, on, seed, not no_report)]
+    saved = [] if on is None else [_case_page(checked, on, seed, not no_report)]
     results, code, failure = (saved, OK, None) if saved else _check_all(work, jobs or cores())
     pages = [result for result in results if isinstance(result, Page)]
     surveyed = [result for result in results if isinstance(result, SurveyResult)]
@@ -93,16 +96,14 @@ def verify_command(
     return code
 
 
-def _verify_own(
-    name: str, seed: int | None, on: str | None, folder: Path | None, seeds: int | None, *, as_json: bool
-) -> int:
+def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | None, *, as_json: bool) -> int:
     """Check every theorem about the law of a flock that a Python file defines."""
     from flockana.cli.own import read_own
     from flockana.report.build import verdicts_json, write_report
     from flockana.report.own import own_pages
 
-    if on is not None or seeds:
-        raise ArgumentError(f"{name}: a flock in a file is run once; leave out {'--on' if on else '--seeds'}")
+    if seeds:
+        raise ArgumentError(f"{name}: a flock in a file is run once; leave out --seeds, or use flockana ensemble")
     started = time.perf_counter()
     (page,) = own_pages(read_own(name), seed=seed or 0, figures=folder is not None)
     facts: Any = {"seed": seed or 0, "seconds": time.perf_counter() - started}
@@ -190,26 +191,30 @@ def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | 
     if name == ERRATA:
         text = f"{name} --on CASE: a case is checked by one scenario or theorem"
         raise ArgumentError(f"{text}; name one, such as os-1")
+    if is_own(name):
+        return
     ensure_known("scenario or theorem", name, (*scenarios(), *theorems()))
     if name in theorems() and theorem(name).kind != "trajectory":
         raise ArgumentError(f"{name} is not about a run: expected a theorem about motion, such as os-1")
 
 
-def _case_page(name: str | None, on: str, seed: int, figures: bool) -> Page:
+def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool) -> Page:
     """Check a theorem on a case, or a saved run as one of its scenario."""
     from flockana.cli.own import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.report.own import own_pages
     from flockana.report.pages import scenario_page
     from flockana.scenarios import Scenario, scenario, scenarios
-    from flockana.theorems import verify
+    from flockana.theorems import Theorem, verify
 
     run, path = read_case(on, seed), Path(on)
-    assert name is not None  # checked before
+    assert checked is not None  # before
+    name = checked if isinstance(checked, str) else ""
+    own = {checked.id: checked} if isinstance(checked, Theorem) else {}
     if not isinstance(run, Trajectory):
         if name in scenarios():
             raise ArgumentError(f"{name} --on {on}: expected a theorem to check on it, or a saved run of {name}")
-        return own_pages(run, theorems=[name], figures=figures)[0]
+        return own_pages(run, theorems=[checked], figures=figures)[0]
     if name in scenarios():
         item = scenario(name)
         if type(item.law) is not type(run.law) or item.q0.shape != run.q[0].shape:
@@ -217,7 +222,7 @@ def _case_page(name: str | None, on: str, seed: int, figures: bool) -> Page:
         return scenario_page(item, run, item.verify(run), figures=figures)
     span = (float(run.t[0]), float(run.t[-1]))
     item = Scenario(path.name, "A saved run", f"Read from {path.name}.", run.law, run.q[0], run.p[0], span)
-    return scenario_page(item, run, (verify(name, run, subject=path.name),), figures=figures)
+    return scenario_page(item, run, (verify(checked, run, subject=path.name),), figures=figures, own=own)
 
 
 def _print_verdicts(

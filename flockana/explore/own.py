@@ -9,10 +9,17 @@ from typing import Any
 
 from flockana.base.checks import TimeSpan, ensure_flag, ensure_known, ensure_seed
 from flockana.base.errors import ArgumentError, format_value
+from flockana.dynamics.trajectory import Trajectory
 from flockana.scenarios.flock import as_scenario, chosen
-from flockana.scenarios.scenario import scenarios
+from flockana.scenarios.scenario import Scenario, scenarios
 
 _LAST_PORT = 65535
+
+
+def save_case(case: Scenario | Trajectory, folder: str) -> dict[str, str]:
+    """Return the page's first case: a run, or that of a scenario, saved in a folder."""
+    run, name = (case, "run") if isinstance(case, Trajectory) else (case.run(), case.name.replace(" ", "-"))
+    return {"kind": "file", "name": str(run.save(Path(folder) / f"{name}.nc"))}
 
 
 def explore(
@@ -55,9 +62,7 @@ def explore(
     if isinstance(given, str):
         ensure_known("scenario", given, scenarios())
     else:
-        item = as_scenario(given, seed)
-        path = item.run().save(Path(folder.name) / f"{item.name.replace(' ', '-')}.nc")
-        first = {"kind": "file", "name": str(path)}
+        first = save_case(as_scenario(given, seed), folder.name)
 
     def opened(address: str) -> None:
         print(f"the flock is explored at {address}")  # noqa: T201  # a page without an address cannot be opened

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
-from flockana.base.errors import FileError, FlockanaError
+from flockana.base.errors import ArgumentError, FileError, FlockanaError
 from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
@@ -22,7 +22,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
-from flockana.theorems import Theorem, Tolerances, Verdict, verify
+from flockana.theorems import Theorem, Tolerances, Verdict, theorems, verify
 
 FORMAT = "flockana-counterexample"
 FORMAT_VERSION = 1
@@ -90,6 +90,9 @@ class Counterexample(ShortRepr):
             The theorem itself, if it is not one of the catalogue.
         """
         subject = f"a counterexample from {self.scenario}"
+        if self.theorem not in theorems() and getattr(theorem, "id", None) != self.theorem:
+            remedy = "give that claim: theorem=..., or `flockana falsify FILE.py:NAME --replay`"
+            raise ArgumentError(f"a counterexample to {self.theorem!r}, which is not in the catalogue: {remedy}")
         return verify(theorem or self.theorem, run, tolerances=self.tolerances, subject=subject)
 
     def check(self, *, theorem: Theorem | None = None) -> Verdict:
