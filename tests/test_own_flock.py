@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +106,31 @@ def test_own_claim_is_judged_by_its_margin():
         fl.verify(fl.claim("none", lambda run: None), run)
     with pytest.raises(ArgumentError, match="expected a name and a function of a run"):
         fl.claim("slow", 3.0)
+    for truth in (lambda run: True, lambda run: run.t < 9.0):
+        with pytest.raises(ArgumentError, match=r"'near' is true or false: .*at least 0 where the claim holds"):
+            fl.verify(fl.claim("near", truth), run)
+    of_agents = fl.claim("near", lambda run: reach + 1.0 - np.linalg.norm(run.q, axis=2))
+    assert fl.verify(of_agents, run).claims[0].detail.startswith("near: margin 1 at t = ")
+
+
+def test_several_theorems_and_claims_are_judged_on_one_run():
+    far = fl.claim("far", lambda run: run.q[:, 1, 0] - 1.0)
+    run = fl.simulate(LAW, PAIR, np.zeros((2, 2)), (0, 1))
+    verdicts = fl.verify([far, "os-1"], run)
+    assert [(v.theorem, v.status) for v in verdicts] == [("far", "verified"), ("os-1", fl.verify("os-1", run).status)]
+    assert verdicts == fl.verify((far, "os-1"), law=LAW, q0=PAIR, t_span=(0, 1))
+    flock = fl.Flock(LAW, PAIR, t_span=(0, 1), name="mine")
+    (verdict,) = flock.verify(theorems=[far])
+    assert (verdict.subject, verdict.to_dataframe().margin.item()) == ("mine", pytest.approx(verdict.claims[0].margin))
+    for wrong in (run, far.check.margin, 3):
+        with pytest.raises(ArgumentError, match=r"expected a name, such as 'os-3', or a claim of your own, fl.claim"):
+            fl.verify(wrong, run)
+
+
+def test_a_claim_that_no_executor_can_take_says_how_to_write_it():
+    near = fl.claim("near", lambda run: 9.0)
+    with ProcessPoolExecutor(1) as pool, pytest.raises(ArgumentError, match="written with def at the top of a module"):
+        fl.ensemble(fl.Flock(LAW, PAIR, t_span=(0, 1)), [0], theorems=[near], executor=pool)
 
 
 def test_gains_as_a_dictionary():

@@ -53,8 +53,13 @@ def test_an_ensemble_is_a_table_of_shares():
     html = runs._repr_html_()
     assert html.startswith("<table>")
     assert html.partition("</table>")[0].count("<tr>") == 1 + len(rows)
+    assert repr(runs) == str(runs)
+    many = fl.ensemble(flock, [0], theorems=["energy", "os-3"], jobs=1)
+    assert repr(many).splitlines()[:11] == str(many).splitlines()[:11]
+    assert repr(many).splitlines()[11:] == [f"… {many.claim.size - 9} more rows; print(...) shows all"]
     part = runs[["margin"]]
     assert str(part) == repr(part)
+    assert "xarray" in repr(part)
 
 
 def test_a_flock_a_scenario_a_theorem_and_a_tube_print_one_line():

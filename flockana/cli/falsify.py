@@ -47,7 +47,8 @@ def falsify_command(
     """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
     THEOREM must be about runs. The search covers a box about the start of the case. -o writes a counterexample as JSON;
-    --replay simulates such a file again and checks it (a claim of yours is named before it). A search that finds nothing proves nothing.
+    --replay simulates such a file again and checks it, with FILE.py:NAME before it if the claim is yours. A search that
+    finds nothing proves nothing.
 
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.

@@ -8,6 +8,8 @@ from pathlib import Path
 from traceback import walk_stack
 from typing import Any
 
+from flockana.ensemble.runs import SENDABLE
+
 
 def can_start_processes(request: Any) -> bool:
     """Return whether processes can make the runs; warn and return False if this process must."""
@@ -18,7 +20,7 @@ def can_start_processes(request: Any) -> bool:
     try:
         pickle.dumps(request)
     except Exception as error:  # pickle raises errors of many kinds
-        reason = reason or f"the flock cannot be sent to another ({error})"
+        reason = reason or f"the flock cannot be sent to another ({error}); {SENDABLE}"
     if reason:
         warnings.warn(f"ensemble: the runs are made in this process, one by one: {reason}", stacklevel=3)
     return not reason

@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from flockana.base.errors import FlockanaError, SolverError
+from flockana.base.errors import ArgumentError, FlockanaError, SolverError
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import WorkerPool
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
 
 BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256
+SENDABLE = "to be sent to a worker, functions of starts and claims are written with def at the top of a module"
 
 
 def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Iterator[tuple[Record, ...]]:
@@ -23,6 +24,8 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
     except FlockanaError:
         raise
     except Exception as error:  # what a run raises is in its record: this comes from who works
+        if "pickle" in f"{type(error).__name__} {error}".lower():
+            raise ArgumentError(f"{type(error).__name__}: {error}; {SENDABLE}") from error
         raise SolverError(
             f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept: make the same call with "
             "a new executor, and only what is missing is computed"

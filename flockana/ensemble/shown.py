@@ -6,10 +6,11 @@ from flockana.base.tables import html_table, text_table
 from flockana.ensemble.shares import share_cells, shares
 
 _HEADS = ("parameters", "claim", "runs", "verified, %", "refuted, %", "vacuous", "inconclusive")
+_LINES = 12
 
 
 class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
-    """Dataset of an ensemble: it prints as the shares of runs in which claims hold, its repr is xarray's."""
+    """Dataset of an ensemble: it prints as the shares of runs in which claims hold, a part of it as xarray's."""
 
     __slots__ = ()
 
@@ -22,7 +23,13 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
 
     def __str__(self) -> str:
         heads, *rows = self._table() or ((),)
-        return f"{self._title()}\n{text_table(rows, heads)}" if rows else repr(self)
+        return f"{self._title()}\n{text_table(rows, heads)}" if rows else super().__repr__()
+
+    def __repr__(self) -> str:
+        lines = str(self).splitlines()
+        if len(lines) <= _LINES or not self._table():
+            return "\n".join(lines)
+        return "\n".join([*lines[: _LINES - 1], f"… {len(lines) - _LINES + 1} more rows; print(...) shows all"])
 
     def _repr_html_(self) -> str:
         heads, *rows = self._table() or ((),)

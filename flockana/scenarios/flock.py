@@ -1,6 +1,6 @@
 """A user's own flock: a law, a start and a time span, accepted wherever a scenario of the catalogue is."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from flockana.laws.with_start import WithStart
 from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario
-from flockana.theorems import Tolerances
+from flockana.theorems import Theorem, Tolerances, verify
 from flockana.theorems.evidence import NotEvidence
 from flockana.theorems.on_runs import RunEvidence, theorems_about
 from flockana.theorems.verdicts import Verdicts
@@ -97,9 +97,24 @@ class Flock(NotEvidence, WithStart):
         """Return the ids of the theorems that are about this law."""
         return theorems_about(self.law, *self.start(seed), self.t_span[0])
 
-    def verify(self, seed: int = 0, *, tolerances: Tolerances | None = None, progress: bool = False) -> Verdicts:
-        """Simulate the flock and check every theorem that is about its law."""
+    def verify(
+        self,
+        seed: int = 0,
+        *,
+        theorems: Sequence[str | Theorem] | None = None,
+        tolerances: Tolerances | None = None,
+        progress: bool = False,
+    ) -> Verdicts:
+        """Simulate the flock and check theorems about its law.
+
+        Parameters
+        ----------
+        theorems : sequence of str or Theorem, optional
+            What is checked, own claims too; by default every theorem that is about the law.
+        """
         run = self.run(seed, progress=progress)
+        if theorems is not None:
+            return verify([*theorems], run, tolerances=tolerances, subject=self.name)
         return RunEvidence(run).judge_all(ensure_tolerances(tolerances), self.name, progress=progress)
 
 

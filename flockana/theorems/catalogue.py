@@ -6,7 +6,7 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.base.modules import modules, source_modules
 from flockana.theorems.theorem import Theorem
 
@@ -58,7 +58,7 @@ def theorem(name: str | Theorem) -> Theorem:
     UnknownNameError
         If there is none; the closest name is suggested.
     ArgumentError
-        If several sources print a theorem of that name.
+        If several sources print a theorem of that name, or on what is neither a name nor a theorem.
 
     Examples
     --------
@@ -68,7 +68,10 @@ def theorem(name: str | Theorem) -> Theorem:
     if isinstance(name, Theorem):
         return name
     if not isinstance(name, str):
-        raise UnknownNameError("theorem", name, theorems())
+        text = (
+            "expected a name, such as 'os-3', or a claim of your own, fl.claim(name, margin) with a function of a run"
+        )
+        raise ArgumentError(f"theorem = {format_value(name)}: {text}")
     return catalogue().get(name) or _printed_as(name)
 
 

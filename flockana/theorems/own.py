@@ -22,7 +22,8 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
     name : str
         Name of the claim, and id of the theorem.
     margin : callable
-        ``margin(run)``: a number, or one for each sample; at least 0 where the claim holds.
+        ``margin(run)``: a number, or one for each sample (or for each sample and agent); at least 0 where the claim
+        holds.
     statement : str
         The claim in words.
 
@@ -62,12 +63,16 @@ class OwnCheck:
         """Return the claim by the least margin of one run."""
         given = self.margin(run)
         try:
-            values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+            plain = np.asarray(given)
+            values = np.atleast_1d(plain.astype(np.float64))
         except (TypeError, ValueError):
-            values = np.array([np.nan])
-        if values.size == 0 or np.isnan(values).any():
-            shown = format_value(given)
-            raise ArgumentError(f"the margin of {self.name!r} is {shown}: expected a number, or one for each sample")
+            values = plain = np.array([np.nan])
+        if values.size == 0 or np.isnan(values).any() or plain.dtype == bool:
+            shown = "true or false" if plain.dtype == bool else format_value(given)
+            text = f"the margin of {self.name!r} is {shown}: expected a number, or one for each sample"
+            raise ArgumentError(f"{text}, that is at least 0 where the claim holds, such as limit - value")
+        if len(values) == len(run.t):  # also one for each agent or pair: the least at each sample
+            values = values.reshape(len(run.t), -1).min(axis=1)
         k = int(np.argmin(values))
         at = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
         detail = f"{self.statement}: margin {values.flat[k]:.4g} {at}"

@@ -1,12 +1,18 @@
 """Verdicts: how the outcome of checking a theorem follows from its claims, as text, HTML, LaTeX and data."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flockana.base.tables import MARKS, html_table, latex_table, number, tex
 from flockana.theorems.claim import BYLINES, RIGOURS, By, Claim, Hypothesis, Rigour, Status
 from flockana.theorems.headline import headline, merged, overall, plain
 from flockana.theorems.tolerances import Tolerances
+
+if TYPE_CHECKING:
+    import pandas
 
 
 @dataclass(frozen=True)
@@ -117,6 +123,10 @@ class Verdict:
         caption = f"{self.theorem}: {MARKS[self.status]} {self.status} ({self.rigour}){on}; {self.summary}"
         return html_table(rows, ("claim", "status", "margin", "in words"), caption)
 
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas table with a row for each claim, as `Verdicts.to_dataframe`."""
+        return claim_table((self,))
+
     def to_latex(self) -> str:
         """Return the claims as a LaTeX ``tabular`` in the style of booktabs."""
         rows = [
@@ -128,6 +138,20 @@ class Verdict:
     def _named(self, claim: Claim) -> str:
         """Return the name of a claim, and whose it is where it is not the author's."""
         return claim.name if claim.by == self.author else f"{claim.name} ({BYLINES[claim.by]})"
+
+
+def claim_table(verdicts: Iterable[Verdict]) -> pandas.DataFrame:
+    """Return a pandas table with a row for each claim of verdicts."""
+    import pandas
+
+    return pandas.DataFrame(
+        [
+            (v.theorem, c.name, c.status, c.rigour, c.by, c.margin, c.error, c.proof or c.disproof, c.explanation)
+            for v in verdicts
+            for c in v.claims
+        ],
+        columns=["theorem", "claim", "status", "rigour", "by", "margin", "error", "proof", "detail"],
+    ).astype({"margin": float, "error": float})
 
 
 def _format_margin(margin: float | None, error: float | None) -> str:

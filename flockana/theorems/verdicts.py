@@ -10,6 +10,7 @@ from flockana.base.files import atomic_write
 from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
 from flockana.theorems.catalogue import catalogue, theorem
 from flockana.theorems.theorem import Verdict, unmet
+from flockana.theorems.verdict import claim_table
 
 if TYPE_CHECKING:
     import pandas
@@ -55,16 +56,7 @@ class Verdicts(tuple[Verdict, ...]):
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas table with a row for each claim: its status, how it is known, whose it is, its numbers."""
-        import pandas
-
-        return pandas.DataFrame(
-            [
-                (v.theorem, c.name, c.status, c.rigour, c.by, c.margin, c.error, c.proof or c.disproof, c.explanation)
-                for v in self
-                for c in v.claims
-            ],
-            columns=["theorem", "claim", "status", "rigour", "by", "margin", "error", "proof", "detail"],
-        ).astype({"margin": float, "error": float})
+        return claim_table(self)
 
     def to_mat(self, path: str | os.PathLike[str]) -> Path:
         """Write the table of claims as a MATLAB file with one struct, `claims`, and return its path.

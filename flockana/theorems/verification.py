@@ -35,11 +35,13 @@ class _Case(TypedDict, total=False):
 
 
 @overload
-def verify(name: None = None, trajectory: Any = None, **case: Unpack[_Case]) -> Verdicts: ...
+def verify(
+    name: list[str | Theorem] | tuple[str | Theorem, ...] | None = None, trajectory: Any = None, **case: Unpack[_Case]
+) -> Verdicts: ...
 @overload
 def verify(name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]) -> Verdict: ...
 def verify(
-    name: str | Theorem | None = None,
+    name: str | Theorem | list[str | Theorem] | tuple[str | Theorem, ...] | None = None,
     trajectory: Any = None,
     *,
     basin: Any = None,
@@ -59,7 +61,7 @@ def verify(
 
     Parameters
     ----------
-    name : str or Theorem, optional
+    name : str or Theorem, or several in a list, optional
         One of `theorems`, or a theorem of your own; by default all that are about the law.
     trajectory : Trajectory, Tube or Recording, optional
         The run, for theorems about motion. Of a recording with `law` the first hypothesis is that its samples follow
@@ -81,7 +83,7 @@ def verify(
 
     Returns
     -------
-    Verdict, or Verdicts without a theorem
+    Verdict, or Verdicts of several theorems or without one
 
     A claim about a run carries the error of its integration: the same start is integrated once more, a hundred times
     more tightly, and both must agree (`flockana.theorems.observed`). A failed run verifies nothing.
@@ -98,6 +100,12 @@ def verify(
     0.6666666666666666
     """
     used = ensure_tolerances(tolerances)
+    if isinstance(name, list | tuple):
+        items = [theorem(each) for each in name]
+        if trajectory is None and law is not None:
+            trajectory, law, q0, p0, t_span = _run(None, law, q0, p0, t_span), None, None, None, None
+        parts: Any = {"basin": basin, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
+        return Verdicts(verify(each, trajectory, tolerances=used, subject=subject, **parts) for each in items)
     case = {"trajectory": trajectory, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
     is_recording = _is("recording", trajectory)
     if is_recording and any(each is not None for each in (basin, q0, p0, t_span, q)):

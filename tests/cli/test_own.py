@@ -72,7 +72,9 @@ def test_a_claim_in_a_file_is_checked_searched_and_counted(mine, found, call, re
     assert {row["of"]: row["share"] for row in rows} == {"verified": 0.0, "refuted": 1.0}
     assert call("falsify", "mine.py:slow", "--on", "mine.py:flock", "--budget", "3", "-o", "bad.json")[0] == 3
     assert found("falsify", "mine.py:slow", "--replay", "bad.json")["status"] == "refuted"
-    refused("a counterexample to 'slow', which is not in the catalogue: give that claim", "falsify", "--replay", "bad.json")
+    refused(
+        "a counterexample to 'slow', which is not in the catalogue: give that claim", "falsify", "--replay", "bad.json"
+    )
 
 
 def test_every_command_that_takes_a_scenario_takes_a_flock_of_a_file(mine, call, found, tmp_path):

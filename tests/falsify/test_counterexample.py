@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.errors import ArgumentError, FileError
 from flockana.falsify import Counterexample, falsify, replay
 from flockana.theorems import Tolerances
 from tests.falsify.conftest import HEAD_ON, OWN
@@ -36,7 +36,7 @@ class TestTheFile:
 
     def test_a_theorem_of_one_s_own_is_brought_along(self, tmp_path):
         path = falsify(OWN, HEAD_ON, budget=40, vary="p", speed=40.0).save(tmp_path / "c.json")
-        with pytest.raises(UnknownNameError, match="unknown theorem 'slow'"):
+        with pytest.raises(ArgumentError, match="a counterexample to 'slow', .*: give that claim"):
             replay(path)
         assert replay(path, theorem=OWN).claim("slow").status == "refuted"
 
