@@ -36,7 +36,7 @@ class TestTheFile:
 
     def test_a_theorem_of_one_s_own_is_brought_along(self, tmp_path):
         path = falsify(OWN, HEAD_ON, budget=40, vary="p", speed=40.0).save(tmp_path / "c.json")
-        with pytest.raises(ArgumentError, match="a counterexample to 'slow', .*: give that claim"):
+        with pytest.raises(ArgumentError, match=r"a counterexample to 'slow', .*: give that claim"):
             replay(path)
         assert replay(path, theorem=OWN).claim("slow").status == "refuted"
 
