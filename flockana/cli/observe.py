@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.cli.options import AsJson, output
 from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
 
@@ -25,7 +26,8 @@ def observe_command(
     ],
     *,
     law: Annotated[
-        str | None, typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, or algorithm-1.")
+        str | None,
+        typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, algorithm-1, or FILE.py:NAME."),
     ] = None,
     formula: Annotated[
         str | None,
@@ -73,19 +75,23 @@ def observe_command(
         ensure_target(page)
     if law is not None and formula is not None:
         raise ArgumentError("--law and --formula are both given: expected one of them")
-    rec = read_recording(
-        EXAMPLE_FILE if str(file) == "example" and not file.exists() else file,
-        columns=_columns(columns),
-        axes=axes,
-        box=None if box is None else _numbers("--box", box),
-        m=m,
-        jitter=jitter,
-        interpolate=interpolate or (None if interpolate is None else False),
-        dt=dt,
-        clock=clock,
-        bound=bound,
-        sd=sd,
-    )
+    try:
+        rec = read_recording(
+            EXAMPLE_FILE if str(file) == "example" and not file.exists() else file,
+            columns=_columns(columns),
+            axes=axes,
+            box=None if box is None else _numbers("--box", box),
+            m=m,
+            jitter=jitter,
+            interpolate=interpolate or (None if interpolate is None else False),
+            dt=dt,
+            clock=clock,
+            bound=bound,
+            sd=sd,
+        )
+    except FlockanaError as error:
+        error.args = (_with_options(str(error)),)
+        raise
     if window is not None:
         ends = _numbers("--window", window)
         if len(ends) != 2:
@@ -110,8 +116,23 @@ def observe_command(
     return UNEXPECTED if chosen is not None and "unmet" in follows[:1] else OK
 
 
+def _with_options(text: str) -> str:
+    """Return an error's text with the options of this command in place of the arguments of `read_recording`."""
+
+    def option(match: re.Match[str]) -> str:
+        pairs = re.findall(r"""["']?(\w+)["']?: (\[[^]]*\]|[^,]+)""", match[1].replace("[...]", "NAME+NAME"))
+        named = ((key, re.sub(r"[][' \"]", "", value)) for key, value in pairs)
+        return "--columns " + ",".join(
+            f"{key}={value.replace(',', '+').replace('...', 'NAME')}" for key, value in named
+        )
+
+    text = re.sub(r"columns={(.*?)}", option, text)
+    return re.sub(r"\b(axes|bound|box|clock|dt|interpolate|jitter|m|sd)=,?", r"--\1 ", text)
+
+
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if none is given."""
+    from flockana.cli.own import is_own, read_law
     from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
     from flockana.recorded.unknown import scaled_alpha
@@ -125,7 +146,7 @@ def _law(name: str | None, formula: str | None, d: float | None, r: float | None
         return None
     if name == "algorithm-1":
         return Algorithm1() if d is None and r is None else Algorithm1(alpha=scaled_alpha(d, r))
-    return scenario(name).law
+    return read_law(name) if is_own(name) else scenario(name).law
 
 
 def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:

@@ -63,6 +63,15 @@ def read_theorem(name: str) -> Any:
     return _one_of(name, "claim", (Theorem,), "fl.claim(name, margin) makes one") if is_own(name) else name
 
 
+def read_law(name: str) -> Any:
+    """Return the law that a Python file defines, or that of its flock."""
+    from flockana.laws import DiscreteLaw, Law, VelocityLaw
+    from flockana.scenarios import Flock, Scenario
+
+    item = _one_of(name, "law", (Law, DiscreteLaw, VelocityLaw, Flock, Scenario), "fl.compose(...) makes one")
+    return item.law if isinstance(item, (Flock, Scenario)) else item
+
+
 def _one_of(name: str, kind: str, classes: tuple[type, ...], remedy: str) -> Any:
     """Return what a file defines under a name, or the only one of these classes; raise unless it is one of them."""
     file, _, wanted = name.partition(".py:")

@@ -69,3 +69,19 @@ def test_gains_are_fitted_for_a_formula_too(call, tracks):
     code, out, _ = call(tracks, "--formula", "(s**2-d**2)**2/1e3", "--d", "7", "--r", "8.4", "--fit", "--json")
     assert code in (0, 3)
     assert '"c1_alpha"' in out
+
+
+def test_refusals_name_the_options_of_the_command(refused, tmp_path):
+    (tmp_path / "odd.csv").write_text("a,b,c\n1,2,3\n", encoding="utf-8")
+    refused("name them by --columns t=NAME,id=NAME,q=NAME+NAME,p=NAME+NAME\n", "odd.csv")
+    (tmp_path / "frames.csv").write_text("frame,id,x,y\n0,0,0,0\n0,1,7,0\n1,0,0,1\n1,1,7,1\n", encoding="utf-8")
+    refused("--dt ", "frames.csv", "--d", "7")
+
+
+def test_a_law_of_a_file(call, tracks, refused, tmp_path):
+    law = "import flockana as fl\n\nlaw = fl.Algorithm1()\nq = 1\nflock = fl.Flock(law, [[0.0], [7.0]])\n"
+    (tmp_path / "mine.py").write_text(law, encoding="utf-8")
+    known = call(tracks, "--law", "algorithm-1", "--bound", "1e-6")
+    for name in ("law", "flock"):
+        assert call(tracks, "--law", f"mine.py:{name}", "--bound", "1e-6") == known
+    refused("mine.py:q is 1: expected a law; fl.compose(...) makes one", tracks, "--law", "mine.py:q")
