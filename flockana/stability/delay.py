@@ -30,6 +30,7 @@ from flockana.base.progress import progress_bar
 from flockana.base.shown import ShortRepr
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
+from flockana.stability.estimates import LIMIT
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.rounding import eigenvalues
 from flockana.stability.zero_modes import NEUTRAL, ZERO, kernel_of
@@ -218,7 +219,7 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
     return DelayMargin(float(np.arctan2(omega * d, k)) / omega / unit, omega * unit)
 
 
-def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 600.0) -> DelayMargin:
+def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = LIMIT) -> DelayMargin:
     """The least delay at which a root reaches the imaginary axis.
 
     In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;

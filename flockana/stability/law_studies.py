@@ -18,6 +18,7 @@ from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law
 from flockana.stability.blocks import MOST, Blocks, blocks, ensure_pairs_and_pull
 from flockana.stability.delay import DelaySystem, delayed_flock
 from flockana.stability.delay_linearisation import DelayLinearisation
+from flockana.stability.estimates import LIMIT
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
@@ -103,7 +104,7 @@ def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
     return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q, zero=max(linearised.zero, _LEAST))
 
 
-def robustness_margins(law: Law, equilibrium: Any) -> RobustnessMargins:
+def robustness_margins(law: Law, equilibrium: Any, *, limit: float = LIMIT) -> RobustnessMargins:
     """Return gain, phase and disk margins and sensitivity peaks of the loops broken at each agent's input.
 
     Parameters
@@ -112,11 +113,13 @@ def robustness_margins(law: Law, equilibrium: Any) -> RobustnessMargins:
         A law that `linearise` takes.
     equilibrium : Equilibrium or array_like, shape (n, m)
         As for `linearise`.
+    limit : float
+        Seconds of estimated work from which on it is refused.
 
     Raises
     ------
     ArgumentError
-        If the flock is not stable, or on what `linearise` refuses.
+        If the flock is not stable or the work would take longer than the limit, or on what `linearise` refuses.
 
     Examples
     --------
@@ -128,10 +131,10 @@ def robustness_margins(law: Law, equilibrium: Any) -> RobustnessMargins:
     >>> found.gain, round(found.phase, 2)
     ((0.0, inf), 76.35)
     """
-    return loop_margins(linearise(law, equilibrium))
+    return loop_margins(linearise(law, equilibrium), limit)
 
 
-def sampling_margin(law: Any, equilibrium: Any, *, limit: float = 600.0) -> SamplingMargin:
+def sampling_margin(law: Any, equilibrium: Any, *, limit: float = LIMIT) -> SamplingMargin:
     """Return the largest sampling period, or step of a map, for which a flock is stable near its equilibrium.
 
     Parameters

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import ensure_fits, ensure_known, ensure_nonnegative, ensure_series
+from flockana.base.checks import ensure_known, ensure_nonnegative, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.base.files import atomic_write
 from flockana.stability.damp_table import damp_table
+from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         links: Any = None,
         sampled: float | None = None,
         progress: bool = False,
+        limit: float = LIMIT,
     ) -> DelayMargin:
         """Return the longest delay with which the flock is stable.
 
@@ -73,15 +75,25 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
             Period of a zero-order hold by which the delayed input is sampled; then the margin is found by search.
         progress : bool
             Whether to show a bar of a long search.
+        limit : float
+            Seconds of estimated work from which on it is refused.
         """
         from flockana.stability.delay import delay_margin, delayed_flock
         from flockana.stability.sampled_delays import sampled_delay_margin
 
         system = delayed_flock(self, delayed, carries, links)
-        return delay_margin(system, progress=progress) if sampled is None else sampled_delay_margin(system, sampled)
+        if sampled is None:
+            return delay_margin(system, progress=progress, limit=limit)
+        return sampled_delay_margin(system, sampled, limit=limit)
 
     def sampling_margin(
-        self, *, delay: float = 0.0, delayed: str = "all", carries: str = "both", links: Any = None
+        self,
+        *,
+        delay: float = 0.0,
+        delayed: str = "all",
+        carries: str = "both",
+        links: Any = None,
+        limit: float = LIMIT,
     ) -> SamplingMargin:
         """Return the longest period of a zero-order hold with which the flock is stable.
 
@@ -91,20 +103,28 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
             Delay of the sampled input, whatever the period; then the margin is found by search.
         delayed, carries, links
             What is late: see `flockana.stability.delay_system`.
+        limit : float
+            Seconds of estimated work from which on it is refused.
         """
         from flockana.stability.delay import delayed_flock
         from flockana.stability.sampled_delays import delayed_sampling_margin
         from flockana.stability.sampling import margin_of_flow
 
         if ensure_nonnegative("delay", delay) == 0.0:
-            return margin_of_flow("hold", self)
-        return delayed_sampling_margin(delayed_flock(self, delayed, carries, links), delay)
+            return margin_of_flow("hold", self, limit=limit)
+        return delayed_sampling_margin(delayed_flock(self, delayed, carries, links), delay, limit=limit)
 
-    def robustness(self) -> RobustnessMargins:
-        """Return gain, phase and disk margins of the loops broken at each agent's input."""
+    def robustness(self, *, limit: float = LIMIT) -> RobustnessMargins:
+        """Return gain, phase and disk margins of the loops broken at each agent's input.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
         from flockana.stability.robustness import loop_margins
 
-        return loop_margins(self)
+        return loop_margins(self, limit)
 
     def loss_margin(self, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
         """Return the largest packet loss borne in mean square: see `flockana.stability.loss_margin`.
@@ -120,23 +140,31 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
 
         return loss_margin(self, period, lost=lost, on_loss=on_loss)
 
-    def string_gains(self, first: int = 0) -> StringGains:
+    def string_gains(self, first: int = 0, *, limit: float = LIMIT) -> StringGains:
         """Return the H∞ norms from the motion of one agent to the others': see `flockana.stability.string_gains`.
 
         Parameters
         ----------
         first : int
             The agent that is moved.
+        limit : float
+            Seconds of estimated work from which on it is refused.
         """
         from flockana.stability.nets import string_gains
 
-        return string_gains(self, first)
+        return string_gains(self, first, limit=limit)
 
-    def transient_growth(self) -> TransientGrowth:
-        """Return how much a perturbation may grow before it decays: see `flockana.stability.transient_growth`."""
+    def transient_growth(self, *, limit: float = LIMIT) -> TransientGrowth:
+        """Return how much a perturbation may grow before it decays: see `flockana.stability.transient_growth`.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
         from flockana.stability.nets import transient_growth
 
-        return transient_growth(self)
+        return transient_growth(self, limit=limit)
 
     def passivity(self) -> Passivity:
         """Return whether forces on all agents only put energy in: see `flockana.stability.passivity`."""
@@ -144,12 +172,18 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
 
         return passivity(self)
 
-    def norms(self) -> ShapeNorms:
-        """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out."""
+    def norms(self, *, limit: float = LIMIT) -> ShapeNorms:
+        """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
         from flockana.stability.blocks import blocks
         from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
 
-        ensure_fits("A", self.A_sparse.shape, "ask of fewer agents")
+        ensure_study("the norms", self.q.size, limit)
         system = disturbance_system(blocks(self.stiffness.toarray(), self.damping.toarray(), self.q))
         return ShapeNorms(h2_norm(system), *hinf_norm(system))
 

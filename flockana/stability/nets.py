@@ -12,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
+from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.norms import Balanced, largest_gain
 
@@ -45,7 +46,7 @@ class StringGains:
 
 
 @check_kinds
-def string_gains(flock: LinearFlock, first: int = 0) -> StringGains:
+def string_gains(flock: LinearFlock, first: int = 0, *, limit: float = LIMIT) -> StringGains:
     """Return the H∞ norms from the motion of one agent to those of all others, which follow it.
 
     Along a chain in which each hears the one before, the k-th gain is the k-th power of the first at one frequency: a
@@ -57,11 +58,13 @@ def string_gains(flock: LinearFlock, first: int = 0) -> StringGains:
         Stable while the first agent is held.
     first : int
         The agent that is moved.
+    limit : float
+        Seconds of estimated work from which on it is refused.
 
     Raises
     ------
     ArgumentError
-        If the others are not stable while the first is held, or there are none.
+        If the others are not stable while the first is held, there are none, or it would take longer than the limit.
 
     Examples
     --------
@@ -78,6 +81,7 @@ def string_gains(flock: LinearFlock, first: int = 0) -> StringGains:
     first = ensure_count("first + 1", first + 1) - 1
     if not first < n or n < 2:
         raise ArgumentError(f"first = {first}: expected one of {n} agents, and others to follow it")
+    ensure_study("the string gains", n * m, limit)
     moved = np.arange(n * m) // m == first
     k, d = flock.stiffness.toarray(), flock.damping.toarray()
     inner, heard = np.ix_(~moved, ~moved), np.ix_(~moved, moved)
@@ -219,7 +223,7 @@ class TransientGrowth:
 
 
 @check_kinds
-def transient_growth(flock: LinearFlock) -> TransientGrowth:
+def transient_growth(flock: LinearFlock, *, limit: float = LIMIT) -> TransientGrowth:
     """Return how much a perturbation may grow before it decays: much, in a net that is far from normal.
 
     A perturbation is measured by its positions times the rate of the fastest motion, and its velocities, from the
@@ -230,11 +234,13 @@ def transient_growth(flock: LinearFlock) -> TransientGrowth:
     ----------
     flock : Linearisation
         A stable flock.
+    limit : float
+        Seconds of estimated work from which on it is refused.
 
     Raises
     ------
     ArgumentError
-        If it is not stable.
+        If it is not stable, or would take longer than the limit.
 
     Examples
     --------
@@ -247,6 +253,7 @@ def transient_growth(flock: LinearFlock) -> TransientGrowth:
     from scipy.linalg import expm
     from scipy.optimize import minimize_scalar
 
+    ensure_study("the transient growth", flock.q.size, limit)
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
     a = flock.second_order.quotient_at(flock.second_order.fastest_rate).A

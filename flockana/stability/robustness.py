@@ -22,6 +22,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.base.shown import ShortRepr
+from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.modes import SecondOrder
 from flockana.stability.norms import Balanced, largest_gain
@@ -138,8 +139,9 @@ def open_loop(flock: LinearFlock, agent: int, axis: int = 0) -> StateSpace:
     return control.ss(opened, unit, -feedback, 0.0)
 
 
-def loop_margins(flock: LinearFlock) -> RobustnessMargins:
+def loop_margins(flock: LinearFlock, limit: float = LIMIT) -> RobustnessMargins:
     """Return the margins of the loops of a linearised flock, each broken at one agent's input."""
+    ensure_study("the margins of all loops", flock.q.size, limit)
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
     problem = flock.second_order

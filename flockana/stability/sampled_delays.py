@@ -8,9 +8,12 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin
 from flockana.stability.delay_roots import LatePart
+from flockana.stability.estimates import LIMIT, ensure_maps
 from flockana.stability.lifted import MOST, first_growth, moving_multipliers
 from flockana.stability.sampling import ModePeriod, SamplingMargin
 
+_DELAY, _PERIOD = "the delay margin of a sampled flock", "the sampling margin of a delayed flock"
+_HALVINGS = 30  # of two searches between trials
 _TRIALS = 48  # delays or periods at which a search looks
 _AGAIN = 60  # further ones below what is found, where delay and period are whole or half multiples of each other
 _LARGE = 600  # states of a lifted map beyond which those are left out
@@ -39,7 +42,7 @@ def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatAr
     return min(found, again)
 
 
-def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
+def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = LIMIT) -> DelayMargin:
     """Return the longest delay with which a flock is stable whose whole input is held for a period.
 
     Parameters
@@ -48,6 +51,8 @@ def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
         The linearised flock, its late part read a delay before each sample.
     period : float
         Of the hold.
+    limit : float
+        Seconds of estimated work from which on it is refused.
 
     Returns
     -------
@@ -66,20 +71,23 @@ def sampled_delay_margin(system: DelaySystem, period: float) -> DelayMargin:
     >>> 0.5 < margin.delay < 1.5, margin.certified
     (True, False)
     """
-    period = ensure_positive("period", period)
-    ideal = delay_margin(system).delay
+    period, size = ensure_positive("period", period), len(system.prompt[0])
+    ensure_maps(_DELAY, size, np.zeros(_TRIALS + _AGAIN), limit)  # even if none holds much of the past
+    ideal = delay_margin(system, limit=limit).delay
     if ideal == 0.0 or abs(_multiplier(system, 0.0, period)) >= 1.0:
         return DelayMargin(0.0, nan, 0.0)
     far = _FAR * (period + (ideal if ideal < inf else period))
     trials: FloatArray = np.concatenate([[0.0], np.linspace(far / _TRIALS, far, _TRIALS)])
     whole = 0.5 * period * np.arange(1.0, 2.0 * far / period)
+    early = trials[trials <= far / _FAR] / period
+    ensure_maps(_DELAY, size, np.append(early, np.full(min(_AGAIN, whole.size) + _HALVINGS, early[-1])), limit)
     found = _search(lambda delay: abs(_multiplier(system, delay, period)), trials, whole)
     if found == inf:
         return DelayMargin(inf, nan, 0.0)
     return DelayMargin(found, abs(float(np.angle(_multiplier(system, found, period)))) / period, 0.0)
 
 
-def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin:
+def delayed_sampling_margin(system: DelaySystem, delay: float, *, limit: float = LIMIT) -> SamplingMargin:
     """Return the longest period of a hold with which a delayed flock is stable.
 
     Parameters
@@ -88,6 +96,8 @@ def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin
         The linearised flock.
     delay : float
         How old its late part is at each sample.
+    limit : float
+        Seconds of estimated work from which on it is refused.
 
     Returns
     -------
@@ -102,19 +112,24 @@ def delayed_sampling_margin(system: DelaySystem, delay: float) -> SamplingMargin
     >>> 0.0 < delayed_sampling_margin(swing, 0.1).period < 0.5
     True
     """
-    delay, ideal = ensure_positive("delay", delay), delay_margin(system).delay
+    delay, size = ensure_positive("delay", delay), len(system.prompt[0])
+    ensure_maps(_PERIOD, size, np.zeros(_TRIALS + _AGAIN), limit)
+    ideal = delay_margin(system, limit=limit).delay
     if delay >= ideal:
         return SamplingMargin("hold, delayed", 0.0, 0.0, ())
     quickest = 2.0 * pi / system.highest if system.highest > 0.0 else 1.0
     radius: Callable[[float], float] = lambda period: abs(_multiplier(system, delay, period))  # noqa: E731
-    shortest, start = delay / max(MOST // len(system.prompt[0]) - 6, 1), max(_BRIEF * quickest, delay / 50.0)
+    shortest = delay / max(MOST // size - 6, 1)
+    start = max(_BRIEF * quickest, delay / 50.0, shortest)
     while radius(start) >= 1.0:  # without a hold it is stable: shorter ones are, at last
         start *= 0.5
         if start < shortest:
             return SamplingMargin("hold, delayed", nan, 0.0, ())
-    brief = delay / max(_LARGE // len(system.prompt[0]) - 6, 1)
+    brief = delay / max(_LARGE // size - 6, 1)
     whole = 2.0 * delay / np.arange(1.0, 2.0 * delay / max(start, brief))
-    found = _search(radius, np.geomspace(start, max(50.0 * quickest, 2.0 * start), _TRIALS), whole)
+    trials: FloatArray = np.geomspace(start, max(50.0 * quickest, 2.0 * start), _TRIALS)
+    ensure_maps(_PERIOD, size, delay / trials, limit)
+    found = _search(radius, trials, whole)
     if found in (0.0, inf):
         return SamplingMargin("hold, delayed", found, 0.0, ())
     z = _multiplier(system, delay, found)

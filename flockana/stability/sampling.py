@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_affordable, ensure_fits, ensure_nonnegative, ensure_positive
 from flockana.equilibria.curvature import EPS
+from flockana.stability.estimates import LIMIT
 from flockana.stability.growth import CLOSE, MOST, Growth, Steps, first_growth
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.maps import moved_before, stepped_equation
@@ -149,7 +150,7 @@ def _flip(k: float, d: float, factor: float) -> float:
 
 
 def margin_of_flow(
-    name: str, flow: LinearFlock, factor: float = 0.5, *, in_place: bool = False, limit: float = 600.0
+    name: str, flow: LinearFlock, factor: float = 0.5, *, in_place: bool = False, limit: float = LIMIT
 ) -> SamplingMargin:
     """Return the sampling margin of a linearised flock under a hold, or of a map with a `factor` (see the module)."""
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")

@@ -133,3 +133,12 @@ def test_growth_that_begins_and_ends_below_a_period_is_seen():
     flock = linearise(NetConsensus(W, position=1.0, velocity=2.8), np.zeros((5, 1)))
     period = flock.sampling_margin(delay=1.0, delayed="neighbours").period
     assert 0.142 < period < 1.0 / 7.0
+
+
+def test_the_shortest_period_fits_the_largest_map(monkeypatch):
+    """With few states allowed the search begins at a longer period, and finds the same margin."""
+    system = scalar(4.0, 1.0)
+    exact = delayed_sampling_margin(system, 0.1).period
+    for module in ("lifted", "sampled_delays"):
+        monkeypatch.setattr(f"flockana.stability.{module}.MOST", 40)
+    assert delayed_sampling_margin(system, 0.1).period == pytest.approx(exact, rel=1e-9)

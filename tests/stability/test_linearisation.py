@@ -19,6 +19,7 @@ from flockana import (
     TaylorStep,
     linearise,
 )
+from flockana.base.errors import ArgumentError
 from flockana.stability import (
     delay_margin,
     delay_system,
@@ -30,6 +31,7 @@ from flockana.stability import (
 )
 from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelaySystem, late_part
+from flockana.stability.estimates import ensure_maps, ensure_study
 from tests.refused import refused
 
 K, D = 4.0, 1.0
@@ -47,6 +49,32 @@ def test_damp_is_the_table_that_engineers_know():
     np.testing.assert_allclose(table["natural frequency"], natural)
     np.testing.assert_allclose(table["damping ratio"], ratio)
     assert ONE.damp(settled=0.05)["settling time"].tolist() == pytest.approx([2.0 * log(20.0)] * 2)
+
+
+ASKS = {
+    "the delay margin of 1 coordinates": lambda limit: CHAIN.delay_margin(delayed="neighbours", limit=limit),
+    "the delay margin of a sampled flock of 3": lambda limit: CHAIN.delay_margin(sampled=0.1, limit=limit),
+    "the modes of 3 agents": lambda limit: CHAIN.sampling_margin(limit=limit),
+    "the sampling margin of a delayed flock of 3": lambda limit: CHAIN.sampling_margin(delay=0.1, limit=limit),
+    "the margins of all loops of 3": lambda limit: CHAIN.robustness(limit=limit),
+    "the transient growth of 3": lambda limit: CHAIN.transient_growth(limit=limit),
+    "the norms of 3": lambda limit: CHAIN.norms(limit=limit),
+    "the string gains of 3": lambda limit: CHAIN.string_gains(limit=limit),
+}
+
+
+@pytest.mark.parametrize(("work", "ask"), ASKS.items(), ids=ASKS)
+def test_long_work_is_refused_with_its_estimate(work, ask):
+    with pytest.raises(ArgumentError, match=rf"{work}.* would take about [0-9.e-]+ s and .* MB .* limit = 1e-12 s"):
+        ask(1e-12)
+
+
+def test_estimates_of_a_thousand_agents_in_the_plane():
+    with pytest.raises(ArgumentError, match=r"2000 coordinates would take about 4.8e\+06 s and 4e\+03 MB"):
+        ensure_study("the margins of all loops", 2000, 600.0)
+    ensure_study("the transient growth", 400, 600.0)
+    with pytest.raises(ArgumentError, match=r"10 coordinates would take about 0.002 s and 0.86 MB"):
+        ensure_maps("a search", 10, np.array([4.0, 8.0]), 1e-3)  # 9e-10 · (80³ + 120³), and 6e-5 · 120²
 
 
 def test_damp_shows_every_pole_once():

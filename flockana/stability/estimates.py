@@ -1,0 +1,37 @@
+"""Time and memory that studies take by their size, as measured, and the refusal of what would take too long."""
+
+from typing import NamedTuple
+
+from flockana.base.checks import FloatArray, ensure_affordable
+
+LIMIT = 600.0  # seconds of estimated work, by default
+
+
+class Cost(NamedTuple):
+    """Seconds per size to a power, and megabytes per squared size."""
+
+    seconds: float
+    power: int
+    megabytes: float
+
+
+COSTS = {  # of flocks of 50 to 180 coordinates, on one core of 2024
+    "the margins of all loops": Cost(3e-7, 4, 1e-3),
+    "the transient growth": Cost(3e-6, 3, 4e-4),
+    "the norms": Cost(3e-7, 3, 8e-4),
+    "the string gains": Cost(1.3e-7, 4, 8e-4),
+}
+_SECONDS_OF_MAP, _MEGABYTES_OF_MAP = 9e-10, 6e-5  # per cubed and squared number of states of a lifted map
+
+
+def ensure_study(work: str, size: int, limit: float) -> None:
+    """Raise before a study of `COSTS` of a flock of so many coordinates that takes longer than `limit` seconds."""
+    seconds, power, megabytes = COSTS[work]
+    ensure_affordable(f"{work} of {size} coordinates", size, seconds * size**power, megabytes * size**2, limit)
+
+
+def ensure_maps(work: str, size: int, inputs: FloatArray, limit: float) -> None:
+    """Raise before a search over lifted maps, each with so many earlier inputs, that takes longer than `limit`."""
+    states = size * (4.0 + inputs)
+    seconds, megabytes = _SECONDS_OF_MAP * float((states**3).sum()), _MEGABYTES_OF_MAP * float(states.max()) ** 2
+    ensure_affordable(f"{work} of {size} coordinates", size, seconds, megabytes, limit)
