@@ -81,7 +81,7 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     q = ensure_points("q", getattr(q, "q", q))
     spread = ensure_nonnegative("spread", spread)
     if type(law) is not Algorithm2 or not isinstance(law.alpha, AlphaInteraction):
-        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm2(...) with AlphaInteraction(...)")
+        raise ArgumentError(f"law: expected Algorithm2(...) with AlphaInteraction(...), got {type(law).__name__}")
     law.check_dimension(q.shape[1])
     law.check_agents(len(q))
     if len(q) > MOST:

@@ -52,7 +52,8 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
             ax = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
     magnitude, phase = panels = np.ravel(ax)
     for curve, look in zip(curves, _looks(), strict=False):
-        magnitude.semilogx(curve.omega, 20.0 * np.log10(np.abs(curve.values)), label=curve.label, **look)
+        with np.errstate(divide="ignore"):  # what answers nothing has no place on the axis
+            magnitude.semilogx(curve.omega, 20.0 * np.log10(np.abs(curve.values)), label=curve.label, **look)
         phase.semilogx(curve.omega, np.degrees(np.unwrap(np.angle(curve.values))), **look)
     for name, omega in (marks or {}).items():
         mark(magnitude, omega, name, width=0.9, color=MUTED, fontsize=8)

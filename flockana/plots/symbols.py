@@ -29,7 +29,10 @@ _RULES: tuple[tuple[str, Callable[[re.Match[str]], str]], ...] = (
     (rf"c([12])([{_LETTERS}])", lambda m: rf"$c_{m[1]}^{_greek(m[2])}$"),
     (r"\|([qp])_([a-z])/([qp])_([a-z])\|", lambda m: rf"$|{m[1]}_{m[2]}/{m[3]}_{m[4]}|$"),
     (r"‖([a-z])(?:_([a-z]))?‖", lambda m: rf"$\Vert {m[1]}{f'_{m[2]}' if m[2] else ''}\Vert$"),
-    (rf"([{_LETTERS}A-Za-z])_([{_LETTERS}a-z])(?![A-Za-z_])", lambda m: rf"${_greek(m[1])}_{_greek(m[2])}$"),
+    (
+        rf"(?<![A-Za-z0-9])([{_LETTERS}A-Za-z])_([{_LETTERS}a-z])(?![A-Za-z_])",
+        lambda m: rf"${_greek(m[1])}_{_greek(m[2])}$",
+    ),
     (r"([A-Za-z])([₀-₉])", lambda m: f"${m[1]}_{m[2].translate(_DIGITS)}$"),
     (rf"([{_LETTERS}c])\*", lambda m: f"${_greek(m[1])}^*$"),
     ("([A-Z])\u0303|(Ẽ)", lambda m: rf"$\tilde {m[1] or 'E'}$"),

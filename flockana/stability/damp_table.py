@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import inf, log, nan
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
+
+class DampTable(pd.DataFrame):
+    """Table of poles that is printed with all its columns."""
+
+    def __repr__(self) -> str:
+        written: Any = dict.fromkeys(self.columns, "{:.5g}".format)
+        return self.to_string(formatters=written, max_rows=pd.get_option("display.max_rows"))
 
 
-def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DataFrame:
+def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DampTable:
     """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp` prints them."""
-    import pandas as pd
-
     settled = ensure_positive("settled", settled)
     if settled >= 1.0:
         raise ArgumentError(f"settled = {settled:g}: expected a share of the deviation, below 1")
@@ -32,4 +36,4 @@ def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, d
         )
     rows.sort(key=lambda row: row[3])
     columns = ["pole", "damping ratio", "natural frequency", "time constant", "settling time"]
-    return pd.DataFrame([row[1:] for row in rows], index=[row[0] for row in rows], columns=columns)
+    return DampTable([row[1:] for row in rows], index=[row[0] for row in rows], columns=columns)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, SolverError, format_value
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
@@ -79,7 +79,7 @@ def gain_for_damping(
     """
     known = tuple(key for key in vars(getattr(law, "gains", None) or object) if key.startswith("c"))
     if not known:
-        raise ArgumentError(f"law = {format_value(law)}: expected a law with gains, such as Algorithm2(...)")
+        raise ArgumentError(f"{type(law).__name__} has no gains: expected a law with gains, such as Algorithm2(...)")
     ensure_known("gain", name, known)
     asked = ensure_positive("ratio", ratio)
     if asked >= 1.0:

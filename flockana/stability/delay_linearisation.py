@@ -14,7 +14,6 @@ from flockana.base.errors import ArgumentError
 from flockana.base.shown import ShortRepr
 from flockana.base.tables import facts_html, facts_text
 from flockana.laws import Law
-from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin, neutral_roots
 from flockana.stability.delay_roots import LatePart, error_of_root, rightmost
 
@@ -158,6 +157,8 @@ class DelayLinearisation(ShortRepr):
         settled : float
             Share of a deviation at which it counts as settled.
         """
+        from flockana.stability.damp_table import damp_table
+
         roots = self.rightmost(count)
         return damp_table([(str(k), s) for k, s in enumerate(roots.tolist(), 1)], settled=settled)
 

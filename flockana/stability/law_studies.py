@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_points
-from flockana.base.errors import ArgumentError, format_value
+from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
@@ -165,7 +165,7 @@ def sampling_margin(law: Any, equilibrium: Any, *, limit: float = LIMIT) -> Samp
     name, factor, in_place = "hold", 0.5, False
     if isinstance(law, DiscreteLaw):
         if law.continuous is None or law.position_factor is None:
-            raise ArgumentError(f"law = {format_value(law)}: expected a continuous law, or a map that steps one")
+            raise ArgumentError(f"{type(law).__name__} steps no law: expected a law, or a map that steps one")
         name, factor, in_place = law.title, law.position_factor, law.in_place
         law = law.continuous
     flow = linearise(law, equilibrium)

@@ -9,7 +9,6 @@ import numpy as np
 from flockana.base.checks import ensure_known, ensure_nonnegative, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.base.files import atomic_write
-from flockana.stability.damp_table import damp_table
 from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 
@@ -49,6 +48,8 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         settled : float
             Share of a deviation at which it counts as settled.
         """
+        from flockana.stability.damp_table import damp_table
+
         poles = [(mode.name, mode.eigenvalue) for mode in self.modes]
         pairs = [(name, s.conjugate()) for name, s in poles if s.imag]
         zeros = [(mode.name, 0j) for mode in self.zero_modes]

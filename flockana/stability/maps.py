@@ -24,7 +24,6 @@ from flockana.base.errors import ArgumentError
 from flockana.base.shown import ShortRepr
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
-from flockana.stability.damp_table import damp_table
 from flockana.stability.mode_names import translations
 from flockana.stability.modes import Mode, SecondOrder
 from flockana.stability.rounding import eigen
@@ -207,6 +206,8 @@ class MapLinearisation(ShortRepr):
         settled : float
             Share of a deviation at which it counts as settled.
         """
+        from flockana.stability.damp_table import damp_table
+
         poles = [(mode.name, complex(mode.multiplier)) for mode in self.modes]
         pairs = [(name, z.conjugate()) for name, z in poles if z.imag]
         zeros = [mode.name for mode in self.zero_modes]

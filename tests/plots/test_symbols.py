@@ -21,6 +21,7 @@ from flockana.plots.symbols import typeset
         ("a (4 runs)", "a (4 runs)"),
         ("a", "$a$"),
         ("c1_alpha", "c1_alpha"),
+        ("qc_x/f0_x", "qc_x/f0_x"),
         ("already $x_i$, γ", "already $x_i$, γ"),
     ],
 )

@@ -84,6 +84,7 @@ def test_damp_shows_every_pole_once():
     assert table.index[:2].tolist() == ["translation x", "drift"]
     assert np.isnan(table["damping ratio"].iloc[0])
     grows = damp_table([("up", 1.0 + 0j)])
+    assert str(grows).split() == [*" ".join(grows.columns).split(), "up", "1+0j", "-1", "1", "inf", "inf"]  # all of it
     assert grows["time constant"].tolist() == [inf]
     step = damp_table([("z", -0.5 + 0j), ("end", 0j)], dt=0.1)
     assert step["natural frequency"].tolist() == pytest.approx([abs(complex(log(0.5), np.pi)) / 0.1, inf])
