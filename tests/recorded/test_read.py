@@ -150,7 +150,7 @@ def test_wrong_tables_are_refused_with_row_column_and_remedy(tmp_path, text, mes
         (pd.DataFrame({"t": pd.to_datetime(["2024-05-01", None]), "x": [0.0, 1.0]}), {"clock": 1.0}, "row 1.*no time"),
         ({"q": Q}, {"dt": 0.0}, "dt = 0: expected a number > 0"),
         ({"t": T, "q": [[[0.0]], [[1.0], [2.0]]]}, {}, "q has rows of different lengths"),
-        ({"t": T, "q": Q}, {"columns": {"q": ["x", "y"]}}, r"has no array \['x', 'y'\]: expected one of t, q"),
+        ({"t": T, "q": Q}, {"columns": {"q": ["x", "y"]}}, "has no array 'x': expected one of t, q"),
     ],
 )
 def test_wrong_frames_and_arrays_are_refused_in_one_line(source, how, message):
@@ -176,7 +176,7 @@ def test_wrong_bytes_and_files_are_refused(tmp_path):
         (tmp_path / "nothing.csv", "no file"),
         (tmp_path, "no regular file"),
         (3, "expected a file, a pandas frame, an xarray dataset, or arrays by name"),
-        ({"t": T, "q": np.zeros((5, 2, 3))}, r"its axis 2 is that long: give numpy.moveaxis\(q, 2, 0\)"),
+        ({"t": T, "q": np.zeros((5, 2, 3))}, 'expected .T, n, m., or axes="agent axis time", which decides'),
     ):
         with pytest.raises(FlockanaError, match=message):
             fl.read_recording(source)

@@ -9,8 +9,18 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
+from flockana.recorded.reading.axes import (
+    AXES,
+    is_smoother_along_second,
+    order_of,
+    possible_orders,
+    rank,
+    real_array,
+    turned,
+    with_joined_axes,
+)
 from flockana.recorded.reading.table import table_arrays
-from flockana.recorded.reading.words import is_agent, is_frame, is_time, words_of
+from flockana.recorded.reading.words import coordinate, is_agent, is_frame, is_time, words_of
 
 _NAMES = {
     "t": ("t", "time", "times", "timestamp", "timestamps", "seconds", "tau"),
@@ -32,11 +42,6 @@ _NAMES = {
     "u": ("u", "accelerations", "acceleration", "acc", "a", "inputs"),
 }
 _RATES = ("fps", "frames_per_second", "frame_rate", "framerate")
-_AXES = {
-    **dict.fromkeys(("t", "time", "times", "frame", "frames", "sample", "samples"), 0),
-    **dict.fromkeys(("n", "agent", "agents", "individual", "individuals", "id", "robot", "particle", "animal"), 1),
-    **dict.fromkeys(("m", "axis", "axes", "space", "xy", "xyz", "coordinate", "coordinates", "dim"), 2),
-}
 _SAFE = {"ndarray", "dtype", "_reconstruct", "scalar", "OrderedDict", "_frombuffer", "_codecs", "encode"}
 
 
@@ -52,9 +57,12 @@ def named_arrays(
     """Return t, q, p, u and read_as among arrays by name, or of a long table whose columns they are."""
     arrays = _without_shells(arrays)
     given = {} if columns is None else dict(columns)
-    if (frame := _long_table(arrays, given)) is not None:
+    if (frame := _long_table(arrays, given, dt)) is not None:
         frame.attrs["where"] = where
         return table_arrays(frame, given or None, dt, clock)
+    order = None if axes is None else order_of(axes)
+    arrays, joined = with_joined_axes(arrays, given, order, where)
+    given = {kind: name for kind, name in given.items() if kind not in joined}
     lower = {str(name).lower(): name for name in arrays if name not in given.values()}
     found, read_as = dict[str, Any](), []
     for kind, names in _NAMES.items():
@@ -67,16 +75,15 @@ def named_arrays(
         if kind in given and name not in list(arrays):
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
-            found[kind] = _array(arrays[name], kind, where)
-            read_as.append(f"{kind} from {name!r} {found[kind].shape}")
+            found[kind] = real_array(arrays[name], kind, where)
+            read_as.append(f"{kind} from {joined.get(name, repr(name))} {found[kind].shape}")
     shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in found:
         raise ArgumentError(
             f'{where} holds {shown}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
-    if axes is not None:
-        order = _order(axes)
-        found |= {k: _turned(found[k], order, k, where) for k in "qpu" if k in found}
+    if order is not None:
+        found |= {k: turned(found[k], order, k, where) for k in "qpu" if k in found and k not in joined}
         read_as.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
     q = found["q"]
     if q.ndim != 3:
@@ -93,16 +100,24 @@ def named_arrays(
     if "t" not in found:
         read_as.append(rate or "t from the samples times dt")
     if len(t) != len(q):
-        turned = [k for k in range(3) if q.shape[k] == len(t)]
-        hint = (
-            f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0), or axes=" if turned else ""
-        )
-        raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}: expected (T, n, m){hint}, or axes=")
+        orders = [] if joined else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
+        hint = f"; expected (T, n, m), or axes={' or axes='.join(orders or ['...'])}, which decides"
+        hint = '; expected one row for each time, or axes="agent time"' if joined and order is None else hint
+        raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}{hint}")
     if q.shape[2] > 3:
         raise ArgumentError(
             f"{where}: q of shape {q.shape} has {q.shape[2]} axes if read as (T, n, m): expected 1 to 3; name them by "
             'axes=, such as axes=("time", "axis", "agent")'
         )
+    if order is None and ("t" not in found or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
+        orders = '"agent time"' if joined else " or axes=".join(possible_orders(q, [1, 0]))
+        raise ArgumentError(
+            f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
+            f"be the time or the agent: expected axes={orders}, which decides"
+        )
+    read = {given.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in found}
+    idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and rank(arrays[x]) > 1]
+    read_as += [f"not read: {', '.join(idle)}"] if idle else []
     return found | {"t": t, "read_as": tuple(read_as)}
 
 
@@ -115,29 +130,6 @@ def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | N
     if dt is not None and abs(dt * float(rate[0]) - 1.0) > 1e-6:
         raise ArgumentError(f"{where} has {name} = {rate[0]:g}, and dt = {dt:g} is given: expected one of them")
     return 1.0 / float(rate[0]), f"t from the samples over {name} = {rate[0]:g}"
-
-
-def _order(axes: Any) -> list[int]:
-    """Return which of time, agent and axis each axis of an array is."""
-    words = axes.replace(",", " ").split() if isinstance(axes, str) else list(axes) if np.iterable(axes) else []
-    words = list(words[0]) if len(words) == 1 and str(words[0]) not in _AXES and len(str(words[0])) in (2, 3) else words
-    order = [_AXES.get(str(word).lower(), -1) for word in words]
-    if -1 in order or len(set(order)) < len(order) or 0 not in order or len(order) not in (2, 3):
-        raise ArgumentError(
-            f'axes = {axes!r}: expected time, agent and axis in the order of the array, such as "time axis agent"'
-        )
-    return order
-
-
-def _turned(x: Any, order: Sequence[int], kind: str, where: str) -> Any:
-    """Return an array with its axes as (T, n, m); one that is left out has the length 1."""
-    if x.ndim != len(order):
-        raise ArgumentError(
-            f"{where}: {kind} has shape {x.shape} and axes= names {len(order)}: expected one name for each"
-        )
-    missing = [k for k in range(3) if k not in order]
-    full = x.reshape(*x.shape, *(1 for _ in missing))
-    return np.transpose(full, [[*order, *missing].index(k) for k in range(3)])
 
 
 def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -195,7 +187,7 @@ def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {name: np.concatenate(parts) for name, parts in table.items()}
 
 
-def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any], dt: float | None) -> Any:
     """Return arrays of one length as the columns of a long table; None if they are no such columns."""
     import pandas as pd
 
@@ -208,21 +200,13 @@ def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
     if len({x.size for x in columns.values()}) != 1:
         return None
     agents = "id" in given or any(is_agent(words_of(name)[0]) for name in columns)
+    places = [name for name in plain if coordinate(*words_of(name)) is not None]
+    alone = bool(places) and {*places} <= {*columns}  # all numbers are of one agent
     times = any(is_time(words_of(name)[0]) or is_frame(words_of(name)[0]) for name in columns)
-    if not (agents and (times or {"t", "frame"} & given.keys())) or any(x.ndim > 2 for x in plain.values()):
+    times = times or bool({"t", "frame"} & given.keys()) or (alone and dt is not None)
+    if not ((agents or alone) and times) or any(x.ndim > 2 for x in plain.values()):
         return None
     return pd.DataFrame(columns)
-
-
-def _array(value: Any, kind: str, where: str) -> Any:
-    """Return an array of real numbers, or raise."""
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        raise ArgumentError(f"{where}: {kind} has rows of different lengths: expected an array of numbers") from None
-    if array.dtype.kind not in "fiu":
-        raise ArgumentError(f"{where}: {kind} is an array of {array.dtype}: expected real numbers")
-    return array
 
 
 @contextmanager
@@ -310,9 +294,15 @@ def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
     for name in (*dataset.coords, *dataset.data_vars):
         array = dataset[name]
-        order = [_AXES.get(str(each).lower(), -1) for each in array.dims]
-        if "space" in array.dims and -1 not in order and 0 in order and array.ndim in (2, 3):
-            arrays[str(name)] = _turned(np.asarray(array), order, str(name), where)
+        order = [AXES.get(str(each).lower(), -1) for each in array.dims]
+        known = [str(each) for each in array.dims if str(each).lower() in AXES]
+        if str(name).lower() in (*_NAMES["q"], *_NAMES["p"], *_NAMES["u"]) and -1 in order and known:
+            raise ArgumentError(
+                f"{where}: {name} is over {', '.join(map(str, array.dims))}: expected time, agent and space (Cartesian "
+                "coordinates) alone; ds.rename(...) names a dimension, ds.sel(...) takes a part"
+            )
+        if -1 not in order and 0 in order and array.ndim in (2, 3):
+            arrays[str(name)] = turned(np.asarray(array), order, str(name), where)
         elif array.dtype.kind in "fiu" and not {"space"} & {*array.dims}:
             arrays[str(name)] = np.asarray(array)
     if "space" not in dataset.sizes:

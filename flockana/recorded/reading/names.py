@@ -75,7 +75,7 @@ def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | Non
     known = {x: word for x in texts if x not in used and x not in agents and (word := coordinate(*described[x]))}
     units = {x: unit for x in names if (unit := words_of(x)[1]) is not None}
     shown = ", ".join(map(str, list(names)[:12])) + (", ..." if len(names) > 12 else "")
-    groups = _by_owner(known, where)
+    groups = by_owner(known, where)
     if "q" in given:
         layout = Layout(time, frame, None, _stated(given), {})
     else:
@@ -138,7 +138,7 @@ def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> 
     return (times[0] if times else None), received
 
 
-def _by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kinds]:
+def by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kinds]:
     """Return columns by owner, kind and axis; orientations and other vectors have kinds of their own."""
     patterns: dict[tuple[str, ...], dict[str, str]] = {}
     for name, word in known.items():
@@ -212,11 +212,11 @@ def _arranged(
     if () in placed:
         if numbered:
             raise _two_readings(where, listed, "one agent", "several", _EITHER)
-        return Layout(None, None, None, _axes(placed[()], where, shown), {})
+        return Layout(None, None, None, ordered_axes(placed[()], where, shown), {})
     if len(placed) == 1 and (agents or not numbered):
         owner, kinds = next(iter(placed.items()))
         note = f"all are of {' '.join(owner)!r}, one agent" if not agents else f"all are of {' '.join(owner)!r}"
-        return Layout(None, None, None, _axes({**groups.get((), {}), **kinds}, where, shown), {}, notes=(note,))
+        return Layout(None, None, None, ordered_axes({**groups.get((), {}), **kinds}, where, shown), {}, notes=(note,))
     if agents:
         remedy = 'columns={"q": [...]} of the one that is meant, or columns={"agents": [...]}'
         raise _two_readings(where, listed, f"vectors of the agent of {agents[0]!r}", "agents of their own", remedy)
@@ -241,7 +241,7 @@ def _are_agents(owners: list[tuple[str, ...]]) -> bool:
 
 def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:
     """Return the columns of each agent in the order of axes; raise where one has others."""
-    each = {name: _axes(kinds, where, shown) for name, kinds in agents.items()}
+    each = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
     sizes = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in each.items()}
     first = next(iter(sizes))
     if (other := next((name for name in sizes if sizes[name] != sizes[first]), None)) is not None:
@@ -267,7 +267,7 @@ def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str,
     )
 
 
-def _axes(kinds: Kinds, where: str, shown: str) -> dict[str, list[str]]:
+def ordered_axes(kinds: Kinds, where: str, shown: str) -> dict[str, list[str]]:
     """Columns of each kind in the order of their axes; raise where one is missing."""
     size = 1 + max(AXES.index(axis) for axis in kinds["q"])
     for kind in (k for k in MEANINGS if k in kinds):

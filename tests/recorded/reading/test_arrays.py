@@ -38,6 +38,44 @@ def test_arrays_without_an_axis_need_a_word_on_the_others():
             fl.read_recording(source, **how)
 
 
+def test_arrays_of_single_axes_are_joined_and_others_are_said():
+    x, y = Q[:, :, 0], Q[:, :, 1]
+    rec = fl.read_recording({"X": x, "Y": y, "vx": x + 1, "vy": y + 1, "goal": x}, dt=0.1)
+    np.testing.assert_array_equal(rec.q, Q)
+    np.testing.assert_array_equal(rec.p, Q + 1)
+    assert "q from 'X', 'Y' (7, 4, 2)" in repr(rec)
+    assert "not read: 'goal'" in repr(rec)
+    for arrays, how in (
+        ({"X": x.T, "Y": y.T}, {"axes": "agent time"}),
+        ({"a": x, "b": y}, {"columns": {"q": ["a", "b"]}}),
+    ):
+        np.testing.assert_array_equal(fl.read_recording(arrays, dt=0.1, **how).q, Q)
+    alone = fl.read_recording({"time": np.arange(7.0), "X": x[:, 0], "Y": y[:, 0]})
+    np.testing.assert_array_equal(alone.q, Q[:, :1])
+    for arrays, message in (
+        ({"x": x, "y": y[1:]}, "x, y have other shapes"),
+        ({"t": np.arange(4.0), "x": x, "y": y}, 'or axes="agent time"'),
+        ({"t": np.arange(7.0), "q": Q.transpose(2, 1, 0)}, 'axes="axis agent time", which decides'),
+    ):
+        with pytest.raises(FlockanaError, match=message):
+            fl.read_recording(arrays)
+
+
+def test_a_second_axis_that_looks_like_the_time_is_asked_for():
+    """Without times nothing but smoothness tells (agent, time, axis) from (time, agent, axis)."""
+    steps = np.linspace(0.0, 1.0, 30)[:, None, None]
+    turn = np.concatenate([np.sin(3 * steps + Q[:1, :3, :1]), np.cos(2 * steps + Q[:1, :3, 1:])], axis=2)
+    turn[:4, 1] = np.nan
+    assert fl.read_recording({"q": turn}, dt=0.1).q.shape == (30, 3, 2)
+    for other in (turn.swapaxes(0, 1), np.moveaxis(turn, 2, 0)):
+        with pytest.raises(FlockanaError, match=r'changes little along its second axis.* axes="agent time axis" or'):
+            fl.read_recording({"q": other}, dt=0.1)
+    lattice = fl.lattice.triangular(400, 7.0)  # neighbours are near in order, too
+    for factor, speed in ((0.0, 300.0), (0.01, 0.0)):
+        few = np.stack([lattice * (1.0 + factor * k) + speed * k for k in range(4)])
+        assert len(fl.read_recording({"q": few}, dt=0.1).t) == 4
+
+
 class Hostile:
     def __reduce__(self):
         return (print, ("run",))
@@ -91,6 +129,10 @@ def test_datasets_of_movement_are_read_and_given_back(tmp_path):
     assert fl.read_recording(tmp_path / "it.nc").ids == ("a", "b", "c")
     with pytest.raises(FlockanaError, match=r"2 keypoints of each .* ds.sel\(keypoints='nose'\)"):
         fl.read_recording(poses(("nose", "tail")))
+    other = xr.Dataset({"pos": (("agent", "time", "coord"), Q.swapaxes(0, 1))}, {"time": np.arange(7.0)})
+    np.testing.assert_array_equal(fl.read_recording(other).q, Q)
+    with pytest.raises(FlockanaError, match="position is over time, space_pol, individuals: expected time, agent and"):
+        fl.read_recording(poses().isel(keypoints=0).rename(space="space_pol"))
     frames = poses(time_unit="frames").assign_coords(time=np.arange(5))
     del frames.attrs["fps"]
     with pytest.raises(FlockanaError, match="no times: expected t, or dt="):
