@@ -10,6 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.recorded.recording import Recording
 
+_WIDEST = 1.5  # periods that positions extend over, with their noise, if they are wrapped
 _HALF = 0.5  # of a period: a longer step is taken for one the other way
 
 
@@ -44,6 +45,13 @@ def unwrapped(rec: Recording, box: Any) -> Recording:
     if not (size > 0.0).all():
         raise ArgumentError(f"box = {box!r}: expected a period > 0, or {rec.m}, one for each axis, inf for none")
     period = np.where(np.isfinite(size), size, 1.0)
+    span = np.nanmax(rec.q, axis=(0, 1)) - np.nanmin(rec.q, axis=(0, 1))
+    if (wide := span > _WIDEST * size).any():
+        k = int(np.argmax(wide))
+        raise ArgumentError(
+            f"box = {box!r}: positions extend over {span[k]:.4g} along {'xyz'[k]}: expected wrapped ones; "
+            "give the box in the unit of positions, or leave it out if they are unwrapped"
+        )
     q = rec.q.copy()
     for i in range(rec.n):
         seen = np.flatnonzero(rec.present[:, i])

@@ -87,7 +87,7 @@ def read_recording(
     """
     accuracy = {"bound": bound, "sd": sd, "p_bound": p_bound, "p_sd": p_sd}
     dt = None if dt is None else ensure_positive("dt", dt)
-    how = _How(columns, dt, clock, m, axes, jitter)
+    how = _How(columns, dt, clock, m, axes, jitter, box is not None)
     if isinstance(source, str | os.PathLike):
         rec = _of_file(ensure_path(source), how, accuracy)
     elif hasattr(source, "data_vars"):
@@ -118,6 +118,7 @@ class _How(NamedTuple):
     m: int | None
     axes: Any
     jitter: float | None
+    wrapped: bool
 
 
 def _of_arrays(arrays: Mapping[str, Any], where: str, how: _How) -> dict[str, Any]:
@@ -161,7 +162,7 @@ def _contents(path: Path, how: _How) -> dict[str, Any]:
         arrays = _ARRAYS[suffix](path)
         return _of_arrays(arrays, str(path), how) | _read_metadata(arrays)
     if suffix in _DUMPS or _starts_with_item(path):
-        dump = read_dump(path, how.dt, how.m)
+        dump = read_dump(path, how.dt, how.m, wrapped=how.wrapped)
         held = [name for name in "qpu" if name in dump]
         texts = ("t from TIME" if how.dt is None else "t from TIMESTEP times dt", f"{', '.join(held)} from the dump")
         return {name: dump[name] for name in ["t", *held]} | {"ids": [f"{i:g}" for i in dump["ids"]], "read_as": texts}

@@ -200,6 +200,9 @@ def test_a_wrapped_dump_is_unwrapped(tmp_path):
     path.write_text(head + "ITEM: ATOMS id x y\n1 19.5 3\n2 0.5 3\n")
     with pytest.raises(ArgumentError, match="the box is periodic in x"):
         fl.read_recording(path, dt=0.01)
+    first = path.read_text()
+    path.write_text(first + first.replace("STEP\n0", "STEP\n100").replace("1 19.5", "1 0.25"))
+    assert fl.read_recording(path, dt=0.01, m=2, box=20.0).q[:, 0, 0].tolist() == [19.5, 20.25]
 
 
 def damaged(rng, tables):

@@ -67,11 +67,17 @@ class Snapshot:
 
 
 def read_dump(
-    path: Path, dt: float | None, m: int | None, needed: str = "", ensure_fits: Callable[[int], object] = lambda m: None
+    path: Path,
+    dt: float | None,
+    m: int | None,
+    needed: str = "",
+    ensure_fits: Callable[[int], object] = lambda m: None,
+    *,
+    wrapped: bool = False,
 ) -> dict[str, Any]:
     """Return t, ids, q, and p and u where the dump has them or `needed` names them, and the steps.
 
-    The dimension is passed to `ensure_fits` before places are unwrapped.
+    The dimension is passed to `ensure_fits` before places are unwrapped; `wrapped` ones may stay so.
     """
     found = _snapshots(path)
     columns = found[0].columns
@@ -85,7 +91,7 @@ def read_dump(
         raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
     size = _dimension(columns, m, path)
     ensure_fits(size)
-    arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path) for each in found])}
+    arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path, wrapped) for each in found])}
     for kind, name in (("p", "v"), ("u", "f")):
         if f"{name}x" in columns or kind in needed:
             axes = [f"{name}{axis}" for axis in AXES[:size]]
@@ -112,21 +118,21 @@ def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
     return m
 
 
-def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
-    """Return the positions of a snapshot, shape (n, m), unwrapped."""
+def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatArray:
+    """Return the positions of a snapshot, shape (n, m), unwrapped where its images tell."""
     columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
     q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
     if snapshot.box is None or not wrapped:
         return q
     images = [k for k in range(3) if f"i{AXES[k]}" in columns]
     lost = [k for k in snapshot.box.crossed(wrapped) if k not in images]
-    if lost:
+    if lost and not may_stay:
         known = "is periodic" if snapshot.box.periodic else "may be periodic"
         faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
         raise ArgumentError(
             f"{path}: the box {known} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
             f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
-            "dump them, or run LAMMPS with `boundary s s s`"
+            "dump them, run LAMMPS with `boundary s s s`, or give read_recording box=, the periods"
         )
     for k in images:
         q[:, wrapped] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped]
@@ -135,8 +141,8 @@ def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
 
 def _snapshots(path: Path) -> list[Snapshot]:
     """Return the snapshots of a dump, all of the same agents."""
-    with opened(path, "a text dump of LAMMPS") as file:
-        found = list(_parsed(TextIOWrapper(file, "utf-8"), path))
+    with opened(path, "a text dump of LAMMPS") as file, TextIOWrapper(file, "utf-8") as text:
+        found = list(_parsed(text, path))
     if not found:
         raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
     ids = found[0].columns["id"]

@@ -86,6 +86,9 @@ def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | Non
     idle = [f"{x!r}" for x in names if x not in read]
     notes = layout.notes + ((f"not read: {', '.join(idle[:12])}{', ...' if len(idle) > 12 else ''}",) if idle else ())
     notes += (f"not read: {', '.join(repr(x) for x in passed)}, the time of receipt",) if passed else ()
+    twist = next((x for x in names if x in read and "twist" in words_of(x)[0]), None)
+    if twist is not None and any(word.kind == "orientation" for word in known.values()):
+        notes += (f"{twist!r} is taken along the axes of positions; where it is along a robot's own, name q alone",)
     return replace(
         layout, time=time, frame=frame, agent=first, rivals=tuple(agents[1:]) if first else (), units=units, notes=notes
     )
@@ -262,8 +265,14 @@ def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str,
         )
     if groups:
         return ArgumentError(f"{where} has the columns {shown}: expected positions x, y, z among them; {_NAMED}")
+    if any({"lat", "latitude"} & {*words_of(x)[0]} for x in names):
+        return ArgumentError(
+            f"{where} has the columns {shown}: latitudes and longitudes are angles: expected positions in a length; "
+            "project them (pyproj), and give the frame"
+        )
     return ArgumentError(
-        f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); {_NAMED}"
+        f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); {_NAMED}; "
+        "where lines above a table describe it, make a frame by pandas.read_csv(file, skiprows=..., header=[...])"
     )
 
 

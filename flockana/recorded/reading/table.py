@@ -92,7 +92,11 @@ def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
     def cut(kinds: Mapping[str, Sequence[str]]) -> dict[str, Sequence[str]]:
         return {kind: columns[:m] for kind, columns in kinds.items()}
 
-    return replace(layout, long=cut(layout.long), wide={name: cut(kinds) for name, kinds in layout.wide.items()})
+    left = ", ".join(repr(str(x)) for each in (layout.long, *layout.wide.values()) for x in each.get("q", ())[m:])
+    notes = (*layout.notes, f"not read, as m = {m}: {left}")
+    return replace(
+        layout, notes=notes, long=cut(layout.long), wide={name: cut(kinds) for name, kinds in layout.wide.items()}
+    )
 
 
 def _described(layout: Layout, dt: float | None) -> list[str]:
@@ -137,13 +141,15 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
     time = units.get(layout.time) if isinstance(layout.time, str) else None
     factors, texts = {}, []
     for kind, power in (("p", 1), ("u", 2)):
-        if kind in own and "q" in own and time is not None and own[kind].power == power:
+        if kind in own and "q" in own and own[kind].power == power:
             if (own[kind].length == "px") != (own["q"].length == "px"):
                 continue
-            factor = own[kind].factor / own["q"].factor * time.factor**power
+            spelt = own[kind].text
+            clock = Unit(f"the time of {spelt}", "", own[kind].second, 0) if time is None else time
+            factor = own[kind].factor / own["q"].factor * clock.factor**power
             if abs(factor - 1.0) > 1e-9:
                 factors[kind] = factor
-                texts.append(f"{kind} times {factor:.4g}, from {own[kind].text} to {own['q'].text} and {time.text}")
+                texts.append(f"{kind} times {factor:.4g}, from {spelt} to {own['q'].text} and {clock.text}")
     return factors, texts
 
 
@@ -241,15 +247,18 @@ def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
     stamps = np.unique(t)
     size = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
     reach = size if jitter is None else ensure_nonnegative("jitter", jitter)
-    first, group = stamps[0], np.zeros(len(stamps), dtype=np.intp)
-    for k in range(1, len(stamps)):  # an instant is as long as the jitter at most
-        group[k] = group[k - 1]
-        if stamps[k] - first > reach:
-            first, group[k] = stamps[k], group[k - 1] + 1
-    if len(stamps) == 1 or group[-1] == len(stamps) - 1:
+    group = np.cumsum(np.diff(stamps, prepend=stamps[0]) > reach)
+    if group[-1] == len(stamps) - 1:
         return t, ""
     start = np.searchsorted(group, np.arange(group[-1] + 1))
     end = np.append(start[1:], len(stamps)) - 1
+    if jitter is not None and (long := stamps[end] - stamps[start] > reach).any():
+        k = int(np.argmax(long))
+        raise ArgumentError(
+            f"jitter = {reach:g}: stamps from {stamps[start[k]]:g} to {stamps[end[k]]:g} follow each other within it, "
+            "so nothing says which of them are one instant; expected as much as stamps of one instant spread, and "
+            "less than the breaks between instants; or interpolate="
+        )
     middle = np.where(start == end, stamps[start], 0.5 * (stamps[start] + stamps[end]))
     widest = float((stamps[end] - stamps[start]).max())
     text = f"stamps up to {widest:.3g} apart are one instant: {len(stamps)} are {len(middle)}"

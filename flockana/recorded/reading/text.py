@@ -23,7 +23,7 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
     """
     import pandas as pd
 
-    data = _bytes(path)
+    data, above = _below_comments(_bytes(path), names is not None)
     first = next((line for line in data.split(b"\n", 20) if line.strip()), b"").decode("utf-8")
     delimiter = _delimiter(first)
     if delimiter == " ":
@@ -40,18 +40,22 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
             f"{path}, line 1: {first.strip()[:_SHOWN]!r} are numbers; expected a header such as time,id,x,y; add one, "
             'or name the columns by columns=["t", "id", "x", "y"]'
         )
+    if twice := sorted({cell for cell in cells if cell and cells.count(cell) > 1}) if names is None else []:
+        raise FileError(
+            f"{path}, line 1: the column {twice[0]!r} is given twice; expected each once; of a header in several lines "
+            "make a frame, such as pandas.read_csv(file, header=[0, 1, 2], index_col=0), and read that"
+        )
     if first.count('"') % 2:
         raise FileError(f"{path}, line 1: {first.strip()[:_SHOWN]!r} has an open quote; expected a header in one line")
-    twice = sorted({cell for cell in cells if cell and cells.count(cell) > 1}) if names is None else []
-    if twice:
-        raise FileError(f"{path}, line 1: the column {twice[0]!r} is given twice; expected each once")
     data, notes = _cleaned(data, delimiter)
     width = len(cells)
     if names is not None and len(names) != width:
         raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
     if _QUOTE not in data:
-        data = _ensure_rectangular(data, ord(delimiter), width, path)
-    lines = [k for k, line in enumerate(data.split(b"\n"), 1) if line.strip()] if b"\n\n" in data.strip() else None
+        data = _ensure_rectangular(data, ord(delimiter), width, path, above)
+    lines = (
+        [k for k, line in enumerate(data.split(b"\n"), 1 + above) if line.strip()] if b"\n\n" in data.strip() else None
+    )
     try:
         frame = pd.read_csv(
             io.BytesIO(data),
@@ -69,10 +73,20 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         raise FileError(f"{path} has a header and no rows: expected one for each sample of an agent")
     if empty := [x for k, x in enumerate(frame) if not cells[k] and names is None and frame[x].isna().all()]:
         frame, notes = frame.drop(columns=empty), [*notes, f"{len(empty)} columns without a name are empty"]
-    frame.attrs |= {"where": str(path), "first": 1 if names is not None else 2, "notes": tuple(notes)}
+    frame.attrs |= {"where": str(path), "first": above + (1 if names is not None else 2), "notes": tuple(notes)}
     if lines is not None:  # pandas leaves out empty ones
         frame.attrs["lines"] = lines[1:] if names is None else lines
     return frame
+
+
+def _below_comments(data: bytes, named: bool) -> tuple[bytes, int]:
+    """Return a table below lines that begin with #, of which the last may be its header, and the number left out."""
+    lines = data.split(b"\n", 100)
+    first = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
+    cells = re.split(r"[\t,;\s]+", lines[first].decode("utf-8").strip())
+    if first and not named and all(_is_number(cell.strip('"')) for cell in cells):
+        first = max(k for k in range(first) if lines[k].strip())
+    return data.split(b"\n", first)[first], first
 
 
 def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
@@ -133,6 +147,10 @@ def _bytes(path: Path) -> bytes:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise FileError(f"cannot read {path}: it is UTF-16; expected UTF-8; save it as such")
     data = data.removeprefix(b"\xef\xbb\xbf")
+    if data.startswith(b"\x89HDF"):
+        raise FileError(
+            f"cannot read {path}: it is HDF5; give its arrays by name, and axes=; h5py.File(...) reads them"
+        )
     if b"\0" in data:
         raise FileError(f"cannot read {path}: it holds null bytes; expected a text table in UTF-8")
     try:
@@ -151,7 +169,7 @@ def _delimiter(line: str) -> str:
     return max("\t,; ", key=lambda mark: min(line.count(mark), 1) if mark == " " else 2 * line.count(mark))
 
 
-def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path) -> bytes:
+def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path, above: int) -> bytes:
     """Return the table without empty cells beyond the header; raise on a row with another number of cells.
 
     pandas would fill short ones.
@@ -169,8 +187,9 @@ def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path) -> 
             long = True
         elif text.strip():
             raise FileError(
-                f"{path}, line {k + 1}: {cells[k]} values, expected {width} as in the header: "
-                f"{text.strip()[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off?"
+                f"{path}, line {k + 1 + above}: {cells[k]} values, expected {width} as in the header: "
+                f"{text.strip()[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off, or do lines above the table "
+                "describe it? leave those out by pandas.read_csv(file, skiprows=...), and read the frame"
             )
     if not long:
         return data

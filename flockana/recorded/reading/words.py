@@ -30,12 +30,13 @@ _PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-zµμ]+|[A-Z]+|\d+")
 
 
 class Unit(NamedTuple):
-    """Unit of a column: as it is spelt, its factor to metres and seconds (0 for pixels), and its power of time."""
+    """Unit of a column: as spelt, factor to metres and seconds, power of time, and seconds in its unit of time."""
 
     text: str
     length: str
     factor: float
     power: int
+    second: float = 1.0
 
 
 class Word(NamedTuple):
@@ -68,7 +69,7 @@ def unit_of(text: str) -> Unit | None:
         return Unit(text.strip(), "", _DURATIONS[first], 0)
     if first in _LENGTHS and (not per or per in _DURATIONS):
         factor = (_LENGTHS[first] or 1.0) / (_DURATIONS[per] ** power if per else 1.0)
-        return Unit(text.strip(), first, factor, power if per else 0)
+        return Unit(text.strip(), first, factor, power if per else 0, _DURATIONS.get(per, 1.0))
     return Unit(text.strip(), first, 1.0, 0) if first in ("deg", "rad", "au") else None
 
 

@@ -163,6 +163,8 @@ def test_positions_are_unwrapped_from_a_box_or_refused():
     fast = np.cumsum(np.full((20, 1, 1), 0.8), axis=0)
     known = fl.read_recording({"q": np.mod(fast, 1.0), "p": np.full((20, 1, 1), 0.8)}, dt=1.0, box=1.0)
     np.testing.assert_allclose(known.q - known.q[0], fast - fast[0], atol=1e-12)
+    with pytest.raises(FlockanaError, match=r"extend over .* along x: expected wrapped ones; give the box in the unit"):
+        fl.read_recording({"q": wrapped}, dt=1.0, box=0.5)
     with pytest.raises(FlockanaError, match="box = 0: expected a period > 0"):
         fl.read_recording({"q": wrapped}, dt=1.0, box=0)
 

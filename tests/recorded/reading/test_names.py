@@ -66,6 +66,8 @@ REFUSED = [
     ("t,x,y,x.1,y.1", "one agent, or several"),
     ("x1,y1,x2,y2", "expected dt=, the time from row to row"),
     ("when,a,b", "name them by columns="),
+    ("timestamp,bird,latitude,longitude", "are angles: expected positions in a length"),
+    ("Frame,X,Y,X,Y", r"'X' is given twice.*pandas.read_csv\(file, header="),
     ("time (s),x [mm],y [m]", "positions are in mm, m, or others: expected one unit"),
 ]
 
@@ -74,6 +76,27 @@ REFUSED = [
 def test_what_may_be_read_in_two_ways_is_refused_with_both(tmp_path, header, message):
     with pytest.raises(FlockanaError, match=message):
         fl.read_recording(table(tmp_path / "it.csv", header))
+
+
+def test_a_twist_beside_an_orientation_is_said_to_be_along_the_axes_of_positions(tmp_path):
+    header = "t,pose.position.x,pose.orientation.w,twist.linear.x"
+    text = "'twist.linear.x' is taken along the axes of positions; where it is along a robot's own, name q alone"
+    rec = fl.read_recording(table(tmp_path / "it.csv", header))
+    assert (rec.p is not None, text in rec.read_as) == (True, True)
+    alone = fl.read_recording(tmp_path / "it.csv", columns={"t": "t", "q": ["pose.position.x"]})
+    assert (alone.p, text in alone.read_as) == (None, False)
+
+
+def test_comments_above_a_table_count_as_lines(tmp_path):
+    (tmp_path / "it.txt").write_text("# room 5\n# t,x,y\n0,1,2\n1,b,3\n")
+    with pytest.raises(FlockanaError, match="line 4, column 'x': 'b'"):
+        fl.read_recording(tmp_path / "it.txt")
+    (tmp_path / "it.txt").write_text("NAMES\ta\tb\tc\nFrame\tTime\n1\t2\n")
+    with pytest.raises(FlockanaError, match="do lines above the table describe it"):
+        fl.read_recording(tmp_path / "it.txt")
+    (tmp_path / "it.txt").write_bytes(b"\x89HDF\r\n\x1a\n\0")
+    with pytest.raises(FlockanaError, match="it is HDF5; give its arrays by name"):
+        fl.read_recording(tmp_path / "it.txt")
 
 
 def test_the_argument_that_a_message_names_decides(tmp_path):
@@ -101,6 +124,7 @@ def test_the_column_of_agents_is_the_one_whose_values_return(tmp_path):
     assert "m=2 leaves it out" in repr(rec)
     assert "'LABEL', 'ID', whose values do not name an agent" in repr(rec)
     assert fl.read_recording(path, m=2).m == 2
+    assert "not read, as m = 2: 'POSITION_Z'" in repr(fl.read_recording(path, m=2))
     with pytest.raises(FlockanaError, match=r"line 6, column 'POSITION_X': 'one'"):
         fl.read_recording(table(path, head, *words, spots[0], "ID8,8,1,one,2,0,0", *spots[2:]))
     twins = table(tmp_path / "it.csv", "t,bot,cell,x", "0,1,1,0", "1,1,2,0", "0,2,2,3", "1,2,1,3")
@@ -113,6 +137,8 @@ def test_the_column_of_agents_is_the_one_whose_values_return(tmp_path):
     [
         ("t  x y\n0  1 2\n1 2   3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
         ("# t x y\n0 1 2\n1 2 3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
+        ("# room 5\n# rate: 16 fps\n\n# t x y\n0 1 2\n1 2 3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
+        ("# room 5\nt,x,y\n0,1,2\n1,2,3\n", [[1.0, 2.0], [2.0, 3.0]], ""),
         ("t;x;y\n0;1,5;2\n1;-2,5;3,25\n", [[1.5, 2.0], [-2.5, 3.25]], "commas are decimal points"),
         ("t,x,y,,\n0,1,2,,\n1,2,3,,\n", [[1.0, 2.0], [2.0, 3.0]], "2 columns without a name are empty"),
         ("t,x,y\n0,1,2,\n1,2,,\n", [[1.0, 2.0], [np.nan, np.nan]], ""),
@@ -129,6 +155,9 @@ def test_velocities_come_into_the_units_of_positions_and_times(tmp_path):
     rec = fl.read_recording(table(tmp_path / "it.csv", "t [ms],x [cm],vx [m/s]", "0,1,3", "100,2,4"))
     assert rec.p[:, 0, 0].tolist() == pytest.approx([0.3, 0.4])  # 3 m/s are 300 cm in 1000 ms
     assert "p times 0.1, from m/s to cm and ms" in repr(rec)
+    rec = fl.read_recording(table(tmp_path / "it.csv", "t,x [m],vx [cm/s]", "0,1,300", "1,4,300"))
+    assert rec.p[:, 0, 0].tolist() == pytest.approx([3.0, 3.0])  # times without a unit are in that of velocities
+    assert "p times 0.01, from cm/s to m and the time of cm/s" in repr(rec)
     assert (unit_of("mm/s^2").factor, unit_of("stones")) == (1e-3, None)
     assert words_of("posX_mm")[0] == ["pos", "x"]
 
@@ -151,6 +180,9 @@ def test_stamps_that_differ_by_rounding_or_within_a_jitter_are_one_instant(tmp_p
     rec = fl.read_recording(late, jitter=0.01)
     assert (rec.gaps, rec.t[1]) == (0, pytest.approx(1.002))
     assert "stamps up to 0.004 apart are one instant: 6 are 3" in repr(rec)
+    thirds = table(tmp_path / "it.csv", "t,id,x", *(f"{k + 0.3 * i},{i},{k}" for k in range(3) for i in range(3)))
+    with pytest.raises(FlockanaError, match=r"jitter = 0.4: stamps from 0 to 2.6 follow each other within it"):
+        fl.read_recording(thirds, jitter=0.4)
 
 
 def test_many_visitors_at_common_times_are_read(tmp_path):
