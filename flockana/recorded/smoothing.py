@@ -3,11 +3,12 @@
 A spline of degree five that smooths samples of known noise is the mean of a motion whose jerk is white noise, given the
 samples; the same computation, a Kalman filter forth and back, gives the variance of position, velocity and acceleration
 at each sample. The intensity of the jerk is the largest that the samples nearby do not reject, so that a flock that
-settles is smoothed more than one that has just been let go, and an encounter less. Pieces of a series on both sides of
-a gap say nothing of each other: what happened in between is not known.
+settles is smoothed more than one that has just been let go, and an encounter less. Where no curvature of a whole piece
+is told from noise, its mean is the straight motion, with the deviations of what the samples allow. Pieces of a series
+on both sides of a gap say nothing of each other: what happened in between is not known.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,9 @@ _DIFFUSE = 6.0  # deviation of the state before the first sample, over the large
 _JERKS = 12  # intensities that are tried, each a factor of e from the next
 _WINDOW = 6  # samples to each side over which a likelihood is local
 _DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
+
+_BENT = 6.0  # of a log-likelihood, by which a motion is told from a straight one
+_FEWEST_STRAIGHT = 8  # samples from which on a piece may be straight
 
 _Filtered = tuple[FloatArray, FloatArray, FloatArray]  # means and deviations (T, K, 3), log-likelihoods (T, K)
 _Pieces = npt.NDArray[np.intp]
@@ -45,8 +49,10 @@ def smoothed(
     x, clock = (y - middle) / spread, (t - t[0]) / unit
     sd = np.maximum(_likeliest_noise(clock, x, pieces), floor / spread) if noise is None else noise / spread
     sd = np.maximum(np.broadcast_to(sd, x.shape), _FINEST)
-    jerk = _local_jerk(clock, x, sd, pieces, groups)
+    jerk, gain = _local_jerk(clock, x, sd, pieces, groups)
     mean, deviations, _ = _filtered(clock, x, sd, jerk, pieces, backwards=True)
+    for k, number in np.argwhere(gain.T < _BENT):
+        _straighten(clock, x, sd, mean, pieces == number, slice(k * groups, (k + 1) * groups))
     factors = spread * unit ** -np.arange(3.0)
     mean = mean * factors
     mean[:, :, 0] += middle
@@ -79,20 +85,44 @@ def _steepest(x: FloatArray, pieces: _Pieces) -> float:
     return float(np.log(max(size, 1e-14))) + 2.0
 
 
-def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, pieces: _Pieces, groups: int) -> FloatArray:
-    """Intensity of the jerk at each sample of each series, by the likelihood of the samples nearby, shape (T, K)."""
+def _local_jerk(
+    t: FloatArray, x: FloatArray, sd: FloatArray, pieces: _Pieces, groups: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the jerk's intensity at each sample, (T, K), and the log-likelihood that any adds to each piece's, (P, n).
+
+    The first is by the likelihood of the samples nearby.
+    """
     top, (count, series) = _steepest(x, pieces), x.shape
     tried = np.maximum(top - np.arange(_JERKS, dtype=np.float64), np.log(sd.min()) - 6.0)
-    local, piece = np.zeros((_JERKS, count, series // groups)), pieces[:, ::groups]
+    tried = np.append(tried, -np.inf)
+    local, piece = np.zeros((len(tried), count, series // groups)), pieces[:, ::groups]
+    whole = np.zeros((len(tried), pieces.max() + 2, series // groups))
     for g, jerk in enumerate(tried):
         own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
         own = own.reshape(count, -1, groups).sum(axis=2)
+        np.add.at(whole[g], (piece, np.arange(series // groups)), own)
         for by in range(-_WINDOW, _WINDOW + 1):
             here, there = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
             weight = 1.0 - abs(by) / (_WINDOW + 1.0)
             local[g, here] += weight * np.where(piece[here] == piece[there], own[there], 0.0)
-    largest = tried[np.argmax(local >= local.max(axis=0) - _DROP, axis=0)]
-    return np.repeat(np.exp(largest), groups, axis=1)
+    allowed = local[:-1] >= local[:-1].max(axis=0) - _DROP
+    largest = tried[np.argmax(allowed, axis=0)]
+    return np.repeat(np.exp(largest), groups, axis=1), (whole.max(axis=0) - whole[-1])[:-1]
+
+
+def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, within: Any, axes: slice) -> None:
+    """Put the straight motion through a piece of an agent into the means, unless one that accelerates is likelier."""
+    inside = within[:, axes.start]
+    seen = inside & ~np.isnan(x[:, axes.start])
+    if seen.sum() < _FEWEST_STRAIGHT:
+        return
+    s = (t - t[seen].mean()) / np.ptp(t[seen])
+    forms, weight = np.stack([np.ones_like(s), s, s**2], axis=1), 1.0 / sd[seen, axes.start, None]
+    fits = [np.linalg.lstsq(weight * forms[seen, :k], weight * x[seen, axes], rcond=None)[0] for k in (2, 3)]
+    costs = [0.5 * np.sum((weight * (x[seen, axes] - forms[seen, : len(c)] @ c)) ** 2) for c in fits]
+    if costs[0] - costs[1] < _BENT:
+        mean[inside, axes, 0] = forms[inside, :2] @ fits[0]
+        mean[inside, axes, 1], mean[inside, axes, 2] = fits[0][1] / np.ptp(t[seen]), 0.0
 
 
 def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArray:
