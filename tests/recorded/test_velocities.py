@@ -106,16 +106,18 @@ def test_velocities_lie_within_95_percent_beside_gaps_too(kind):
 def test_a_straight_motion_is_told_from_one_that_bends():
     """Velocities of straight pieces are those of least squares; one of a curve that noise does not hide is not."""
     rng, t = np.random.default_rng(7), np.arange(80) * 0.05
-    p = rng.normal(0.0, 1.0, (3, 2))
-    q = p * t[:, None, None] + rng.normal(0.0, NOISE, (80, 3, 2))
+    p = rng.normal(0.0, 1.0, (4, 2))
+    q = p * t[:, None, None] + rng.normal(0.0, NOISE, (80, 4, 2))
     q[30:40, 0] = np.nan
     q[:, 2] += 0.1 * (t[:, None] - 2.0) ** 2
+    q[:, 3] += 0.2 * np.sin(1.6 * (t[:, None] - t.mean()))  # no part of it is a constant acceleration
     fit = motions(fl.Recording(t, q, sd=NOISE))
     for agent, part in ((0, slice(0, 30)), (0, slice(40, 80)), (1, slice(0, 80))):
         slope = np.polyfit(t[part], q[part, agent], 1)[0]
         np.testing.assert_allclose(fit.p[part, agent], np.broadcast_to(slope, fit.p[part, agent].shape), rtol=1e-9)
         np.testing.assert_allclose(np.abs(slope - p[agent]), 0.0, atol=0.05)  # 0.15 at their deviation before
     assert np.ptp(fit.p[:, 2], axis=0).min() > 0.5  # 0.8 in truth
+    assert np.ptp(fit.p[:, 3], axis=0).min() > 0.4  # 0.64 in truth
     assert (fit.u[:, 1] == 0.0).all()
     assert (np.abs(fit.p[:, 1] - p[1]) <= fit.p_sd[:, 1, None]).all()
 
