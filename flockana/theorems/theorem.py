@@ -131,6 +131,26 @@ class Theorem:
         text = f"{does_not_hold(missed.name)}: {missed.detail}".removesuffix(": ")
         return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
 
+    def hypotheses(self, start: Any) -> tuple[Hypothesis, ...]:
+        """Return the hypotheses of the theorem and of its claims at a start, those that its check itself states.
+
+        Parameters
+        ----------
+        start : Observed
+            A start as `flockana.theorems.applicable.start_of` returns it, or a run.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import flockana as fl
+        >>> from flockana.theorems.applicable import start_of
+        >>> start = start_of(fl.Algorithm1(), np.array([[0.0], [7.0]]), np.zeros((2, 1)), 0.0)
+        >>> [need.name for need in fl.theorem("collision-energy").hypotheses(start)]
+        ['Algorithm 1 or 2 is applied', 'c1α > 0', 'H(0) < c*', 'H(0) < 2 c*']
+        """
+        hypotheses, claims = self.examine(start, Tolerances())
+        return tuple(dict.fromkeys((*hypotheses, *(need for claim in claims for need in claim.needs))))
+
     def examine(self, *case: Any, check: Check | None = None) -> Known:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 

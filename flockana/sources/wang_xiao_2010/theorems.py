@@ -77,5 +77,5 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         judged("settle", Enclosure.of(0.0), needs, about="all", proof=_PROOF).described(
             computed=float(v.mid[-1]), stated=f"all velocities are p̄ from T = {last.mid:.6g} on", detail=text
         ),
-        vacuous("some-start", "α < 1 and the net is connected"),
+        vacuous("some-start", condition("α >= 1 or the net is not connected", False, -rest, f"α = {alpha:g}")),
     ]

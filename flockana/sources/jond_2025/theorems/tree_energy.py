@@ -8,7 +8,8 @@ import numpy as np
 
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase
 from flockana.theorems.claims import judged, undecided, vacuous
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, positive_room, stacked
+from flockana.theorems.hypotheses import condition, positive_room
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, stacked
 
 _PROOF = "bearing-distance"
 
@@ -34,7 +35,7 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
     below = energies.hi[0] < case.barrier
     edges = [e for e, (j, _) in enumerate(case.links) if j == case.root and below[e]]
     if not edges:
-        return vacuous("root-edge", "no edge from the root starts below μρ²/2")
+        return vacuous("root-edge", condition("an edge from the root starts below μρ²/2", False))
     V, start = energies[:, edges], energies[0, edges]
     room = _room(case, seen, start, edges, tolerances.energy)
     falls = (V[:-1] - V[1:] + tolerances.energy * start) / case.barrier[edges]
