@@ -14,6 +14,7 @@ from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Samples, Start, copied, finite
 from flockana.dynamics.stepper import Stepper
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
+from flockana.laws.velocity import first_order
 from flockana.laws.wrapped import wrappers_within
 from flockana.solvers.fixed_steps import FixedSteps
 
@@ -48,6 +49,8 @@ class MapStepper(Stepper):
             known = Encounters.of(law.law, len(start.q))
             self.encounters = known if known.any else None
             past = [State(*row[:3]) for row in self.memory.get("past", ())]
+            if first_order(law) is not None:
+                past = [State(x, v, np.zeros_like(v)) for _, x, v in past]
             for k, (before, after) in enumerate(pairwise(past), 1 - len(past)):
                 self._ensure_resolved(before, after, t_span[0] + k * law.dt)
 

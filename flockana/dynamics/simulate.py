@@ -35,7 +35,7 @@ from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
-from flockana.laws.velocity import VelocityLaw, ensure_any_law
+from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
 from flockana.laws.wrapped import needs_steps, wrappers_within
 from flockana.solvers.fixed_steps import FixedStep, FixedSteps
 from flockana.solvers.named import solver_of
@@ -68,7 +68,7 @@ def simulate(
         `SwitchedLaw` is integrated from switch to switch, except in fixed steps; a sliding mode ends the run and is
         reported.
     q0, p0 : array_like, shape (n, m)
-        Initial positions and velocities; those of a `VelocityLaw` are its own, and may be None.
+        Initial positions and velocities; those of a `VelocityLaw`, late or sampled too, are its own, and may be None.
     t_span : (float, float)
         Start and end.
     method : str or Solver
@@ -118,9 +118,9 @@ def simulate(
     ensure_any_law(law)
     if isinstance(law, Law) and needs_steps(law):
         law, method, dt = _in_steps(law, method, dt), "DOP853", None
-    if isinstance(law, VelocityLaw):
+    if (core := first_order(law)) is not None:
         t_span = ensure_time_span(t_span)
-        q0, p0 = law.start(t_span[0], q0, p0)
+        q0, p0 = core.start(t_span[0], q0, p0)
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)

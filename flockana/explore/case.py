@@ -18,7 +18,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
 from flockana.explore.starts import Start, from_file, from_law, from_scenario
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.velocity import first_order, start_velocities
 
 KINDS = ("scenario", "law", "file")
 _KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
@@ -90,8 +90,8 @@ class Case:
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
         parts: dict[str, Any] = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
-        if isinstance(law, VelocityLaw):  # its velocities are those of the places
-            parts |= {"p0": law.start(span[0], q0)[1], "lines": (*lines, "p0 = None")}
+        if first_order(law) is not None:  # its velocities are those of the places
+            parts |= {"p0": start_velocities(law, span[0], q0, None), "lines": (*lines, "p0 = None")}
         if self.changes or self.moved or self.duration:
             parts |= {"recorded": None, "source": None}
         return replace(start, **parts)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.velocity import first_order, start_velocities
 from flockana.recorded.parameters import law_parameter, with_parameter
 from flockana.scenarios import Scenario
 
@@ -73,8 +73,8 @@ class Space:
         state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
         for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
             law = with_parameter(law, name, _value(share, *ends))
-        if isinstance(law, VelocityLaw):
-            state["p0"] = law.start(self.scenario.t_span[0], state.get("q0", self.scenario.q0))[1]
+        if first_order(law) is not None:
+            state["p0"] = start_velocities(law, self.scenario.t_span[0], state.get("q0", self.scenario.q0), None)
         return replace(self.scenario, law=law, **state)
 
 
@@ -115,7 +115,7 @@ def search_space(
     chosen = (vary,) if isinstance(vary, str) else tuple(vary) if isinstance(vary, Iterable) else (repr(vary),)
     if not set(chosen) <= set(STATE) or len(set(chosen)) < len(chosen):
         raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
-    if isinstance(scenario.law, VelocityLaw):  # velocities are those of the places
+    if first_order(scenario.law) is not None:  # velocities are those of the places
         chosen = tuple(name for name in chosen if name != "p")
     ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}
     if not chosen and not ranges:

@@ -10,6 +10,7 @@ from flockana.base.checks import FloatArray, ensure_choice, ensure_numbers, ensu
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
+from flockana.laws.velocity import VelocityLaw, first_order
 from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
 
 LATE = ("all", "pairs", "neighbours")
@@ -19,6 +20,8 @@ _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for roun
 @dataclass(frozen=True)
 class Delayed(Wrapper):
     """Law whose agents act on states that are `delay` old; before the start, `history` or uniform motion.
+
+    Without a history, agents under a law of first order rested before the start.
 
     Late is everything, an agent's own state and the γ-agent's included (``"all"``); or the terms between agents, their
     own state in them included (``"pairs"``); or what they hear of other agents, their own state being known at once
@@ -46,13 +49,14 @@ class Delayed(Wrapper):
     0.1
     """
 
-    law: Law
+    law: Law | VelocityLaw
     delay: Any
     late: str = "all"
     _: KW_ONLY
     history_t: Any = None
     history_q: Any = None
 
+    takes_first_order = True
     units: ClassVar[Mapping[str, Powers]] = {"delay": (0, 1), "history_t": (0, 1), "history_q": (1, 0)}
 
     def __post_init__(self) -> None:
@@ -99,7 +103,8 @@ class Delayed(Wrapper):
         from scipy.interpolate import CubicSpline
 
         t, places = np.append(self.history_t, 0.0), np.append(self.history_q, q[None], axis=0)
-        path: Any = CubicSpline(t, places, bc_type=((2, np.zeros_like(q)), (1, p)))
+        end: Any = (1, p) if first_order(self.law) is None else "not-a-knot"  # whose velocity may jump at the start
+        path: Any = CubicSpline(t, places, bc_type=((2, np.zeros_like(q)), end))
         at = np.maximum(back, t[0])
         return path(at), path(at, 1), path(at, 2)
 
@@ -128,13 +133,13 @@ class Delayed(Wrapper):
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         if isinstance(self.delay, float):
-            q, p = step.past(view.t - self.delay)
+            q, p = step.past(view.t - self.delay) if self.delay else (view.q, view.p)
             if self.late == "all":
                 return input_of(self.law, step, View(view.t - self.delay, q, p))
             heard: tuple[FloatArray, FloatArray] = q[None], p[None]
         else:
             times = np.unique(self.delay)
-            states = [step.past(view.t - float(lag)) for lag in times]
+            states = [step.past(view.t - float(lag)) if lag else (view.q, view.p) for lag in times]
             which, own = np.searchsorted(times, self.delay), np.arange(len(view.q))
             heard = tuple(np.stack(parts)[which, own] for parts in zip(*states, strict=True))
         return input_of(self.law, step, view._replace(heard=heard, both=self.late == "pairs"))

@@ -10,6 +10,7 @@ from flockana.base.checks import FloatArray, ensure_numbers, ensure_positive, no
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
+from flockana.laws.velocity import VelocityLaw
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
 
@@ -17,7 +18,8 @@ from flockana.laws.wrapped import Step, View, Wrapper, input_of
 class Sampled(Wrapper):
     """Zero-order hold: agents compute their input every `period` and keep it until the next time.
 
-    Without disturbance, noise and delay, and with one clock, that is the map `TaylorStep(law, period)`.
+    Without disturbance, noise and delay, and with one clock, that is the map `TaylorStep(law, period)`; of a law of
+    first order q + period · velocity.
 
     Parameters
     ----------
@@ -39,10 +41,11 @@ class Sampled(Wrapper):
     (0.1, 0.05)
     """
 
-    law: Law
+    law: Law | VelocityLaw
     period: float
     offsets: Any = None
 
+    takes_first_order = True
     units: ClassVar[Mapping[str, Powers]] = {"period": (0, 1), "offsets": (0, 1)}
 
     def __post_init__(self) -> None:

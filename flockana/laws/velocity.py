@@ -40,8 +40,8 @@ class VelocityLaw(LawOfMotion):
     """Law of first order, dq/dt = velocity(t, q); a subclass is a frozen dataclass with `velocity`.
 
     Of its runs `Trajectory.p` is that velocity and `Trajectory.u` its rate along the motion, d²q/dt². It has no energy,
-    no mass and no input. It is simulated, saved, verified and linearised; what takes laws of second order alone, such
-    as `Delayed`, `FixedSteps`, `certify` or `enclose`, refuses it by name.
+    no mass and no input. It is simulated, saved, verified, linearised, and run late or sampled (`Delayed`, `Sampled`);
+    what takes laws of second order alone, such as `FixedSteps`, `certify` or `enclose`, refuses it by name.
 
     Examples
     --------
@@ -173,11 +173,19 @@ class VelocityLaw(LawOfMotion):
         return q, v
 
 
+def first_order(law: Any) -> VelocityLaw | None:
+    """Return the law of first order that a law is, wraps or steps; None of a law of second order."""
+    while law is not None and not isinstance(law, VelocityLaw):
+        law = getattr(law, "__dict__", {}).get("law")
+    return law
+
+
 def start_velocities(law: Any, t: float, q: Any, p: Any) -> Any:
     """Return the velocities of a start that gives none: those of a law of first order, else 0."""
     if p is not None:
         return p
-    return law.start(t, q)[1] if isinstance(law, VelocityLaw) else np.zeros(np.shape(q))
+    core = first_order(law)
+    return np.zeros(np.shape(q)) if core is None else core.start(t, q)[1]
 
 
 def ensure_any_law(law: Any) -> Law | DiscreteLaw | VelocityLaw:

@@ -13,6 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.law import Law
 from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.velocity import VelocityLaw, first_order
 
 _BLOCK = 256  # steps whose random numbers are drawn at once
 _CHANNELS = 8  # kinds of random numbers
@@ -23,7 +24,7 @@ class View(NamedTuple):
     """States that agents know when they compute their inputs."""
 
     t: float  # Time that they take it to be
-    q: FloatArray  # q, p: Their own positions and velocities
+    q: FloatArray  # q, p: Their own positions and velocities; under a law of first order p holds their positions
     p: FloatArray
     # Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or (1, n,
     # m) if all hear the same. By default `q` and `p`.
@@ -94,7 +95,7 @@ def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, 
 class WrappingLaw(Law):
     """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
 
-    law: Law
+    law: Law | VelocityLaw
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
@@ -128,11 +129,13 @@ class Wrapper(WrappingLaw):
     """
 
     stepped: ClassVar[bool] = True
+    takes_first_order: ClassVar[bool] = False  # whether the law may be a `VelocityLaw`, or wrap one
 
     def __post_init__(self) -> None:
-        ensure_kind(
-            "law", self.law, Law, "a continuous law of second order such as Algorithm1(), or one that wraps a law"
-        )
+        if not self.takes_first_order or not isinstance(self.law, VelocityLaw):
+            known = Law if self.takes_first_order or first_order(self.law) is None else ()
+            wanted = "a continuous law of second order such as Algorithm1(), or one that wraps a law"
+            ensure_kind("law", self.law, known, wanted)
         if "seed" in vars(self):  # times the channels it is part of a key, and files hold 64 bits
             normalise(self, lambda _, seed: ensure_seed(seed, 62), "seed")
 
@@ -194,7 +197,7 @@ class Wrapper(WrappingLaw):
             yield from self.law.wrappers
 
     @property
-    def core(self) -> Law:
+    def core(self) -> Law | VelocityLaw:
         """The law within all wrappers."""
         return self.law.core if isinstance(self.law, Wrapper) else self.law
 
@@ -220,8 +223,13 @@ def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
     return wrappers_within(law.continuous)
 
 
-def input_of(law: Law, step: Step, view: View) -> FloatArray:
-    """Return the accelerations of a law, wrapped or not, in a step from what the agents know."""
+def input_of(law: Law | VelocityLaw, step: Step, view: View) -> FloatArray:
+    """Return the accelerations of a law, wrapped or not, in a step from what the agents know.
+
+    Of a law of first order these are velocities: x' = v(t, x) is stepped in the place of p' = u, with x in `view.p`.
+    """
+    if isinstance(law, VelocityLaw):
+        return law.velocity(view.t, view.p)
     if isinstance(law, Wrapper):
         return law.input(step, view)
     if view.heard is None and view.linked is None:
@@ -269,7 +277,7 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
     return weight, adjacency
 
 
-def ensure_hears(law: Law) -> None:
+def ensure_hears(law: Law | VelocityLaw) -> None:
     """Raise unless the law's pair terms are known, so that heard states can enter them alone."""
     core = law.core if isinstance(law, Wrapper) else law
     if not any(isinstance(term, PairTerm) for term in core.terms):

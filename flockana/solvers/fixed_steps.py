@@ -20,6 +20,7 @@ from flockana.kernels.verlet import Pairs, no_pairs, with_room
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
 from flockana.laws.law import Arrays, Law, LawOfMotion
+from flockana.laws.velocity import first_order
 from flockana.laws.wrapped import Step, View, Wrapper, input_of, needs_steps, wrappers_within
 from flockana.solvers.past import Past, Row
 from flockana.solvers.solver import Limits, Rate, Rows, Solver
@@ -143,6 +144,8 @@ class FixedSteps(DiscreteLaw):
                     f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
                     f"{clock / max(1, ceil(clock / dt)):.12g}"
                 )
+        if self._first_order and self.solver.position_factor:
+            raise ArgumentError(f"{self.solver.name}: {self.law.title} is of first order; expected RK4 or Heun")
         for late in self._late:
             late._ensure_remembered(self._memory)
         if self.noisy and not self.solver.takes_noise:
@@ -203,6 +206,10 @@ class FixedSteps(DiscreteLaw):
         return wrappers_within(self.law)
 
     @cached_property
+    def _first_order(self) -> bool:
+        return first_order(self.law) is not None
+
+    @cached_property
     def _late(self) -> tuple[Delayed, ...]:
         return tuple(one for one in self._wrappers if isinstance(one, Delayed))
 
@@ -225,7 +232,12 @@ class FixedSteps(DiscreteLaw):
         past = np.empty((0, 4, *q.shape))
         if self.past_steps:
             with_history = next((one for one in self._late if one.history_t is not None), self._late[0])
-            before, speeds, push = with_history._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            back = self.dt * np.arange(1.0 - self.past_steps, 1.0)
+            if self._first_order and with_history.history_t is None:
+                q, p = np.zeros_like(q), q
+            before, speeds, push = with_history._past(back, q, p)
+            if self._first_order and with_history.history_t is not None:
+                speeds, push = before, speeds
             past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
@@ -246,6 +258,9 @@ class FixedSteps(DiscreteLaw):
 
     def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
         """Return (q, p, u, memory) after the steps wanted: by the law's own block, by a compiled one, or in Python."""
+        if self._first_order:  # positions are stepped as velocities of other laws are, by the rate that these give
+            rate, q, p, after = self._interpreted(times, np.zeros_like(q), q, memory, wanted)
+            return q, p, rate, after
         block = self.law.block(self.solver)
         if block is not None and (states := block(times, q, p, wanted)) is not None:
             return *states, {}
@@ -325,6 +340,8 @@ class FixedSteps(DiscreteLaw):
             q = q + h * _combination(table.a[-1], speeds)
         else:  # velocities first, where positions follow them
             q = q + h * after if factor == 1.0 else q + h * p + (factor * h * h) * u
+        if self._first_order:  # the rate of the velocity is in the place that is free
+            return (inputs[-1] - inputs[0]) / h, after, inputs[-1], inputs[-1]
         return q, after + kick, u, inputs[-1]
 
     def _kick(self, now: Step, shape: tuple[int, ...]) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import ensure_finite_scalar, ensure_state
 from flockana.base.errors import FlockanaError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.velocity import VelocityLaw, ensure_any_law
+from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import Claim, Hypothesis
@@ -38,7 +38,7 @@ def applicable(
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
+    law : Law, VelocityLaw or DiscreteLaw
         The flock's law.
     q0, p0 : array_like, shape (n, m)
         Positions and velocities at the start; at rest by default.
@@ -66,8 +66,8 @@ def applicable(
 
     law, used = ensure_any_law(law), ensure_tolerances(tolerances)
     t0 = ensure_finite_scalar("t0", t0)
-    if isinstance(law, VelocityLaw):
-        q0, p0 = law.start(t0, q0, p0)
+    if (core := first_order(law)) is not None:
+        q0, p0 = core.start(t0, q0, p0)
     q0, p0 = ensure_state(q0, np.zeros(np.shape(q0)) if p0 is None else p0)
     law.check_dimension(q0.shape[1])
     law.check_agents(len(q0))

@@ -5,7 +5,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, CuckerSmale, Gains, LinearTarget, StaticTarget, rescale, simulate
+from flockana import RK4, Algorithm1, Algorithm2, CuckerSmale, Gains, LinearTarget, StaticTarget, rescale, simulate
 from flockana.base.serialize import from_data, to_data
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.delayed import LATE, Delayed
@@ -61,6 +61,9 @@ def test_a_short_delay_is_none(late):
     run = simulate(Delayed(LAW, 1e-3, late), q, p, (0.0, 0.3), dt=1e-3)
     prompt = simulate(LAW, q, p, (0.0, 0.3), t_eval=[0.3])
     np.testing.assert_allclose(run.q[-1], prompt.q[-1], atol=5e-3)
+    for none in (0.0, np.zeros((4, 4))) if late == "neighbours" else (0.0,):  # stages see their own states
+        steps = simulate(Delayed(LAW, none, late), q, p, (0.0, 0.3), dt=0.01)
+        np.testing.assert_allclose(steps.q[-1], simulate(RK4(LAW, 0.01), q, p, (0.0, 0.3)).q[-1], rtol=1e-12)
 
 
 def test_what_is_heard_by_hand():

@@ -117,12 +117,69 @@ def test_slopes_of_another_law_are_not_taken():
     np.testing.assert_allclose(np.diag(Pulled().jacobian(0.0, Q)), -3.0 * Q.ravel() ** 2, atol=1e-9)
 
 
+HALF, DIRECTED = fl.AverageConsensus([[0.0, 0.5], [0.5, 0.0]]), fl.AverageConsensus(np.roll(np.eye(5), 1, axis=1))
+PATH = fl.AverageConsensus([[0.0, 1.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+
+
+@pytest.mark.parametrize("dt", [1.0, 0.05])
+def test_a_late_run_is_the_polynomial_of_the_method_of_steps(dt, tmp_path):
+    run = fl.simulate(fl.Delayed(HALF, 1.0), [[1.0], [-1.0]], None, (0.0, 4.0), dt=dt)  # x' = -x(t - 1), from rest at 1
+    at = [round(t / dt) for t in range(5)]
+    np.testing.assert_allclose(run.q[at, 0, 0], [1.0, 0.0, -1 / 2, -1 / 6, 5 / 24], atol=1e-15)
+    np.testing.assert_allclose(run.p[at[1:], 0, 0], -run.q[at[:-1], 0, 0], atol=1e-15)  # the velocity that arrives
+    np.testing.assert_allclose(run.u[1:], np.diff(run.p, axis=0) / dt, atol=1e-13)  # mean over the step
+    run.save(tmp_path / "late.nc")
+    again = fl.Trajectory.load(tmp_path / "late.nc")
+    assert (again.law, np.array_equal(again.q, run.q)) == (run.law, True)
+
+
+def test_a_history_is_followed_and_no_delay_is_none():
+    t = np.linspace(-1.0, 0.0, 41)[:-1]
+    past = np.cos(t)[:, None, None] * [[1.0], [-1.0]]
+    late = fl.Delayed(HALF, 1.0, history_t=t, history_q=past)
+    run = fl.simulate(late, [[1.0], [-1.0]], None, (0.0, 1.0), dt=0.05)
+    assert run.q[-1, 0, 0] == pytest.approx(1.0 - np.sin(1.0), abs=1e-6)  # 1 - the integral of cos over [-1, 0]
+    soon = fl.simulate(fl.Delayed(HALF, 0.0), [[1.0], [-1.0]], None, (0.0, 1.0), dt=0.05)
+    assert soon.q[-1, 0, 0] == pytest.approx(np.exp(-1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("law", [PATH, DIRECTED])
+def test_consensus_bears_the_delay_and_the_period_of_the_closed_forms_and_no_more(law):
+    moving = [mu for mu in np.linalg.eigvals(law.laplacian) if abs(mu) > 1e-9]
+    margin = min((np.pi / 2.0 - abs(np.angle(mu))) / abs(mu) for mu in moving)
+    assert law is DIRECTED or margin == pytest.approx(np.pi / 6.0)  # π/(2 λ_n), λ_n = 3
+    period, q0 = (
+        min(2.0 * mu.real / abs(mu) ** 2 for mu in moving),
+        np.linspace(0.0, 1.0, len(law.weights))[:, None] ** 2,
+    )
+    for share, grows in ((0.95, False), (1.05, True)):
+        late = fl.simulate(
+            fl.Delayed(law, share * margin), q0, None, (0.0, 150 * share * margin), dt=share * margin / 10
+        )
+        wide = np.ptp(late.q[:, :, 0], axis=1)
+        assert (wide[-200:].max() > 2.0 * wide[400:600].max(), wide[-200:].max() < 0.5 * wide[400:600].max()) == (
+            grows,
+            not grows,
+        )
+        np.testing.assert_allclose(late.q.mean(axis=1), np.full((len(late.t), 1), q0.mean()), atol=1e-13)
+        step = share * period
+        held = fl.simulate(fl.Sampled(law, step), q0, None, (0.0, 40 * step), dt=step / 2)
+        powers = [np.linalg.matrix_power(np.eye(len(q0)) - step * law.laplacian, k) @ q0 for k in range(41)]
+        np.testing.assert_allclose(held.q[::2], powers, rtol=1e-12, atol=1e-13)
+
+
 test_what_is_refused = refused(
     (lambda: fl.simulate(LAW, Q, np.zeros((4, 2)), (0.0, 1.0)), "is of first order and has the velocity"),
     (lambda: fl.simulate(LAW, Q, None, (0.0, 1.0), method="TaylorStep", dt=0.1), "Whirl is of first order"),
     (lambda: fl.simulate(fl.Algorithm1(), Q, None, (0.0, 1.0)), "p: expected numbers"),
-    (lambda: fl.Delayed(LAW, 0.1), "expected a continuous law of second order"),
-    (lambda: fl.Sampled(LAW, 0.1), "expected a continuous law of second order"),
+    (lambda: fl.Saturated(LAW, 0.1), "expected a continuous law of second order"),
+    (lambda: fl.Saturated(fl.Delayed(LAW, 0.1), 0.1), "expected a continuous law of second order"),
+    (lambda: fl.Delayed(LAW, 0.1, late="pairs"), "expected a sum of terms with a pair term"),
+    (lambda: fl.TaylorStep(fl.Sampled(LAW, 0.1), 0.1), "is of first order; expected RK4 or Heun"),
+    (
+        lambda: fl.simulate(fl.Sampled(LAW, 0.1), Q, 0.0 * Q, (0.0, 1.0), dt=0.1),
+        "is of first order and has the velocity",
+    ),
     (lambda: fl.RK4(LAW, 0.1), "expected a continuous law of second order"),
     (lambda: LAW.energy(0.0, Q, Q), "Whirl is a law of first order"),
     (lambda: fl.export_lammps(LAW, Q, None, (0.0, 1.0), "x"), "a law of first order; expected one of second order"),
