@@ -66,6 +66,8 @@ from .laws.delayed import Delayed as Delayed
 from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw
 from .laws.disturbed import Disturbed as Disturbed
+from .laws.in_turn import InTurn as InTurn
+from .laws.in_turn import VelocityInTurn as VelocityInTurn
 from .laws.law import Law as Law
 from .laws.lossy import Lossy as Lossy
 from .laws.measured import Measured as Measured

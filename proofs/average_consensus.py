@@ -61,7 +61,7 @@ PROOF = Proof(
     ),
     hypotheses="weights a_ij >= 0; the eigenvalue 0 of L is simple exactly if the net has a root (cited)",
     rigour="smt",
-    theorems=("average-consensus",),
+    theorems=("average-consensus", "average-switching"),
     steps=_steps,
     size=5,
 )

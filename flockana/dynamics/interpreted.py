@@ -19,6 +19,8 @@ from flockana.laws.law import LawOfMotion
 from flockana.laws.velocity import VelocityLaw
 from flockana.solvers.solver import Limits
 
+_ACROSS = 100.0  # times the rounding of the time: steps so short lead across a switch of laws in turn
+
 
 class Interpreter(Integrator):
     """Integrator that steps a law in Python."""
@@ -102,7 +104,7 @@ class Interpreter(Integrator):
     def step(self) -> bool:
         """Try one step into the second row; return whether it succeeds, with the reason in `failure` if not."""
         if self._solver.status == "finished":  # a stop, or a step that was made again ended here
-            self._open(self.stops[0], getattr(self._solver, "h_abs", None))
+            self._open(self.stops[0], self._next_step())
         self._course, start = None, float(self.block.t[0])
         try:
             why = self._solver.step()
@@ -118,6 +120,11 @@ class Interpreter(Integrator):
             why = str(error)
         self.failure = self.plan.describe_failure(float(self._solver.t), why)
         return False
+
+    def _next_step(self) -> float | None:
+        """Return the step that the solver would make next; None where the last one only led across a switch."""
+        h, t = getattr(self._solver, "h_abs", None), float(self.block.t[0])
+        return None if h is None or h < _ACROSS * np.spacing(abs(t)) else h
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (times, states, work) of the samples due within the step."""

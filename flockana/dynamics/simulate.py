@@ -179,14 +179,21 @@ def _plan(
             raise ArgumentError(f"max_step = {max_step!r}: {solver.name} takes steps of dt; make dt shorter")
         dt = _ensure_step("dt", solver.dt, t_span)
         _ensure_samples_fit(dt, t_span, start.q, keep)
-        stops = np.array(list(_stops(t_span, dt, keep)))
+        stops = np.union1d(list(_stops(t_span, dt, keep)), _beside_switches(law, t_span))
         return Plan(solver, stops, stops if keep is None else keep), {"dt": dt}
     how: dict[str, Any] = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
     floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
     longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
     control = Control(how["rtol"], floor, longest)
     how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
-    return Plan(solver, np.array([t_span[1]]), keep, control), how
+    return Plan(solver, np.append(_beside_switches(law, t_span), t_span[1]), keep, control), how
+
+
+def _beside_switches(law: Law | VelocityLaw, t_span: tuple[float, float]) -> FloatArray:
+    """Return the times at which another law begins to act, each with one just after it, from which this one acts."""
+    times = law.switches(*t_span)
+    both = np.stack([times, times + 4.0 * np.spacing(np.abs(times))], axis=1).ravel()
+    return both[(both > t_span[0]) & (both < t_span[1])]
 
 
 def _stacked(kept: list[Samples]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:

@@ -6,6 +6,8 @@ from .directed import DirectedNet as DirectedNet
 from .discrete import DiscreteLaw as DiscreteLaw
 from .discrete import ensure_law as ensure_law
 from .disturbed import Disturbed as Disturbed
+from .in_turn import InTurn as InTurn
+from .in_turn import VelocityInTurn as VelocityInTurn
 from .law import Law as Law
 from .lossy import Lossy as Lossy
 from .measured import Measured as Measured

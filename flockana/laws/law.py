@@ -235,6 +235,16 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one."""
         return float("nan")
 
+    def switches(self, start: float, stop: float) -> FloatArray:
+        """Return the times in [start, stop) after which another law acts, rising; at each the one before acts still.
+
+        Parameters
+        ----------
+        start, stop : float
+            Ends of the span; laws in turn alone have such times.
+        """
+        return np.empty(0)
+
     def check_dimension(self, m: int) -> None:  # nothing to check unless a subclass says so
         """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this."""
 

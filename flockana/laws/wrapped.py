@@ -95,7 +95,7 @@ def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, 
 class WrappingLaw(Law):
     """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
 
-    law: Law | VelocityLaw
+    law: Any  # Law; or VelocityLaw, where a wrapper takes it
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
@@ -109,6 +109,16 @@ class WrappingLaw(Law):
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
         return self.law.surfaces
+
+    def switches(self, start: float, stop: float) -> FloatArray:
+        """Return those of the law within.
+
+        Parameters
+        ----------
+        start, stop : float
+            Ends of the span.
+        """
+        return self.law.switches(start, stop)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         self.law.check_dimension(m)
@@ -197,7 +207,7 @@ class Wrapper(WrappingLaw):
             yield from self.law.wrappers
 
     @property
-    def core(self) -> Law | VelocityLaw:
+    def core(self) -> Any:
         """The law within all wrappers."""
         return self.law.core if isinstance(self.law, Wrapper) else self.law
 

@@ -146,6 +146,12 @@ class FixedSteps(DiscreteLaw):
                 )
         if self._first_order and self.solver.position_factor:
             raise ArgumentError(f"{self.solver.name}: {self.law.title} is of first order; expected RK4 or Heun")
+        core = self.law.core if isinstance(self.law, Wrapper) else self.law
+        if type(core).switches is not LawOfMotion.switches:
+            raise ArgumentError(
+                f"{core.title}: steps of exactly dt would lead over its switches; expected simulate(law, ..., "
+                "method=RK4(dt)), whose steps end there, and no delay or clock around it"
+            )
         for late in self._late:
             late._ensure_remembered(self._memory)
         if self.noisy and not self.solver.takes_noise:

@@ -4,11 +4,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import AverageConsensus, CyclicPursuit, DistanceFormation, GaziPassino
+from flockana import AverageConsensus, CyclicPursuit, DistanceFormation, GaziPassino, VelocityInTurn
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds
 
-THEOREMS = ("gazi-passino", "cyclic-pursuit", "average-consensus", "distance-formation")
+THEOREMS = ("gazi-passino", "cyclic-pursuit", "average-consensus", "average-switching", "distance-formation")
 
 
 @effort(0.4)
@@ -47,6 +47,21 @@ def test_sums_of_rings_average_and_a_heavier_link_spoils_it(n, more, off, balanc
     uneven = {"average": VACUOUS, "some-start": VERIFIED, "decay": VACUOUS}
     always = {"agreement": VERIFIED, "steps": VERIFIED}
     hold("average-consensus", Case(law, q, None, 1.0), always | (even if balanced else uneven))
+
+
+@effort(0.4)
+@given(st.integers(2, 6), st.integers(1, 4), powers(-12.0, 0.0), st.booleans(), seeds)
+def test_rings_in_turn_average_and_one_heavier_link_spoils_it(n, count, off, balanced, seed):
+    rng = np.random.default_rng(seed)
+    nets = np.zeros((count, n, n))
+    for net in nets:
+        order = rng.permutation(n)
+        net[order, np.roll(order, 1)] = rng.integers(1, 5)
+    if not balanced:
+        nets[rng.integers(count)][tuple(rng.permutation(n)[:2])] += off
+    law = VelocityInTurn([AverageConsensus(net) for net in nets], rng.uniform(0.01, 0.5, count))
+    known = {"average": VERIFIED, "decay": TRUE} if balanced else dict.fromkeys(("average", "decay"), VACUOUS)
+    hold("average-switching", Case(law, rng.normal(size=(n, 1)), None, 1.0), known)
 
 
 @effort(0.4)

@@ -48,6 +48,8 @@ LAWS = {
     "FiniteTimeAlignment": (fl.FiniteTimeAlignment(((0, 1), (1, 2))), {"translation", "boost"}),
     "GaziPassino": (fl.GaziPassino(1.0, 5.0, 20.0), FREE),
     "AverageConsensus": (fl.AverageConsensus(10.0 * AVERAGES[0] * (1.0 - np.eye(N))), ROUND | {"translation", "boost"}),
+    "InTurn": (fl.InTurn((fl.Algorithm1(), CuckerSmale(fl.RationalWeight(2.0, 0.5, 5.0))), (0.5, 1.0)), FREE),
+    "VelocityInTurn": (fl.VelocityInTurn([fl.GaziPassino(1.0, 5.0, 20.0)] * 2, (0.5, 1.0)), FREE),
     "DistanceFormation": (fl.DistanceFormation(((0, 1), (1, 2), (0, 2)), (3.0, 4.0, 5.0)), FREE - {"permutation"}),
     "CyclicPursuit": (fl.CyclicPursuit(2.0, 20.0), FREE - {"permutation", "reflection"}),
     "FixedNetFlocking": (FixedNetFlocking(((0, 1), (1, 2)), fl.LogPotential(1.0, 5.0)), FREE - {"permutation"}),

@@ -11,6 +11,7 @@ from flockana.theorems.toolkit import (
     Checked,
     Claim,
     Enclosure,
+    FloatArray,
     Hypothesis,
     Needs,
     Observed,
@@ -25,16 +26,23 @@ from flockana.theorems.toolkit import (
 )
 
 _PROOF = "average-consensus"
+Rows = tuple[tuple[float, ...], ...]
 
 
-def _balance(law: AverageConsensus) -> Hypothesis:
+def is_balanced(weights: Rows) -> Hypothesis:
     """Return the hypothesis that each agent is heard as much as it hears, exactly."""
-    columns = [sum((exact(row[j]) for row in law.weights), exact(0.0)) for j in range(len(law.weights))]
-    rows = [sum(map(exact, row), exact(0.0)) for row in law.weights]
+    columns = [sum((exact(row[j]) for row in weights), exact(0.0)) for j in range(len(weights))]
+    rows = [sum(map(exact, row), exact(0.0)) for row in weights]
     off = [abs(float((a - b).p) / float((a - b).q)) for a, b in zip(rows, columns, strict=True)]
     worst = int(np.argmax(off))
-    text = f"agent {worst} hears {float(sum(law.weights[worst])):.6g} and is off by {off[worst]:.3g}"
+    text = f"agent {worst} hears {float(sum(weights[worst])):.6g} and is off by {off[worst]:.3g}"
     return condition("the net is balanced: each agent is heard as much as it hears", max(off) == 0.0, -max(off), text)
+
+
+def is_strong(weights: Rows) -> Hypothesis:
+    """Return the hypothesis that every agent is heard by every other, directly or through others."""
+    group, n = unheard_groups(weights)[0], len(weights)
+    return condition("the net is strongly connected", len(group) == n, detail=f"{len(group)} of {n}")
 
 
 def _agreement(seen: Observed, root: Hypothesis) -> Claim:
@@ -44,7 +52,8 @@ def _agreement(seen: Observed, root: Hypothesis) -> Claim:
     )
 
 
-def _average(seen: Observed, needs: Needs) -> Claim:
+def average(seen: Observed, needs: Needs) -> Claim:
+    """Return the claim that all tend to the average of the start."""
     off = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
     return limit_claim("average", needs, proof=_PROOF).described(
         computed=float(off),
@@ -64,11 +73,15 @@ def _elsewhere(root: Hypothesis, balanced: Hypothesis) -> Claim:
     )
 
 
-def _decay(seen: Observed, needs: Needs) -> Claim:
-    """Return the claim that the disagreement falls at λ₂ of (L + Lᵀ)/2 at least."""
-    half = seen.law.laplacian + seen.law.laplacian.T
-    rounding = 8.0 * len(half) * EPS * float(np.abs(half).sum(axis=1).max())
-    rate = 0.5 * (float(np.linalg.eigvalsh(half)[min(1, len(half) - 1)]) - rounding)
+def slowest_rate(laplacian: FloatArray) -> float:
+    """Return λ₂ of (L + Lᵀ)/2, rounded down."""
+    twice = laplacian + laplacian.T
+    rounding = 8.0 * len(twice) * EPS * float(np.abs(twice).sum(axis=1).max())
+    return 0.5 * (float(np.linalg.eigvalsh(twice)[min(1, len(twice) - 1)]) - rounding)
+
+
+def decay(seen: Observed, needs: Needs, rate: float) -> Claim:
+    """Return the claim that the disagreement falls at a rate at least."""
     size = np.sqrt(np.sum((seen.run.q - seen.run.q.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
     error = np.sqrt(seen.n) * seen.shape_error.max(axis=1) + 8.0 * EPS * np.abs(seen.run.q).max(axis=(1, 2))
     bound = size[0] * np.exp(-rate * (seen.t - seen.t[0]))
@@ -113,17 +126,13 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     1/Δ, Δ the most that an agent hears.
     """
     law: AverageConsensus = seen.law
-    root, balanced = has_root(law.weights), _balance(law)
-    groups = unheard_groups(law.weights)
-    strong = condition(
-        "the net is strongly connected", len(groups[0]) == seen.n, detail=f"{len(groups[0])} of {seen.n}"
-    )
+    root, balanced = has_root(law.weights), is_balanced(law.weights)
     if unmet([root]):
         return [root], []
     return [root], [
         _agreement(seen, root),
-        _average(seen, [root, balanced]),
+        average(seen, [root, balanced]),
         _elsewhere(root, balanced),
-        _decay(seen, [balanced, strong]),
+        decay(seen, [balanced, is_strong(law.weights)], slowest_rate(law.laplacian)),
         _steps(law, root),
     ]

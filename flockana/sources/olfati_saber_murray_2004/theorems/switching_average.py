@@ -1,0 +1,44 @@
+"""Olfati-Saber and Murray: the average is reached also while the net switches among balanced ones."""
+
+from flockana.laws.in_turn import VelocityInTurn
+from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
+from flockana.sources.olfati_saber_murray_2004.theorems.average_consensus import (
+    average,
+    decay,
+    is_balanced,
+    is_strong,
+    slowest_rate,
+)
+from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, condition, run_theorem, unmet
+
+
+def _nets_in_turn(seen: Observed) -> Hypothesis:
+    law = seen.law
+    met = type(law) is VelocityInTurn and all(type(one) is AverageConsensus for one in law.laws)
+    return condition("consensus of the first order over nets in turn is applied", met, detail=law.title)
+
+
+def _of_all(needs: list[Hypothesis]) -> Hypothesis:
+    """Return the first net's hypothesis that is unmet, else the last net's, in words about all nets."""
+    worst = unmet(needs) or needs[-1]
+    name = worst.name.replace("the net is", "every net is")
+    return condition(name, worst.status == "met", worst.margin, f"net {needs.index(worst)}: {worst.detail}")
+
+
+@run_theorem(
+    "average-switching",
+    title="Consensus over balanced nets in turn is the average of the start, whatever the order and the lengths",
+    source="Olfati-Saber and Murray 2004, in our words",
+    law=_nets_in_turn,
+    claims=("average", "decay"),
+    references=("olfati-saber-murray-2004",),
+)
+def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Let q' = -L(t)q, where L(t) is at each time the Laplacian of one of finitely many digraphs, all of them balanced
+    and strongly connected. In whatever order and for whatever times they act, all tend to the average of the start, and
+    the disagreement falls at the least λ₂ of (L + Lᵀ)/2 or faster.
+    """
+    laws = seen.law.laws
+    needs = [_of_all([is_balanced(one.weights) for one in laws]), _of_all([is_strong(one.weights) for one in laws])]
+    rate = min(slowest_rate(one.laplacian) for one in laws)
+    return needs, [average(seen, needs), decay(seen, needs, rate)]
