@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from flockana.lattice import fcc, is_complete, is_planar, kuratowski, links, planar_bound, square
-from tests.refused import refused
 
 K5 = list(combinations(range(5), 2))
 K33 = [(i, j) for i in range(3) for j in range(3, 6)]
@@ -79,9 +78,3 @@ def test_completeness_counts_pairs_once():
     assert not is_complete(5, [*K5[1:], (2, 1)])  # ten links, of which two are one
     assert is_complete(1, [])
     assert not is_complete(3, [(0, 1), (1, 0), (1, 2)])
-
-
-test_bad_links = refused(
-    (lambda: is_planar(5, [(0, 5)]), r"links\[0\] = \[0, 5\]: expected two different agents of 0 … 4"),
-    (lambda: planar_bound(0), "n = 0: expected a whole number >= 1"),
-)

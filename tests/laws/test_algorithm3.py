@@ -144,7 +144,6 @@ def test_kernel_and_symbolic_expression_agree(kind: str, q: list[float], obstacl
 test_bad_laws_are_refused = refused(
     ({"target": None}, "target = None: expected a γ-agent"),
     ({"obstacles": Sphere((0.0, 0.0), 1.0)}, r"obstacles = Sphere.*expected a sequence"),
-    ({"obstacles": (Sphere((9.0, 9.0), 1.0), 3)}, r"obstacles\[1\] = 3: expected an obstacle"),
     ({"obstacles": (Sphere((0.0, 0.0, 0.0), 1.0),)}, r"obstacles\[0\] = .* has 3 components but the target has 2"),
     ({"beta": 4.2}, "beta = 4.2: expected BetaInteraction"),
     ({"alpha": BetaInteraction()}, "expected AlphaInteraction"),

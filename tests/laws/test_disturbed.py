@@ -139,7 +139,6 @@ def test_units():
 
 
 test_bad_input = refused(
-    (lambda: Disturbed(LAW, intensity=-1.0), "intensity = -1"),
     (lambda: Disturbed(LAW, force="wind"), "force = 'wind': expected finite components"),
     (lambda: Disturbed(LAW, force=lambda t: "wind").push(1.5), r"force\(1.5\) = 'wind': expected finite components"),
     (lambda: simulate(Disturbed(LAW, force=lambda t: (t,)), Q, Q, (0, 1)), "force has 1 components, the agents 2"),

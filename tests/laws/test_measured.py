@@ -36,7 +36,6 @@ def test_noise_on_what_is_heard_leaves_a_lone_agent_in_peace():
 
 
 test_bad_input = refused(
-    (lambda: Measured(LAW, position=-1.0), "position = -1"),
     (lambda: Measured(LAW, velocity=float("nan")), "velocity = nan"),
     (lambda: Measured(LAW, of="some"), "of = 'some'"),
     (lambda: Measured(CuckerSmale(), 1.0, of="neighbours"), "expected a sum of terms with a pair term"),

@@ -79,6 +79,5 @@ test_refusals = refused(
     (lambda: nets.printed_edge_share(3, [[0, 5]]), "links[0] = [0, 5]: expected two different agents"),
     (lambda: nets.printed_rank_connectivity(3, [[0, 5]]), "links[0] = [0, 5]: expected two different agents"),
     (lambda: nets.printed_rank_connectivity(0, []), "n = 0: expected a whole number"),
-    (lambda: nets.links([1.0, 2.0, 3.0], 1.0), "q has shape (3,): expected (n, m)"),
     exact=True,
 )

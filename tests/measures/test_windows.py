@@ -49,8 +49,4 @@ def test_the_diameter_is_the_greatest_distance(n, m, seed):
 LONE = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
 test_bad_input = refused(
     (lambda: windows_of(simulate(LONE, [[0.0], [1.0]], [[0.0]] * 2, (0.0, 0.1))), "MinimalFlocking has no net"),
-    (lambda: joint_windows(0, []), "n = 0"),
-    (lambda: joint_windows(2, 7), "nets = 7: expected the links at each instant"),
-    (lambda: joint_windows(2, "ab"), "nets = 'ab': expected the links at each instant"),
-    (lambda: joint_windows(2, np.array(3.0)), "expected the links at each instant"),
 )
