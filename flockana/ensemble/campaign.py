@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from hashlib import sha256
 from itertools import islice
 from math import prod
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import TimeSpan, ensure_kind, ensure_known
+from flockana.base.digests import sha256
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
 from flockana.base.seals import digest
@@ -305,7 +305,7 @@ def _file_digest(function: Any, name: str, strict: bool) -> str:
     except TypeError:  # an object with no source
         file = Path()
     if file.is_file():
-        return sha256(file.read_bytes()).hexdigest()
+        return sha256([file.read_bytes()])
     if strict:
         raise ArgumentError(
             f"{name}: its source file is not known, so a store cannot tell its versions apart; leave "
