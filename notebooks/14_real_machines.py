@@ -96,8 +96,9 @@ for limit in (None, 20.0, 5.0):
     print(
         f"limit {limit}: the centre ends with the speed {drift:.1e}; connectivity {run.metrics().connectivity[-1]:.2f}"
     )
-weak = fl.simulate(fl.Saturated(fl.Algorithm2(target=fl.StaticTarget((0.0,))), 0.2), [[10.0]], [[0.0]], (0.0, 80.0))
-free = fl.simulate(fl.Algorithm2(target=fl.StaticTarget((0.0,))), [[10.0]], [[0.0]], (0.0, 80.0))
+alone, times = fl.Algorithm2(target=fl.StaticTarget((0.0,))), np.linspace(0.0, 80.0, 801)
+weak = fl.simulate(fl.Saturated(alone, 0.2), [[10.0]], [[0.0]], (0.0, 80.0), t_eval=times)
+free = fl.simulate(alone, [[10.0]], [[0.0]], (0.0, 80.0), t_eval=times)
 figure, ax = plots.subplots(size=(6, 3.2))
 ax.plot(free.t, free.q[:, 0, 0], label="no limit")
 ax.plot(weak.t, weak.q[:, 0, 0], label="limit 0.2")
@@ -105,8 +106,8 @@ ax.set(xlabel="time", ylabel="distance from the target (length)", xlim=(0.0, 60.
 _ = ax.legend()
 
 # %% [markdown]
-# **Figure 14.1.** One agent returns to its target, without a limit and with one of 0.2. It swings several times, and
-# arrives, as the theorem says.
+# **Figure 14.1.** One agent returns to its target, without a limit and with one of 0.2. With the limit it flies past,
+# turns around twice, and arrives, as the theorem says.
 #
 # The printout shows the momentum theorem of lecture 02 breaking: a flock that starts at rest ends with a moving
 # centre. Theorems 1 and 3 say nothing about saturated flocks.
@@ -338,9 +339,10 @@ for _ in range(4000):  # four thousand single agents, by the simplest scheme
     x, v = x + step * v, v - step * (c1 * x + c2 * v) + 0.5 * np.sqrt(step) * generator.standard_normal(4000)
 print(f"variance of one agent:  {x.var():.4f} measured, {0.25 / (2.0 * c1 * c2):.4f} predicted")
 figure, ax = plots.subplots(size=(6, 3.2))
-ax.plot(shaken.t, shaken.q[:, 1, 1] - shaken.q[0, 1, 1], linewidth=0.7, label="an outer agent of seven")
-ax.plot(shaken.t, shaken.q.mean(axis=1)[:, 1], linewidth=1.4, label="their centre")
-ax.set(xlabel="time", ylabel="y, from the start (length)")
+away = np.linalg.norm(shaken.q - shaken.q[0], axis=2)
+ax.plot(shaken.t, away[:, 1:].mean(axis=1), linewidth=0.7, label="an outer agent of seven, on the average")
+ax.plot(shaken.t, np.linalg.norm(shaken.q.mean(axis=1), axis=1), linewidth=1.4, label="their centre")
+ax.set(xlabel="time", ylabel="distance from the start (length)")
 _ = ax.legend()
 shaken.player(height=420)
 
@@ -352,7 +354,7 @@ assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
 
 # %% [markdown]
 # **Figure 14.3.** Seven agents pushed by independent noises. Thin: an outer one, which also turns with the hexagon;
-# thick: the centre, which stays closer to the target.
+# dashed: the centre, which stays closer to the target.
 #
 # Nothing holds the *orientation*: it is a zero mode (lecture 06), and noise makes it drift like a random walk. A
 # picture of drones would slowly turn. That is a theorem about the law, and no fault of the motors.

@@ -198,14 +198,15 @@ print(f"the law has c1 = {c1:.3f}, c2 = {c2:.3f}")
 
 # %%
 figure, axes = plots.subplots(1, 2, size=(11, 3.6))
-for ax, error in zip(axes, ("unit vector", "no weight"), strict=True):
+for ax, error, name in zip(axes, ("unit vector", "no weight"), ("pair force", "friction"), strict=True):
     t, q, p = logs[error]
     u = np.diff(p, axis=0) / (t[1] - t[0])
     f, g = terms(q[:-1], p[:-1])
     left = u - c1 * f - c2 * g  # with the gains of the law, as they are documented
-    along = np.sum(left * f, axis=2) / np.linalg.norm(f, axis=2)
-    ax.plot(np.linalg.norm(f, axis=2).ravel(), along.ravel(), ".", markersize=2)
-    ax.set(xlabel="size of the law's pair force (unit gain)", ylabel="residual along it", title=error)
+    term = f if name == "pair force" else g
+    along = np.sum(left * term, axis=2) / np.linalg.norm(term, axis=2)
+    ax.plot(np.linalg.norm(term, axis=2).ravel(), along.ravel(), ".", markersize=2)
+    ax.set(xlabel=f"size of the law's {name} (unit gain)", ylabel="residual along it", title=error)
 
 # %% tags=["facts"]
 assert np.diff(logs["none"][2], axis=0).size == 2786
@@ -217,9 +218,9 @@ assert min(fitted[error][2] for error in ("unit vector", "no weight")) > 5e-3
 assert [f"{100.0 * fitted[error][2]:.0f}" for error in ("unit vector", "no weight")] == ["1", "37"]
 
 # %% [markdown]
-# **Figure 15.2.** What the documented law leaves over, against the size of its pair force, a dot for each agent and
-# time. For the unit vector the residual grows with the force: the error is in the force. Without the weight there is
-# no such line: the error is elsewhere, in the other term.
+# **Figure 15.2.** What the documented law leaves over, against the size of one of its terms, a dot for each agent and
+# time. Left: for the unit vector it grows with the pair force, which is wrong. Right: without the weight it grows with
+# the friction.
 #
 # ## A curve instead of a number
 #
