@@ -106,6 +106,7 @@ def test_clearances_and_components_are_those_of_the_run():
     run = two_discs()
     ax = plots.clearances(run, ax=axes())
     near, far, distance, zero = ax.get_lines()  # no bound: of samples alone nothing is known between them
+    assert [(line.get_label(), line.get_linestyle()) for line in (near, far)] == [("sphere 1", "-"), ("sphere 2", "-.")]
     np.testing.assert_allclose(near.get_ydata(), [np.hypot(9, 4) - 1, 5.0, np.hypot(9, 4) - 1])
     np.testing.assert_allclose(far.get_ydata(), [np.hypot(9, 86) - 1, 83.0, np.hypot(9, 86) - 1])
     flown = simulate(run.law, run.q[0], run.p[0], (0.0, 0.1))
