@@ -31,10 +31,10 @@ def equilibrium_command(
     """Find an equilibrium near a configuration with IPOPT, and classify it.
 
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
-    (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-spiral:19 (see flockana
-    lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
-    moving γ-agent is fixed at its position at that time. Semi-implicit Euler has the equilibria of its law. Under
-    dead-zone flocking strain is measured on contacts, pairs closer than d1.
+    (.nc), an equilibrium's file (.json), FILE.py:NAME, a CSV of positions, or a builder such as hexagonal-spiral:19
+    (see flockana lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and
+    --r. A moving γ-agent is fixed at its position at that time. Semi-implicit Euler has the equilibria of its law.
+    Under dead-zone flocking strain is measured on contacts, pairs closer than d1.
 
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """

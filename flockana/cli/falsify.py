@@ -138,7 +138,7 @@ def _replay(path: Path, own: Theorem | None, *, as_json: bool) -> int:
     if as_json:
         show_json(verdict.to_dict())
     else:
-        Console(highlight=False).print(details(verdict))
+        Console(highlight=False, emoji=False).print(details(verdict))
         typer.echo(f"{claim}, found by flockana {counterexample.version}: {again}")
     return OK if status == "refuted" else UNEXPECTED
 

@@ -27,11 +27,13 @@ def read_motion(
     d: float | None = None,
     r: float | None = None,
     time: float | None = None,
+    at: str | None = None,
     potential: bool = False,
 ) -> tuple[Any, FloatArray, FloatArray | None]:
     """Return the law of a scenario, file or name, positions, and velocities of a run; the γ-agent is held in place.
 
-    `potential` asks for a law that has one. Without a run the velocities are None.
+    `potential` asks for a law that has one; `at` has the positions of a law in a Python file. Without a run the
+    velocities are None.
 
     Examples
     --------
@@ -39,13 +41,19 @@ def read_motion(
     >>> law.title, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
-    from flockana.cli.own import is_own
+    from flockana.cli.own import is_own, read_law
     from flockana.cli.source import ensure_source, read_source
     from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction
     from flockana.laws import Algorithm1, Algorithm2
     from flockana.scenarios import scenarios
 
+    if at is not None:
+        if not is_own(source):
+            raise ArgumentError(f"--at {at}: {source} has positions of its own; expected a law in FILE.py, or no --at")
+        _refuse(source, "is a law", start=start, seed=seed, time=time, algorithm=algorithm, r=r)
+        law, q = read_law(source), read_source(at, d=d).q
+        return _with_fixed_target(_ensured(law, q.shape[1], potential), 0.0), q, None
     if source in scenarios() or is_own(source):
         _refuse(source, "has a law of its own", time=time, algorithm=algorithm, d=d, r=r)
         return _of_scenario(source, start or "end", seed or 0, potential)
@@ -89,12 +97,13 @@ def _refuse(name: str, reason: str, **given: object) -> None:
 
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray, FloatArray]:
-    from flockana.cli.own import read_flock
+    from flockana.cli.own import is_own, read_flock
     from flockana.cli.source import integrated_law
     from flockana.equilibria.classify import ensure_small
 
     item = read_flock(name, seed)
-    law = _ensured(integrated_law(item.law), item.q0.shape[1], potential)
+    law = item.law if is_own(name) and not potential else integrated_law(item.law)
+    law = _ensured(law, item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":
         return _with_fixed_target(law, item.t_span[0]), item.q0, item.p0
@@ -110,7 +119,7 @@ def _ensured(law: Any, m: int, potential: bool) -> Any:
     """Return the law; raise if it lacks a potential that is needed."""
     from flockana.equilibria.potential import ensure_flock_law
 
-    return ensure_flock_law(law, m) if potential or law.conservative else law
+    return ensure_flock_law(law, m) if potential or (law.terms and law.conservative) else law
 
 
 def _with_fixed_target(law: Any, t: float) -> Any:

@@ -14,6 +14,9 @@ ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help=f"A scenar
 SourceName = Annotated[
     str, typer.Argument(metavar="SOURCE", help=f"A scenario, a file, a builder with its size, or {OWN}.")
 ]
+At = Annotated[
+    str | None, typer.Option("--at", metavar="SOURCE", help="Positions of a law of FILE.py: a file or a builder.")
+]
 Start = Annotated[
     Literal["end", "start"] | None, typer.Option(help="Use the end of a scenario's run (by default), or its start.")
 ]

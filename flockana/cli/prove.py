@@ -87,7 +87,7 @@ def _module(name: str) -> Any:
 def _show(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
     from rich.console import Console
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, emoji=False)
     console.print(_table(outcomes))
     for outcome in outcomes:
         for objection in outcome.objections():

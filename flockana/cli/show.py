@@ -21,7 +21,7 @@ def show(title: str, *tables: RenderableType) -> Console:
     """Print a title in bold, and tables under it; return the console."""
     from rich.console import Console
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, emoji=False)
     console.print(title, style="bold", markup=False)
     for table in tables:
         console.print(table)
@@ -42,7 +42,7 @@ def show_lines(text: str) -> None:
     """Print lines as they are, whatever the width; letters that the encoding lacks are written as escapes."""
     from rich.console import Console
 
-    Console(highlight=False).print(text, markup=False, soft_wrap=True)
+    Console(highlight=False, emoji=False).print(text, markup=False, soft_wrap=True)
 
 
 def show_files(quiet: bool = False, /, **files: Path | None) -> None:

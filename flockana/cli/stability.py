@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from flockana.cli.options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time
+from flockana.cli.options import Algorithm, AnySeed, AsJson, At, Plot, Range, Scale, SourceName, Start, Time
 from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.threads import one_thread_for_matrices
 
@@ -32,9 +32,14 @@ def stability_command(
     d: Scale = None,
     r: Range = None,
     time: Time = None,
+    at: At = None,
     as_given: Annotated[
         bool, typer.Option("--as-given", help="Linearise these positions at rest, equilibrium or not.")
     ] = False,
+    side: Annotated[
+        Literal["inner", "outer"] | None,
+        typer.Option(help="Where pairs stand at a kink: the law just inside, or outside."),
+    ] = None,
     modes: Annotated[int, typer.Option(min=1, metavar="N", help="Number of slowest modes.")] = 8,
     delay: Annotated[bool, typer.Option("--delay", help="Delay margins: of all terms, and of pair terms.")] = False,
     norms: Annotated[bool, typer.Option("--norms", help="H2 and Hinf norms from forces to the shape.")] = False,
@@ -46,14 +51,14 @@ def stability_command(
     Any law is taken: of one with delays the rightmost roots are shown, of a map or a sampled law the multipliers, about
     the motion at hand where it has no rest of its own.
 
-    SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
-    (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-patch:2 (see flockana
-    lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
-    moving γ-agent is fixed at its position at that time.
+    SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a flock, run or law of
+    a Python file as FILE.py:NAME (a law with --at), a run that was saved (.nc), an equilibrium's file (.json), a CSV of
+    positions, or a builder such as hexagonal-patch:2 (see flockana lattice --help). For a CSV or a builder the law is
+    Algorithm 1 or 2 with default parameters, --d and --r. A moving γ-agent is fixed at its position at that time.
 
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
-    from flockana.base.errors import SolverError
+    from flockana.base.errors import ArgumentError, SolverError
     from flockana.base.progress import progress_bar
     from flockana.cli.flock import announce_time, read_motion
     from flockana.cli.picture import KINDS, ensure_file, write_figure
@@ -61,39 +66,68 @@ def stability_command(
 
     ensure_file(plot, KINDS)
     try:
-        law, q, p = read_motion(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
+        law, q, p = read_motion(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, at=at)
         announce_time(len(q), as_given=as_given)
         with progress_bar(2, enabled=q.size > DENSE) as advance:
             advance(0, "equilibrium")
             here = q if as_given else rest_of(law, q)
-            linear: Any = linearise(law, here, p if law.continuous is None else None, allow_residual=as_given)
+            linear: Any = linearise(law, here, _velocities(law, p), allow_residual=as_given, side=side)
             advance(1, "slowest modes")
             if not isinstance(linear, Linearisation):
-                return _show_loop(linear, source, modes, delay=delay, as_json=as_json, plot=plot)
+                return _show_loop(linear, source, modes, delay=delay, norms=norms, as_json=as_json, plot=plot)
             slow = slowest(linear, modes)
         facts = summary(linear, slow, source) | margins_and_norms(linear, delay=delay, norms=norms)
     except SolverError as error:
         print_error(error)
         return UNEXPECTED
-    show_facts(facts, as_json, _title(facts), _rows(facts), *([_mode_table(slow)] if slow else []))
+    except ArgumentError as error:
+        raise _with_flags(error) from None
+    show_facts(facts, as_json, _title(facts, slow), _rows(facts), *([_mode_table(slow)] if slow else []))
     write_figure(lambda figure: _draw(figure, linear, slow), plot, size=(10.4, 7.6))
     show_files(as_json, picture=plot)
     return OK
 
 
+_FLAGS = {
+    "start from find_equilibrium(...), or ask for allow_residual=True": "--as-given linearises it all the same",
+    "allow_residual=True": "--as-given",
+    'side="inner" or side="outer"': "--side inner or --side outer",
+    "give a larger limit": "ask in Python with a larger limit=",
+}
+
+
+def _with_flags(error: Exception) -> Exception:
+    """Return an error that names options of the command in place of arguments of functions."""
+    text = str(error)
+    for argument, flag in _FLAGS.items():
+        text = text.replace(argument, flag)
+    return error if text == str(error) else type(error)(text)
+
+
+def _velocities(law: Any, p: Any) -> Any:
+    """Return the velocities that a map of its own keeps; other laws are linearised at rest."""
+    from flockana.laws import DiscreteLaw
+
+    return p if isinstance(law, DiscreteLaw) and law.continuous is None else None
+
+
 def rest_of(law: Any, q: Any) -> Any:
-    """Return the equilibrium of a law near positions; of a map of its own the positions."""
+    """Return the equilibrium of a law near positions, or a rest; of a map of its own the positions."""
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.rest import resting_state
+    from flockana.laws import DiscreteLaw
     from flockana.stability.loops import instant_law
 
-    if law.continuous is None:
+    if isinstance(law, DiscreteLaw) and law.continuous is None:
         return q
-    acting = instant_law(law.continuous)
-    return find_equilibrium(acting, q) if acting.conservative else resting_state(acting, q)
+    acting = law if law.continuous is None else instant_law(law.continuous)
+    by_energy = acting.terms and acting.conservative
+    return find_equilibrium(acting, q) if by_energy else resting_state(acting, q)
 
 
-def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool, plot: Path | None) -> int:
+def _show_loop(
+    linear: Any, name: str, count: int, *, delay: bool, norms: bool, as_json: bool, plot: Path | None
+) -> int:
     """Show a delayed law by its rightmost roots, a map by its slowest modes; they have no picture."""
     from flockana.base.errors import ArgumentError
     from flockana.stability import DelayLinearisation, VelocityLinearisation
@@ -102,6 +136,12 @@ def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool
         raise ArgumentError(
             f"--plot {plot}: expected a continuous law without a past or a clock, whose modes are drawn"
         )
+    for flag, asked, method in (("--norms", norms, "norms"), ("--delay", delay, "delay_margin")):
+        if asked and not hasattr(type(linear), method):
+            raise ArgumentError(
+                f"{flag}: a {type(linear).__name__} of {linear.law.title} has none; leave {flag} out, or ask it of "
+                "the law without its past or clock"
+            )
     facts: dict[str, Any] = {"source": name, "law": linear.law.title, "n": len(linear.q)}
     facts |= {"residual": linear.residual, "stable": linear.stable}
     if isinstance(linear, DelayLinearisation):
@@ -112,6 +152,8 @@ def _show_loop(linear: Any, name: str, count: int, *, delay: bool, as_json: bool
     elif isinstance(linear, VelocityLinearisation):
         facts |= {"zero modes": linear.zero_modes, "decay rate": linear.decay_rate}
         facts["poles"] = [[s.real, s.imag] for s in linear.eigenvalues[: linear.zero_modes + count].tolist()]
+        if delay:
+            facts |= _finite_margin("delay margin", linear.delay_margin())
     else:
         facts |= {"dt": linear.dt, "zero modes": [mode.name for mode in linear.zero_modes]}
         facts["spectral radius"] = linear.spectral_radius
@@ -170,6 +212,7 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
         "zero modes": [mode.name for mode in invariant.zero],
         "zero modes sought": "all" if whole else "rigid motions only",
         "drifting": list(invariant.drifting),
+        "stable": all(mode.decays for mode in slow) if slow else None,
         "spectral abscissa": -slow[0].decay_rate if slow else None,
         "splits into shape and centre": linear.second_order.split.exact,
         "centre poles": poles,
@@ -235,9 +278,9 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
         plots.mode_shape(linear.q, linear.links, mode.shape, target=target, ax=ax, title=plots.mode_title(mode))
 
 
-def _title(facts: dict[str, Any]) -> str:
-    abscissa = facts["spectral abscissa"]
-    kind = "no modes" if abscissa is None else "unstable" if abscissa > 0.0 else "stable off its zero modes"
+def _title(facts: dict[str, Any], slow: tuple[Mode, ...]) -> str:
+    grows = "unstable" if any(mode.decay_rate < -mode.error for mode in slow) else "some modes do not decay"
+    kind = {None: "no modes", True: "stable off its zero modes", False: grows}[facts["stable"]]
     return f"{facts['source']}: {kind}"
 
 

@@ -233,7 +233,7 @@ def _print_verdicts(
     from flockana.report.console import details, errata_table, statistics_table, summary, verdict_table
     from flockana.report.work import ERRATA
 
-    console, in_full = Console(highlight=False), name not in (None, ERRATA)
+    console, in_full = Console(highlight=False, emoji=False), name not in (None, ERRATA)
     if in_full:
         for finding in (finding for page in pages for finding in page.findings):
             console.print(details(finding.verdict))

@@ -111,7 +111,11 @@ def poles(run: Trajectory) -> dict[str, Any]:
         linear = linearise(law, q, t=t, allow_residual=True)
         note = f"Linearised at the end of the run as if at rest; it is no equilibrium (residual {linear.residual:.2g})"
         if linear.residual <= _RESTING and not law.obstacles:
-            rest = find_equilibrium(law, q, t=t, max_iter=_SOUGHT) if law.conservative else resting_state(law, q, t=t)
+            rest = (
+                find_equilibrium(law, q, t=t, max_iter=_SOUGHT)
+                if law.terms and law.conservative
+                else resting_state(law, q, t=t)
+            )
             linear = linearise(law, rest, t=t)
             note = "At the equilibrium nearest to the end of the run"
         modes, eigenvalues = linear.modes[:_MODES], linear.eigenvalues

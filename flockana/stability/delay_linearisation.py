@@ -18,8 +18,7 @@ from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin, neu
 from flockana.stability.delay_roots import LatePart, error_of_root, rightmost
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-
+    from flockana.stability.damp_table import DampTable
     from flockana.stability.linear_flock import LinearFlock
 
 
@@ -147,7 +146,7 @@ class DelayLinearisation(ShortRepr):
             before = factor
         return inf
 
-    def damp(self, count: int = 6, *, settled: float = 0.02) -> DataFrame:
+    def damp(self, count: int = 6, *, settled: float = 0.02) -> DampTable:
         """Return the table of the rightmost roots: see `Linearisation.damp`.
 
         Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -12,20 +12,30 @@ from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_f
 from flockana.base.errors import ArgumentError
 from flockana.base.tables import facts_html, facts_text
 from flockana.laws.velocity import VelocityLaw
+from flockana.stability.estimates import LIMIT
+from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.rounding import eigenvalues
+from flockana.stability.modes import Mode
+from flockana.stability.zero_modes import extent
 
 if TYPE_CHECKING:
     import control
+    from control import FrequencyResponseData
     from scipy.sparse import csr_array
 
-_ZERO = 1e-9  # of the largest row sum of A: what counts as a zero mode
+    from flockana.stability.damp_table import DampTable
+    from flockana.stability.delay import DelayMargin
+    from flockana.stability.nets import TransientGrowth
+    from flockana.stability.robustness import RobustnessMargins
+    from flockana.stability.sampling import SamplingMargin
+
+_ZERO = 1e-9  # of the row sums of A: what counts as a zero mode
 _OFF = 1e-11  # share of its size by which A by differences may be off
 
 
 @dataclass(frozen=True, eq=False)
 class VelocityLinearisation:
-    """δq' = A δq near a rest of a law of first order.
+    """δq' = A δq near a rest of a law of first order; its margins are those of v' = A v, which its velocity obeys.
 
     Parameters
     ----------
@@ -53,7 +63,7 @@ class VelocityLinearisation:
             if not name.startswith("_") and hasattr(Linearisation, name):
                 raise ArgumentError(
                     f"{self.law.title} is of first order, its linearisation has no {name!r}: expected a law of second "
-                    "order here; eigenvalues, decay_rate, stable, A and state_space are there"
+                    "order here; poles, modes, margins, A and state_space are there"
                 )
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
 
@@ -64,35 +74,116 @@ class VelocityLinearisation:
         return self.A_sparse.toarray()
 
     @cached_property
-    def _poles(self) -> tuple[ComplexArray, FloatArray, Any]:
-        """Eigenvalues, their errors, and which are zero modes."""
-        values, errors = eigenvalues(self.A, _OFF)
-        order = np.lexsort((values.imag, -values.real))
-        size = float(np.abs(self.A).sum(axis=1).max(initial=0.0))
-        return values[order], errors[order], np.abs(values[order]) <= np.maximum(_ZERO * size, errors[order])
+    def _velocities(self) -> LinearFlock:
+        """The velocities as a flock without stiffness, q'' = A q': what moves it and what it bears is the same."""
+        from scipy.sparse import block_array, csr_array, eye_array
+
+        size = self.q.size
+        whole: Any = block_array([[None, eye_array(size)], [csr_array((size, size)), self.A_sparse]], format="csr")
+        law, links = cast("Any", self.law), np.zeros((0, 2), dtype=np.int64)
+        return LinearFlock(law, self.q, np.zeros_like(self.q), self.t, self.residual, links, csr_array(whole), _ZERO)
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """Modes other than the zero modes, slowest first; one for each real pole or conjugate pair."""
+        return self._velocities.modes
 
     @property
     def eigenvalues(self) -> ComplexArray:
         """All n·m poles, the largest real part first; zero modes come out as exact zeros."""
-        values, _, zero = self._poles
-        return np.where(zero, 0.0, values)
+        poles = [s for mode in self.modes for s in {mode.eigenvalue, np.conj(mode.eigenvalue)}]
+        values = np.append(np.array(poles, dtype=np.complex128), np.zeros(self.q.size - len(poles)))
+        return values[np.lexsort((values.imag, -values.real))]
 
     @property
     def zero_modes(self) -> int:
         """Number of zero modes."""
-        return int(self._poles[2].sum())
+        return self.q.size - sum(1 + bool(mode.eigenvalue.imag) for mode in self.modes)
 
     @property
     def decay_rate(self) -> float:
         """Slowest decay rate off the zero modes; negative if something grows, NaN without others."""
-        values, _, zero = self._poles
-        return float(min(-values[~zero].real, default=np.nan))
+        return self._velocities.decay_rate
 
     @property
     def stable(self) -> bool:
-        """Return whether every mode off the zero modes decays beyond rounding."""
-        values, errors, zero = self._poles
-        return bool((values.real + errors < 0.0)[~zero].all())
+        """Return whether every mode off the zero modes decays, beyond rounding and differences in place of slopes."""
+        off = _OFF * self._velocities.second_order.damping_scale
+        return all(mode.decay_rate > mode.error + off for mode in self.modes)
+
+    def damp(self, *, settled: float = 0.02) -> DampTable:
+        """Return a table of all poles: see `Linearisation.damp`.
+
+        Parameters
+        ----------
+        settled : float
+            Share of a deviation at which it counts as settled.
+        """
+        from flockana.stability.damp_table import damp_table
+
+        names = {
+            complex(value): mode.name for mode in self.modes for value in (mode.eigenvalue, np.conj(mode.eigenvalue))
+        }
+        return damp_table([(names.get(s, "zero"), s) for s in self.eigenvalues.tolist()], settled=settled)
+
+    def delay_margin(
+        self, *, delayed: str = "all", links: Any = None, sampled: float | None = None, limit: float = LIMIT
+    ) -> DelayMargin:
+        """Return the longest delay of positions with which it is stable: see `Linearisation.delay_margin`.
+
+        Parameters
+        ----------
+        delayed, links
+            What is late: see `flockana.stability.delay_system`.
+        sampled : float, optional
+            Period for which the velocity is held.
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
+        how = {"delayed": delayed, "links": links, "sampled": sampled, "limit": limit}
+        return Linearisation.delay_margin(cast("Any", self._velocities), **cast("Any", how))
+
+    def sampling_margin(self, *, limit: float = LIMIT) -> SamplingMargin:
+        """Return the longest period for which velocities may be held: 1 + hλ stays in the unit disc.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
+        return Linearisation.sampling_margin(cast("Any", self._velocities), limit=limit)
+
+    def robustness(self, *, limit: float = LIMIT) -> RobustnessMargins:
+        """Return gain, phase and disk margins of the loops broken at each agent's velocity.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
+        return Linearisation.robustness(cast("Any", self._velocities), limit=limit)
+
+    def transient_growth(self, *, limit: float = LIMIT) -> TransientGrowth:
+        """Return how much a perturbation of the positions may grow before it decays, off the zero modes.
+
+        Parameters
+        ----------
+        limit : float
+            Seconds of estimated work from which on it is refused.
+        """
+        return Linearisation.transient_growth(cast("Any", self._velocities), limit=limit)
+
+    def response(self, input: str, output: str, omega: Any = None) -> FrequencyResponseData:
+        """Return the frequency response from one named input to one named output of `state_space`.
+
+        Parameters
+        ----------
+        input, output : str
+            Such as "v0_x", a velocity added to agent 0, and "q2_x", the place of agent 2.
+        omega : array_like, shape (F,), optional
+            Angular frequencies; by default around the poles.
+        """
+        return Linearisation.response(cast("Any", self), input, output, omega)
 
     @cached_property
     def state_space(self) -> control.StateSpace:
@@ -124,7 +215,7 @@ def linearise_velocity(
     """Return the linearisation of a law of first order at a rest."""
     t, (q, v) = at[0], law.start(*at)
     matrix: Any = law.jacobian(t, q, sparse=True)
-    size = float(np.abs(q - q.mean(axis=0)).max()) or float(np.abs(q).max()) or 1.0
+    size = extent(q)
     row, speed = float(abs(matrix).sum(axis=1).max()), float(np.linalg.norm(v, axis=1).max())
     residual = speed / (row * size) if row else np.inf if speed else 0.0
     if not residual <= ensure_positive("force_tolerance", force_tolerance) and not ensure_flag(

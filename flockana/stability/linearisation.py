@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import os
 
     from control import FrequencyResponseData, StateSpace
-    from pandas import DataFrame
 
     from flockana.stability.controllability import Controllability
+    from flockana.stability.damp_table import DampTable
     from flockana.stability.delay import DelayMargin
     from flockana.stability.nets import Passivity, StringGains, TransientGrowth
     from flockana.stability.packet_loss import LossMargin
@@ -37,7 +37,7 @@ class ShapeNorms(NamedTuple):
 
 
 class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose fields it has
-    def damp(self, *, settled: float = 0.02) -> DataFrame:
+    def damp(self, *, settled: float = 0.02) -> DampTable:
         """Return a table of all poles by rising natural frequency, as MATLAB's `damp` prints them.
 
         Columns are pole, damping ratio, natural frequency, time constant and settling time; rows bear the names of the

@@ -32,7 +32,7 @@ from flockana.stability.lifted import lifted_map
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.loops import hold_of, instant_law, is_late, late_parts
 from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
-from flockana.stability.zero_modes import zero_threshold
+from flockana.stability.zero_modes import extent, zero_threshold
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -231,7 +231,7 @@ def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: Floa
     half, own = q.size, law.scales
     stiffness, force = -matrix[half:, :half], law.flow(t, q, p)[0]
     force = moving_frame(force) if law.centre_decouples else force
-    length = own.length if own else float(np.linalg.norm(moving_frame(q), axis=1).max()) or 1.0
+    length = own.length if own else extent(q)
     zero = zero_threshold(stiffness, force, length)
     sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
     soft, row = getattr(equilibrium, "zero_modes", 0), float(abs(stiffness).sum(axis=1).max())
@@ -284,8 +284,8 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
         force = moving_frame(force)
     if law.scales is not None:
         length, scale = law.scales.length, law.scales.force
-    else:  # the size of the flock; of one agent its distance from the origin
-        length = float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
+    else:
+        length = extent(q)
         scale = float(abs(matrix[q.size :, : q.size]).max()) * length
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
     with np.errstate(divide="ignore", invalid="ignore"):  # without a scale, infinite unless nothing is left

@@ -31,8 +31,8 @@ from flockana.stability.signals import axes_of, labels
 
 if TYPE_CHECKING:
     import control
-    from pandas import DataFrame
 
+    from flockana.stability.damp_table import DampTable
     from flockana.stability.linear_flock import LinearFlock
 
 _PARALLEL = 1e-9  # radians, or units of the law: headings that differ by no more are one, states that move less rest
@@ -198,7 +198,7 @@ class MapLinearisation(ShortRepr):
         """Return whether every mode off the neutral motions decays, beyond rounding; True without such modes."""
         return all(mode.decays for mode in self.modes)
 
-    def damp(self, *, settled: float = 0.02) -> DataFrame:
+    def damp(self, *, settled: float = 0.02) -> DampTable:
         """Return a table of all multipliers by rising natural frequency: see `Linearisation.damp`; s = ln z/dt.
 
         Parameters

@@ -13,6 +13,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
+from flockana.measures.frame import moving_frame
 from flockana.stability.components import StrongComponents
 from flockana.stability.mode_names import translations
 
@@ -20,6 +21,7 @@ NEUTRAL = 1e-9  # of the stiffness of its agents: a rigid motion that meets no m
 ZERO = 1e-8  # of the agents' own row sums: what K does to a motion that costs nothing
 _ROUNDING, _LEFT = 64.0, 16.0  # of eps √N, and of the force left at an equilibrium: what may appear as stiffness
 _BELOW, _ABOVE = 10.0, 1000.0  # times the threshold: where a motion may or may not be a zero mode
+_ONE_PLACE = 1e-6  # relative to the largest coordinate, whose rounding is a large share of so small a flock
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
 _ROUNDINGS = 8.0  # of eps √N times the largest row sum: rounding of sums that cancel
 
@@ -60,6 +62,12 @@ def agent_scales(stiffness: Any, m: int) -> FloatArray:
     """Return the largest row sum of K among the coordinates of each agent, by coordinate; of all where none acts."""
     rows = np.asarray(abs(stiffness).sum(axis=1)).reshape(-1, m).max(axis=1)
     return np.repeat(np.where(rows > 0.0, rows, rows.max(initial=0.0) or 1.0), m)
+
+
+def extent(q: FloatArray) -> float:
+    """Return the size of a flock; of agents at one place, but for rounding, their distance from the origin."""
+    size, far = float(np.linalg.norm(moving_frame(q), axis=1).max()), float(np.abs(q).max())
+    return size if size > _ONE_PLACE * far else far or 1.0
 
 
 def zero_threshold(stiffness: Any, force: FloatArray, length: float) -> float:

@@ -3,6 +3,8 @@ from math import sqrt
 import pytest
 
 from flockana import Delayed, Gains, Sampled, simulate
+from flockana.base.errors import ArgumentError
+from flockana.cli.stability import _with_flags
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -133,9 +135,10 @@ def test_a_law_with_a_past_or_a_clock(found, call, tmp_path, wrap):
     """One agent at its target, c1γ = 4 and c2γ = 3: the margin is the closed form's, the map's multiplier below 1."""
     law = wrap(Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=3.0), target=StaticTarget((0.0,))))
     simulate(law, [[0.01]], [[0.0]], (0.0, 0.1), dt=0.01).save(tmp_path / "late.nc")
-    one = found("late.nc", "--delay", "--modes", 2)
+    late = isinstance(law, Delayed)
+    one = found("late.nc", *["--delay"] * late, "--modes", 2)
     assert (one["law"], one["n"], one["stable"]) == (type(law).__name__, 1, True)
-    if isinstance(law, Delayed):
+    if late:
         assert one["delay margin"]["delay"] == pytest.approx(scalar_margin(4.0, 3.0).delay, rel=1e-9)
         assert one["rightmost roots"][0] == pytest.approx([linearise(law, [[0.0]]).rightmost(1)[0].real, 1.2], rel=0.2)
     else:
@@ -145,6 +148,42 @@ def test_a_law_with_a_past_or_a_clock(found, call, tmp_path, wrap):
     assert (code, err) == (0, "")
     assert "late.nc: stable off its zero modes" in out
     assert call("late.nc", "--plot", "late.png")[0] == 2
+    assert f"--norms: a {'Delay' if late else 'Map'}Linearisation of" in call("late.nc", "--norms")[2]
+
+
+OWN = """import flockana as fl
+net = fl.NetConsensus([[0, 0, 0], [1, 0, 0], [0, 1, 0]], velocity=3.0)
+ring = fl.Flock(fl.AverageConsensus([[0, 1, 0], [0, 0, 1], [1, 0, 0]]), [[0.0], [1.0], [2.0]])
+bent = fl.compose(pair=fl.pair_law("(s-2)**2/2 + Abs(s-2)*(s-2)/5", range=6, length=2, adjacency="(1-s/r)**2"))
+"""
+
+
+@pytest.mark.filterwarnings("ignore:pair_law")
+def test_what_a_file_defines_is_linearised(found, call, tmp_path):
+    """A chain: λ² + 3λ + 1 twice, whatever its positions; a ring of three: 0 and −3/2 ± j √¾, stable up to 2·0.6046."""
+    (tmp_path / "own.py").write_text(OWN)
+    (tmp_path / "three.csv").write_text("0\n1\n5\n")
+    net = found("own.py:net", "--at", "three.csv")
+    assert [mode["decay rate"] for mode in net["modes"]] == pytest.approx(
+        [1.5 - sqrt(1.25)] * 2 + [1.5 + sqrt(1.25)] * 2
+    )
+    assert net["zero modes"] == ["translation x"]
+    ring = found("own.py:ring", "--delay")
+    assert (ring["law"], ring["zero modes"], ring["stable"]) == ("AverageConsensus", 1, True)
+    assert ring["poles"][1:] == [pytest.approx([-1.5, -sqrt(0.75)]), pytest.approx([-1.5, sqrt(0.75)])]
+    assert ring["delay margin"]["delay"] == pytest.approx(0.604599788)  # (π/2 − π/6)/√3
+    assert call("own.py:ring")[1].startswith("own.py:ring: stable")  # no picture in place of a name between colons
+
+
+@pytest.mark.filterwarnings("ignore:pair_law")
+def test_refusals_name_options_of_the_command(refused, call, tmp_path):
+    (tmp_path / "own.py").write_text(OWN)
+    (tmp_path / "pair.csv").write_text("0,0\n2,0\n")
+    refused("own.py:net is NetConsensus", "own.py:net")
+    refused("--at pair.csv: hexagon has positions of its own", "hexagon", "--at", "pair.csv")
+    refused("--side inner or --side outer takes the law", "own.py:bent", "--at", "pair.csv")
+    assert call("own.py:bent", "--at", "pair.csv", "--side", "outer")[0] == 0
+    assert str(_with_flags(ArgumentError("no rest: ask for allow_residual=True"))) == "no rest: ask for --as-given"
 
 
 def test_any_law_has_delay_margins_and_norms(found):

@@ -6,6 +6,7 @@ import control
 import numpy as np
 import pytest
 from scipy.io import loadmat
+from scipy.sparse import csr_array
 
 from flockana import (
     Algorithm1,
@@ -17,6 +18,7 @@ from flockana import (
     Sampled,
     StaticTarget,
     TaylorStep,
+    VelocityLaw,
     linearise,
 )
 from flockana.base.errors import ArgumentError
@@ -49,6 +51,52 @@ def test_damp_is_the_table_that_engineers_know():
     np.testing.assert_allclose(table["natural frequency"], natural)
     np.testing.assert_allclose(table["damping ratio"], ratio)
     assert ONE.damp(settled=0.05)["settling time"].tolist() == pytest.approx([2.0 * log(20.0)] * 2)
+
+
+RING = linearise(AverageConsensus([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.zeros((3, 1)))
+
+
+def test_a_law_of_first_order_has_modes_and_margins():
+    """x' = −L x on a ring of three: λ = 0, −3/2 ± j √¾; delays to (π/2 − π/6)/√3, periods to 2·1.5/3 = 1."""
+    poles = np.array([-1.5 - 1j * sqrt(0.75), -1.5 + 1j * sqrt(0.75)])
+    np.testing.assert_allclose(RING.eigenvalues, [0.0, *poles], atol=1e-12)
+    assert (RING.zero_modes, RING.stable, len(RING.modes)) == (1, True, 1)
+    table = RING.damp()
+    assert table["damping ratio"].tolist()[1:] == pytest.approx([sqrt(0.75)] * 2)
+    assert RING.delay_margin().delay == pytest.approx((np.pi / 3.0) / sqrt(3.0), rel=1e-9)
+    assert RING.sampling_margin().period == pytest.approx(1.0, rel=1e-6)
+    assert RING.delay_margin(sampled=0.2).delay < RING.delay_margin().delay
+    # broken at one agent S = det(s − A₀)/det(s − A), A₀ without its row
+    omega = np.geomspace(1e-3, 1e2, 4000)
+    s = 1j * omega
+    sensitivity = s * (s + 1.0) ** 2 / (s * (s**2 + 3.0 * s + 3.0))
+    margins = RING.robustness().loops[0]
+    assert margins.sensitivity == pytest.approx(max(1.0, np.abs(sensitivity).max()), rel=1e-6)
+    assert margins.disk == pytest.approx(1.0 / np.abs(sensitivity - 0.5).max(), rel=1e-6)
+    assert RING.transient_growth().growth == 1.0  # a normal matrix
+    np.testing.assert_allclose(
+        RING.response("v0_x", "q1_x", [1.0]).complex.ravel(), np.linalg.inv(1j * np.eye(3) - RING.A)[1, 0]
+    )
+
+
+def test_a_chain_of_first_order_grows_before_it_decays_and_its_poles_are_exact():
+    """x_k' = 5 x_{k−1} − x_k: −1 eleven times, on agents in any order; ‖e^{At}‖ by exponentials of the followers."""
+    from scipy.linalg import expm
+
+    class Chain(VelocityLaw):
+        matrix = 5.0 * np.eye(12, k=-1)[1:, 1:] - np.eye(11)
+        functions = ()
+
+        def velocity(self, t, q):
+            return self.matrix @ q
+
+        def slopes(self, t, q):
+            return csr_array(self.matrix)
+
+    chain = linearise(Chain(), np.zeros((11, 1)))
+    assert chain.decay_rate == pytest.approx(1.0, abs=1e-9)
+    sizes = [np.linalg.norm(expm(Chain.matrix * t), 2) for t in np.linspace(8.0, 12.0, 81)]
+    assert chain.transient_growth().growth == pytest.approx(max(sizes), rel=1e-3)
 
 
 ASKS = {
