@@ -25,7 +25,8 @@ class Delayed(Wrapper):
 
     Late is everything, an agent's own state and the γ-agent's included (``"all"``); or the terms between agents, their
     own state in them included (``"pairs"``); or what they hear of other agents, their own state being known at once
-    (``"neighbours"``: then action is no longer reaction, and the centre of mass is pushed).
+    (``"neighbours"``: then action is no longer reaction, and the centre of mass is pushed; of a law without pair terms
+    the input of each agent is evaluated by itself).
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ class Delayed(Wrapper):
     Raises
     ------
     ArgumentError
-        On a delay below 0 or longer than the history, or a law without a pair term if not everything is late.
+        On a delay below 0 or longer than the history, or a law without a pair term of which pairs are late.
 
     Examples
     --------
@@ -68,7 +69,7 @@ class Delayed(Wrapper):
             raise ArgumentError(f"delay = {format_value(self.delay)}: expected {wanted}")
         if lag.ndim == 2 and self.late != "neighbours":
             raise ArgumentError('delay is one for each pair: expected late="neighbours"')
-        if self.late != "all":
+        if self.late == "pairs" or (self.late != "all" and first_order(self.law) is not None):
             ensure_hears(self.law)
         object.__setattr__(self, "delay", float(lag) if lag.ndim == 0 else tuple(map(tuple, lag.tolist())))
         if self.history_t is not None or self.history_q is not None:

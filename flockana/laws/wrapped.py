@@ -92,6 +92,26 @@ def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, 
     return numbers[first % _BLOCK :][:count]
 
 
+class HearingLaw(Law):
+    """A law without terms all of whose input comes from differences to others that an agent hears."""
+
+    @abstractmethod
+    def heard_input(
+        self, own: tuple[FloatArray, FloatArray], heard: tuple[FloatArray, FloatArray], linked: Any
+    ) -> FloatArray:
+        """Return accelerations from own and heard positions and velocities, as `View` has them, unchecked.
+
+        Parameters
+        ----------
+        own : (ndarray, ndarray), shape (n, m)
+            Positions and velocities.
+        heard : (ndarray, ndarray), shape (n, n, m) or (1, n, m)
+            Positions and velocities of others, by listener and speaker.
+        linked : bool array, shape (n, n), or None
+            Whether a listener hears a speaker; None where all are heard.
+        """
+
+
 class WrappingLaw(Law):
     """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
 
@@ -251,6 +271,10 @@ def _heard_input(law: Law, view: View) -> FloatArray:
     """Return the input of a sum of terms whose pair terms use what each agent hears of the others."""
     u, n = np.zeros_like(view.q), len(view.q)
     heard = (view.q[None], view.p[None]) if view.heard is None else view.heard
+    if isinstance(law, HearingLaw):
+        return law.heard_input(_own(view, heard), heard, view.linked)
+    if not _has_pairs(law):
+        return _input_of_each(law, view, heard)
     for term in law.terms:
         if not isinstance(term, PairTerm):
             term.act(view.t, view.q, view.p, u)
@@ -271,6 +295,20 @@ def _heard_input(law: Law, view: View) -> FloatArray:
     return u
 
 
+def _has_pairs(law: Law) -> bool:
+    return any(isinstance(term, PairTerm) for term in law.terms)
+
+
+def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Return the input of any law, evaluated for each agent by itself, which knows its own state and hears others'."""
+    n, u = len(view.q), np.empty_like(view.q)
+    q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
+    for i in range(n):
+        own = np.arange(n)[:, None] == i
+        u[i] = law.flow(view.t, np.where(own, view.q, q[i]), np.where(own, view.p, p[i]))[0][i]
+    return u
+
+
 def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Return each listener's own position and velocity, as its pair terms use them."""
     if not view.both:
@@ -288,10 +326,11 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
 
 
 def ensure_hears(law: Law | VelocityLaw) -> None:
-    """Raise unless the law's pair terms are known, so that heard states can enter them alone."""
+    """Raise unless the law's pair terms are known, so that heard states can enter them alone, or be left out."""
     core = law.core if isinstance(law, Wrapper) else law
-    if not any(isinstance(term, PairTerm) for term in core.terms):
+    if not isinstance(core, HearingLaw) and not _has_pairs(core):
         raise ArgumentError(
-            "expected a sum of terms with a pair term, such as Algorithm1(), in which the states of others are apart "
-            f'from an agent\'s own: got {type(core).__name__}; late="all" and of="all" take any law'
+            "expected a sum of terms with a pair term, such as Algorithm1(), or NetConsensus(...), in which the states "
+            f"of others are apart from an agent's own: got {type(core).__name__}; "
+            'late="all" or "neighbours" and of="all" take any law'
         )

@@ -13,7 +13,7 @@ from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 
 
-class DampTable(pd.DataFrame):
+class DampTable(pd.DataFrame):  # type: ignore[misc]  # pandas has no types here
     """Table of poles that is printed with all its columns."""
 
     def __repr__(self) -> str:

@@ -80,7 +80,7 @@ class VelocityLinearisation:
 
         size = self.q.size
         whole: Any = block_array([[None, eye_array(size)], [csr_array((size, size)), self.A_sparse]], format="csr")
-        law, links = cast("Any", self.law), np.zeros((0, 2), dtype=np.int64)
+        law, links = cast("Any", self.law), np.zeros((0, 2), dtype=np.int32)
         return LinearFlock(law, self.q, np.zeros_like(self.q), self.t, self.residual, links, csr_array(whole), _ZERO)
 
     @property
@@ -92,7 +92,7 @@ class VelocityLinearisation:
     def eigenvalues(self) -> ComplexArray:
         """All n·m poles, the largest real part first; zero modes come out as exact zeros."""
         poles = [s for mode in self.modes for s in {mode.eigenvalue, np.conj(mode.eigenvalue)}]
-        values = np.append(np.array(poles, dtype=np.complex128), np.zeros(self.q.size - len(poles)))
+        values = np.array([*poles, *[0j] * (self.q.size - len(poles))])
         return values[np.lexsort((values.imag, -values.real))]
 
     @property

@@ -117,7 +117,10 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
 
 
 def _pair_terms(core: Law, state: State) -> list[FloatArray]:
-    """Return K and D of the pair terms of a law, the terms into which heard states can be put."""
+    """Return K and D of the pair terms of a law, the terms into which heard states can be put; of other laws all."""
+    if not any(isinstance(term, PairTerm) for term in core.terms):
+        whole: Any = core.derivatives(*state)
+        return [-part.toarray() for part in whole]
     size = state[1].size
     total = [np.zeros((size, size)), np.zeros((size, size))]
     for term in core.terms:

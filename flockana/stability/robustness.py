@@ -43,8 +43,8 @@ class LoopMargins:
 
     agent: int  # agent, axis: Where it is broken
     axis: int
-    # Factors of the input between which the flock stays stable. 0 and infinity only where K and D are symmetric and
-    # definite, so that an agent's gain is a mass; else at most what was searched, `SEARCHED`
+    # Factors of the input between which the flock stays stable. 0 and infinity only where K and D of its strongly
+    # connected component are symmetric and definite, so that a gain is a mass; else at most what was searched
     gain: tuple[float, float]
     phase: float  # Phase margin in degrees; infinite without a crossover
     disk: float  # Disk margin (balanced): gain and phase may vary together within it
@@ -59,13 +59,17 @@ class RobustnessMargins(ShortRepr):
     ----------
     loops : tuple of LoopMargins
         By agent and axis.
+    searched : (float, float)
+        Factors of an input between which growth was looked for: a gain margin that ends there is only known so far.
+        (0, infinity) where that is proved for all loops.
     """
 
     loops: tuple[LoopMargins, ...]
+    searched: tuple[float, float] = (0.0, inf)
 
     @property
     def gain(self) -> tuple[float, float]:
-        """Narrowest gain margin of any one input: (least, greatest) factor."""
+        """Narrowest gain margin of any one input: (least, greatest) factor, within `searched`."""
         return max(one.gain[0] for one in self.loops), min(one.gain[1] for one in self.loops)
 
     @property
@@ -145,9 +149,12 @@ def loop_margins(flock: LinearFlock, limit: float = LIMIT) -> RobustnessMargins:
     if not flock.stable:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
     problem = flock.second_order
-    widest = (0.0, inf) if _gains_are_masses(problem) else SEARCHED
-    m, peaks = flock.q.shape[1], _peaks(problem)
-    return RobustnessMargins(tuple(_margins(problem, k, m, widest, peaks[:, k]) for k in range(flock.q.size)))
+    proved, m, peaks = np.zeros(flock.q.size, dtype=bool), flock.q.shape[1], _peaks(problem)
+    for k, part in enumerate(problem.parts or (problem,)):  # a loop closes within its strongly connected component
+        proved[problem.net.indices[k] if problem.net else slice(None)] = _gains_are_masses(part)
+    widest = [(0.0, inf) if each else SEARCHED for each in proved.tolist()]
+    loops = tuple(_margins(problem, k, m, widest[k], peaks[:, k]) for k in range(flock.q.size))
+    return RobustnessMargins(loops, max(widest))
 
 
 def _peaks(problem: SecondOrder) -> FloatArray:

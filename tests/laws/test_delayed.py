@@ -5,7 +5,18 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from flockana import RK4, Algorithm1, Algorithm2, CuckerSmale, Gains, LinearTarget, StaticTarget, rescale, simulate
+from flockana import (
+    RK4,
+    Algorithm1,
+    Algorithm2,
+    CuckerSmale,
+    DirectedNet,
+    Gains,
+    LinearTarget,
+    StaticTarget,
+    rescale,
+    simulate,
+)
 from flockana.base.serialize import from_data, to_data
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.delayed import LATE, Delayed
@@ -95,6 +106,16 @@ def test_who_hears_whom_late_is_told_link_by_link():
     run = simulate(Delayed(law, [[0.0, 0.25], [0.0, 0.0]], "neighbours"), q, p, (0.0, 1e-4), dt=1e-4)
     pull = law.acceleration(0.0, [[0.0], [6.5]], [[0.0], [0.0]])[0, 0]
     np.testing.assert_allclose((run.p[1] - run.p[0])[:, 0] / 1e-4, [pull, 0.0], atol=1e-3)
+
+
+def test_a_law_without_pair_terms_hears_agent_by_agent():
+    """Cones that look all round are the law itself, whose pair terms are told apart."""
+    q = hexagonal_spiral(5, 6.5)
+    p = np.random.default_rng(2).standard_normal(q.shape)
+    lag = np.linspace(0.0, 0.05, 25).reshape(5, 5)
+    laws = (LAW, DirectedNet(LAW, ranges=LAW.alpha.r))
+    apart, whole = (simulate(Delayed(law, lag, "neighbours"), q, p, (0.0, 0.2), dt=0.01) for law in laws)
+    np.testing.assert_allclose(whole.q, apart.q, rtol=0.0, atol=1e-12)
 
 
 test_bad_input = refused(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Gains, Lossy, Sampled, TaylorStep, simulate
+from flockana import Algorithm1, Gains, Lossy, NetConsensus, Sampled, TaylorStep, simulate
 from tests.refused import refused
 
 LAW = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.5))
@@ -22,6 +22,19 @@ def test_messages_are_lost_by_their_probability_and_each_way_by_itself():
     arrived = run.u[1:, :, 0] != 0.0
     assert arrived.mean() == pytest.approx(0.7, abs=0.03)
     assert (arrived[:, 0] != arrived[:, 1]).mean() == pytest.approx(2 * 0.7 * 0.3, abs=0.03)
+
+
+def test_a_net_loses_its_links_one_by_one():
+    """Velocity consensus, held for each step: u tells which of two links arrived."""
+    net = NetConsensus([[0.0, 0.0, 0.0], [1.0, 0.0, 3.0], [2.0, 0.0, 0.0]], position=0.0, velocity=1.0)
+    law = Sampled(Lossy(net, 0.4, seed=2), 1e-5)
+    run = simulate(law, np.zeros((3, 1)), [[1.0], [0.0], [-1.0]], (0.0, 0.02), dt=1e-5)
+    u = run.u[1:, :, 0]
+    near, share = np.abs(u[:, 1, None] - [1.0, -3.0, -2.0, 0.0]) < 0.4, 0.6
+    assert near.any(axis=1).all()
+    assert near.mean(axis=0) == pytest.approx([share * 0.4, share * 0.4, share**2, 0.4**2], abs=0.04)
+    assert (np.abs(u[:, 2] - 4.0) < 0.4).mean() == pytest.approx(share, abs=0.04)
+    assert not u[:, 0].any()
 
 
 test_bad_input = refused(

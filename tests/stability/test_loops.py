@@ -197,3 +197,21 @@ test_bad_input = refused(
         "the input of agent 0 is at its limit 1",
     ),
 )
+
+
+NET = NetConsensus([[0, 1, 0, 0], [0, 0, 1, 0], [0.5, 0, 0, 1], [1, 0, 0, 0]], velocity=2.0)
+
+
+@pytest.mark.parametrize("late", ["pairs", "neighbours"])
+def test_a_delay_margin_of_a_net_is_met_by_its_runs(late):
+    """3 % below the margin the delayed net comes together, 3 % above it swings apart, at the margin's frequency."""
+    margin = linearise(NET, np.zeros((4, 1))).delay_margin(delayed=late)
+    for factor, decays in ((0.97, True), (1.03, False)):
+        law = Delayed(NET, factor * margin.delay, late)
+        about = linearise(law, np.zeros((4, 1)))
+        assert about.stable is decays
+        span, step = 40.0 * 2.0 * np.pi / margin.frequency, factor * margin.delay / 8.0
+        run = simulate(law, [[1.0], [-1.0], [0.5], [0.0]], np.zeros((4, 1)), (0.0, span), dt=step)
+        apart = np.abs(run.q[:, 1:, 0] - run.q[:, :1, 0]).max(axis=1)
+        middle, end = (float(apart[(run.t > a * span) & (run.t <= (a + 0.25) * span)].max()) for a in (0.5, 0.75))
+        assert np.log(end / middle) / (0.25 * span) == pytest.approx(-about.decay_rate, rel=0.15)

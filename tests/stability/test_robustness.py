@@ -115,15 +115,17 @@ def test_one_way_nets_lose_stability_at_the_gains_that_are_said(seed):
 
 
 def test_the_bracket_that_was_searched_is_no_infinity():
-    """A chain: each follower hears the one before, and no gain can turn what is triangular."""
+    """No gain can turn a chain, which is triangular: proved. Of a ring it is searched, and the result says so."""
     n = 3
-    k = np.eye(n) - np.eye(n, k=-1)
-    a = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -k]])
     links = np.zeros((0, 2), dtype=np.int32)
-    flock = Linearisation(
-        LAW, np.arange(n, dtype=float)[:, None], np.zeros((n, 1)), 0.0, 0.0, links, csr_array(a), 1e-12
-    )
-    assert loop_margins(flock).gain == SEARCHED
+    for corner, expected in ((0.0, (0.0, inf)), (0.1, SEARCHED)):
+        k = np.eye(n) - np.eye(n, k=-1)
+        k[0, -1] = -corner
+        a = np.block([[np.zeros((n, n)), np.eye(n)], [-k, -5.0 * k]])
+        flock = Linearisation(
+            LAW, np.arange(n, dtype=float)[:, None], np.zeros((n, 1)), 0.0, 0.0, links, csr_array(a), 1e-12
+        )
+        assert loop_margins(flock).gain == loop_margins(flock).searched == expected
 
 
 def test_phase_margins_are_what_a_lag_at_the_crossover_takes():

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.laws.law import Law
+from flockana.laws.wrapped import HearingLaw
 
 _WANTED = "a square array of weights a_ij >= 0, with which agent i hears agent j"
 
@@ -31,7 +31,7 @@ def ensure_weights(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 @dataclass(frozen=True)
-class NetConsensus(Law):
+class NetConsensus(HearingLaw):
     """u_i = Σ_j a_ij (α (q_j − q_i) + β (p_j − p_i)): u = −L(αq + βp), L the Laplacian of a digraph with weights.
 
     On a symmetric net the energy is ½ α Σ_{i<j} a_ij ‖q_j − q_i‖² + ½ Σ ‖p_i − p̄‖²; on others none is known.
@@ -94,6 +94,13 @@ class NetConsensus(Law):
         u = -self.laplacian @ (self.position * q + self.velocity * p)
         rate = -self.velocity * float(np.sum(p * (self.laplacian @ p))) if self.symmetric else float("nan")
         return u, rate
+
+    def heard_input(  # noqa: D102
+        self, own: tuple[FloatArray, FloatArray], heard: tuple[FloatArray, FloatArray], linked: Any
+    ) -> FloatArray:
+        weights = np.array(self.weights) if linked is None else np.where(linked, self.weights, 0.0)
+        q, p = (theirs - mine[:, None] for mine, theirs in zip(own, heard, strict=True))
+        return np.einsum("ij,ijk->ik", weights, self.position * q + self.velocity * p)
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         if not self.symmetric:
