@@ -74,6 +74,8 @@ def test_a_law_of_first_order_has_modes_and_margins():
     assert margins.sensitivity == pytest.approx(max(1.0, np.abs(sensitivity).max()), rel=1e-6)
     assert margins.disk == pytest.approx(1.0 / np.abs(sensitivity - 0.5).max(), rel=1e-6)
     assert RING.transient_growth().growth == 1.0  # a normal matrix
+    follower = linearise(AverageConsensus([[0.0, 0.0], [1.0, 0.0]]), np.zeros((2, 1))).modes[0].shape
+    np.testing.assert_allclose(np.abs(follower.ravel()), [0.0, 1.0], atol=1e-12)  # what hears moves, not what is heard
     np.testing.assert_allclose(
         RING.response("v0_x", "q1_x", [1.0]).complex.ravel(), np.linalg.inv(1j * np.eye(3) - RING.A)[1, 0]
     )
