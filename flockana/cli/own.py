@@ -45,10 +45,9 @@ def read_flock(name: str, seed: int = 0) -> Any:
     return Flock(case.law, case.q[0], case.p[0], (float(case.t[0]), float(case.t[-1])), name=name).scenario()
 
 
-def read_own(name: str, *, laws: bool = False) -> Any:
-    """Return the flock, scenario or run (or law) that a Python file defines; without a name the only one in it."""
+def read_own(name: str) -> Any:
+    """Return the flock, scenario or run that a Python file defines; without a name the only one in it."""
     from flockana.dynamics.trajectory import Trajectory
-    from flockana.laws.law import LawOfMotion
     from flockana.scenarios import Scenario
     from flockana.scenarios.flock import Flock
 
