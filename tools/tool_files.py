@@ -79,6 +79,7 @@ def dump(run: fl.Trajectory) -> str:
 
 def write_tool_files(folder: Path) -> None:
     """Write all files into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
     run = flock()
     texts = {"take.csv": motive(run.q), "spots.csv": trackmate(run.q), "flock.dump": dump(run)}
     texts |= {f"{name}.csv": odometry(flock(0.013 * i), i) for i, name in enumerate(NAMES)}

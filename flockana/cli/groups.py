@@ -15,7 +15,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "Verify": {
         "verify": ("Run, check theorems, write a report.", "flockana verify hexagon"),
-        "observe": ("Judge a recorded flock.", "flockana observe tracks.csv"),
+        "observe": ("Judge a recorded flock.", "flockana observe example --sd 0.05"),
         "falsify": ("Search for a run that breaks a claim.", "flockana falsify collision-energy --on head-on"),
         "prove": ("Check the executable proofs.", "flockana prove cohesion"),
         "check": ("Check a certificate.", "flockana check basin.json"),

@@ -22,6 +22,7 @@ _WINDOW = 6  # samples to each side over which a likelihood is local
 _DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
 
 _BENT = 6.0  # of a log-likelihood, by which a motion is told from a straight one
+_RESOLVED = 1e-6  # noise over the spread, from which on covariances without jerk are more than rounding
 _FEWEST_STRAIGHT = 8  # samples from which on a piece may be straight
 
 _Filtered = tuple[FloatArray, FloatArray, FloatArray]  # means and deviations (T, K, 3), log-likelihoods (T, K)
@@ -94,12 +95,13 @@ def _local_jerk(
     """
     top, (count, series) = _steepest(x, pieces), x.shape
     tried = np.maximum(top - np.arange(_JERKS, dtype=np.float64), np.log(sd.min()) - 6.0)
-    tried = np.append(tried, -np.inf)
+    tried = np.append(tried, -np.inf if sd.min() > _RESOLVED else tried[-1])
     local, piece = np.zeros((len(tried), count, series // groups)), pieces[:, ::groups]
     whole = np.zeros((len(tried), pieces.max() + 2, series // groups))
     for g, jerk in enumerate(tried):
-        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
-        own = own.reshape(count, -1, groups).sum(axis=2)
+        with np.errstate(over="ignore", invalid="ignore"):  # a jerk whose covariances are rounding is not taken
+            own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
+        own = np.nan_to_num(own.reshape(count, -1, groups).sum(axis=2), nan=-1e300, neginf=-1e300, posinf=-1e300)
         np.add.at(whole[g], (piece, np.arange(series // groups)), own)
         for by in range(-_WINDOW, _WINDOW + 1):
             here, there = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
@@ -107,7 +109,8 @@ def _local_jerk(
             local[g, here] += weight * np.where(piece[here] == piece[there], own[there], 0.0)
     allowed = local[:-1] >= local[:-1].max(axis=0) - _DROP
     largest = tried[np.argmax(allowed, axis=0)]
-    return np.repeat(np.exp(largest), groups, axis=1), (whole.max(axis=0) - whole[-1])[:-1]
+    gain = whole.max(axis=0) - whole[-1] if np.isinf(tried[-1]) else np.full(whole.shape[1:], np.inf)
+    return np.repeat(np.exp(largest), groups, axis=1), gain[:-1]
 
 
 def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, within: Any, axes: slice) -> None:

@@ -1,5 +1,7 @@
 """Velocities from positions lie within their errors, and nothing is invented across long gaps."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -164,6 +166,18 @@ def test_the_error_in_a_gap_is_that_of_the_worst_motion():
         full = fl.Recording(t, q, velocities, bound=0.0).filled(most_acceleration=2.0)
         assert full.bound[4, 0] == pytest.approx(error)
     assert fl.Recording(t, q, bound=0.0).filled(most_acceleration=2.0, longest=3.0).gaps == 3
+
+
+def test_exact_samples_around_a_filled_gap_are_smoothed_without_overflow():
+    """Deviations from 1e-7 to 1 of the flock's size: without jerk covariances would be rounding, which grows."""
+    t, rng = np.linspace(0.0, 3.0, 151), np.random.default_rng(3)
+    q = fl.lattice.triangular(5, 7.0) + rng.normal(0.0, 0.3, (5, 2))
+    a, w = rng.normal(0.0, 1.0, (5, 2)), rng.uniform(1.0, 4.0, (5, 1))
+    q, p = q + a * np.sin(w * t[:, None, None]), a * w * np.cos(w * t[:, None, None])
+    q[40:60, 1] = np.nan
+    with warnings.catch_warnings(action="error"):
+        fit = motions(fl.Recording(t, q).filled(most_acceleration=200.0))
+    assert np.abs(fit.p - p)[100:].max() < 0.01
 
 
 def test_pieces_of_three_samples_have_no_velocity():
