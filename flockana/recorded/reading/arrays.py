@@ -110,10 +110,10 @@ def named_arrays(
             'axes=, such as axes=("time", "axis", "agent")'
         )
     if order is None and ("t" not in found or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
-        orders = '"agent time"' if joined else " or axes=".join(possible_orders(q, [1, 0]))
+        choice = '"agent time"' if joined else " or axes=".join(possible_orders(q, [1, 0]))
         raise ArgumentError(
             f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
-            f"be the time or the agent: expected axes={orders}, which decides"
+            f"be the time or the agent: expected axes={choice}, which decides"
         )
     read = {given.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in found}
     idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and rank(arrays[x]) > 1]

@@ -144,12 +144,12 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
         if kind in own and "q" in own and own[kind].power == power:
             if (own[kind].length == "px") != (own["q"].length == "px"):
                 continue
-            spelt = own[kind].text
-            clock = Unit(f"the time of {spelt}", "", own[kind].second, 0) if time is None else time
+            text = own[kind].text
+            clock = Unit(f"the time of {text}", "", own[kind].second, 0) if time is None else time
             factor = own[kind].factor / own["q"].factor * clock.factor**power
             if abs(factor - 1.0) > 1e-9:
                 factors[kind] = factor
-                texts.append(f"{kind} times {factor:.4g}, from {spelt} to {own['q'].text} and {clock.text}")
+                texts.append(f"{kind} times {factor:.4g}, from {text} to {own['q'].text} and {clock.text}")
     return factors, texts
 
 
