@@ -149,6 +149,7 @@ from .sources.tanner_2007 import FixedNetFlocking as FixedNetFlocking
 from .sources.tanner_2007 import LogPotential as LogPotential
 from .sources.tanner_2007 import ProximityFlocking as ProximityFlocking
 from .sources.vicsek_1995 import HeadingAveraging as HeadingAveraging
+from .sources.wang_ames_egerstedt_2017 import SafetyFilter as SafetyFilter
 from .sources.wang_xiao_2010 import FiniteTimeAlignment as FiniteTimeAlignment
 from .sources.yu_chen_cao_2010 import NetConsensus as NetConsensus
 from .sources.zavlanos_2007 import LinkKeeping as LinkKeeping

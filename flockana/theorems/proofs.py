@@ -9,7 +9,7 @@ _PROOFS: dict[Rigour, str] = {
     "bearing-distance-printed cohesion collisions convergence cucker-smale cyclic-pursuit dead-zone "
     "distance-formation finite-time gazi-passino growing-windows headings informed-agents links-kept "
     "matched-velocities net-consensus net-measures own-sums rooted-averaging second-order-modes "
-    "singular-alignment tanner theorem5-counts theorem5-crossings theorem6",
+    "safety-filter singular-alignment tanner theorem5-counts theorem5-crossings theorem6",
     "interval": "barrier compressed-patches delayed-consensus distinct-pairs double-agent n-max speed-bound "
     "strained-thirteen tracking-gain",
 }

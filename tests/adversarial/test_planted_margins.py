@@ -21,6 +21,7 @@ RATIOS = [side * size for side in (1.0, -1.0) for size in (1e6, 1e2, 1e-2, 1e-6)
 HEADINGS = HeadingAveraging(range=1.0, speed=0.2, dt=1.0)
 RUNS = {name: lambda base=base: run_of(base) for name, _, base, _ in PLANTED} | {
     "average-consensus": lambda: fl.simulate(fl.AverageConsensus([[0, 1], [1, 0]]), NEAR, None, (0.0, 2.0)),
+    "safety-filter": lambda: fl.scenario("safety-head-on").run(),
     "average-switching": lambda: fl.scenario("average-switching").run(),
     "any-potential": lambda: fl.simulate(fl.Algorithm1(pair("morse")[0]), NEAR, SLOWLY, (0.0, 2.0)),
     "cucker-smale-steps": lambda: fl.simulate(SemiImplicitEuler(fl.CuckerSmale(), 0.1), NEAR, SLOWLY, (0.0, 2.0)),

@@ -150,6 +150,7 @@ PLANTED = [
     ("E13", "printed", "three", crossed),
 ]  # fmt: skip
 EXCEPT = {
+    "safety-filter": "a proof decides it, and what is near its bound is at rest; test_safety",
     "average-switching": "as average-consensus; test_first_order",
     "average-consensus": "its rate is attained to the last bit by two agents; test_first_order",
     "any-potential": "os-1's and os-3's claims under another name; test_any_potential",

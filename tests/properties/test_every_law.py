@@ -66,6 +66,7 @@ LAWS = {
         PLACED,
     ),
     "ZoneFlocking": (fl.ZoneFlocking(fl.ZoneRadii(1.5, c=3.0, a=8.0)), FREE - {"boost"}),
+    "SafetyFilter": (fl.SafetyFilter(fl.Algorithm1(), distance=0.5, acceleration_limit=20.0), FREE),
     "MinimalFlocking": (fl.MinimalFlocking(radius=9.0), FREE),
     "DiscreteMinimalFlocking": (fl.DiscreteMinimalFlocking(fl.MinimalFlocking(radius=9.0), dt=0.1), FREE),
     "MSNDiscretisation": (
