@@ -74,8 +74,28 @@ def test_a_store_knows_an_own_flock_by_its_numbers(tmp_path):
     first, again, other = made(1.0), made(1.0), made(9.0)
     assert first.identical(again)
     assert first.strain.item() != other.strain.item()
-    with pytest.raises(ArgumentError, match=r"put a function seed -> Scenario into a module"):
-        fl.ensemble(fl.Flock(LAW, start), range(2), store=tmp_path / "kept")
+
+
+def test_a_store_tells_starts_and_claims_apart_by_what_their_functions_hold(tmp_path):
+    def stored(side, limit, extra=None):
+        draw = lambda seed: side * np.random.default_rng(seed).random((2, 2))  # noqa: E731
+        near = fl.claim("near", lambda run: limit - run.q.max(axis=(1, 2)) + (extra is not None))
+        flock = fl.Flock(LAW, draw, t_span=(0, 0.1))
+        return fl.ensemble(flock, [0], theorems=[near], metrics=["strain"], store=tmp_path / "kept", jobs=1)
+
+    first = stored(9.0, 20.0)
+    assert first.identical(stored(9.0, 20.0))
+    assert stored(9.0, 21.0).margin.item() == pytest.approx(first.margin.item() + 1.0)
+    assert stored(5.0, 20.0).strain.item() != first.strain.item()
+    with pytest.raises(ArgumentError, match="claim near: its function holds a value that a store cannot write"):
+        stored(9.0, 20.0, extra=object())
+
+
+def test_falsify_refuses_a_theorem_about_another_law_before_it_searches():
+    with pytest.raises(
+        ArgumentError, match=r"os-3 on own flock: Algorithm 2 is applied .*which no start meets; expected"
+    ):
+        fl.falsify("os-3", law=LAW, q0=PAIR, t_span=(0, 1), budget=10**9)
 
 
 def test_falsify_searches_from_an_own_start():

@@ -59,7 +59,7 @@ def falsify_command(
     from flockana.plots.falsify import falsification
 
     if replay is not None:
-        own = read_theorem(theorem) if is_own(theorem) else None
+        own = read_theorem(str(theorem)) if is_own(theorem) else None
         if (theorem if own is None else None, on, claim, save_to, plot) != (None,) * 5:
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
         return _replay(replay, own, as_json=as_json)

@@ -20,6 +20,7 @@ from flockana.base.digests import sha256
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
 from flockana.base.seals import digest
+from flockana.base.serialize import to_data
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
 from flockana.ensemble.executors import ensure_worker_options, worker_pool
@@ -287,11 +288,25 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
     shared = request.to_dict(strict=strict)
     own = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
-    for each in request.own:
-        margin = getattr(each.check, "margin", each.check)
-        code = getattr(margin, "__code__", None)
-        shared["own"][f"claim {each.id}"] = [_file_digest(margin, each.id, strict), getattr(code, "co_firstlineno", 0)]
+    margins = {f"claim {each.id}": getattr(each.check, "margin", each.check) for each in request.own}
+    starts = {} if request.flock is None else {key: getattr(request.flock, key) for key in ("q0", "p0")}
+    for key, function in (margins | {key: start for key, start in starts.items() if callable(start)}).items():
+        shared["own"][key] = [_file_digest(function, key, strict), *_written(function, key, strict)]
     return {job: digest(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
+
+
+def _written(function: Any, name: str, strict: bool) -> list[Any]:
+    """Return the line of a user's function, and the values that it holds from outside its text."""
+    cells = (cell.cell_contents for cell in getattr(function, "__closure__", None) or ())
+    given = getattr(function, "__defaults__", None), (getattr(function, "__kwdefaults__", None) or {}).values()
+    held = (*cells, *(given[0] or ()), *given[1])
+    try:
+        values: Any = [to_data(value) for value in held]
+    except ArgumentError as error:
+        if strict:
+            raise ArgumentError(f"{name}: its function holds a value that a store cannot write: {error}") from None
+        values = repr(held)
+    return [getattr(getattr(function, "__code__", None), "co_firstlineno", 0), values]
 
 
 def _source_digest(name: str, *, strict: bool) -> str:

@@ -50,14 +50,13 @@ class Request:
         """Return plain data, for the key of a run; raise on a flock without a written form if `strict`."""
         plain: Any = None
         if (flock := self.flock) is not None:
-            parts = flock.law, flock.q0, flock.p0, flock.t_span
+            start = ("drawn" if callable(part) else part for part in (flock.q0, flock.p0))  # digested apart
+            parts = flock.law, *start, flock.t_span
             try:
                 plain = [*map(to_data, parts), to_data_mapping(flock.options)]
             except ArgumentError as error:
                 if strict:
-                    raise ArgumentError(
-                        f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
-                    ) from None
+                    raise ArgumentError(f"store: {error}") from None
                 plain = repr((*parts, flock.options))  # functions as their names, which tell no versions apart
         data = asdict(replace(self, flock=None, own=()))
         del data["own"]  # their ids are among the theorems, their sources in the key

@@ -117,6 +117,12 @@ def falsify(
         if claim not in (None, *(names := [each.name for each in verdict.claims])):
             raise UnknownNameError("claim", claim, names)
         problem = replace(problem, scales=units(verdict))
+        if item.law is not None and not parameters and [h.status for h in verdict.hypotheses] == ["unmet"]:
+            missed = verdict.hypotheses[0]  # about the law alone, which a search of starts does not change
+            raise ArgumentError(
+                f"{item.id} on {begin.name}: {missed.name} ({missed.detail}), which no start meets; expected a theorem "
+                "about this law: applicable(law, q0, p0) lists them"
+            )
     record = _Record()
     record.add(None, problem.graded(run, verdict))
     _warn_of_unmet(f"{item.id} on {begin.name}", record.unmet or {})
