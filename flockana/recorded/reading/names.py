@@ -271,8 +271,8 @@ def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str,
             "project them (pyproj), and give the frame"
         )
     return ArgumentError(
-        f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); {_NAMED}; "
-        "where lines above a table describe it, make a frame by pandas.read_csv(file, skiprows=..., header=[...])"
+        f"{where} has the columns {shown}: expected time, id, x, y (long) or time, x1, y1, x2, y2 (wide); where "
+        f"lines above a table describe it, pandas.read_csv(file, skiprows=..., header=[...]) makes a frame; {_NAMED}"
     )
 
 
