@@ -14,7 +14,7 @@ from tools.coverage_page import markdown_table, plain
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "errata.md"
-_SIGNS = "✗ is refuted, ✓ verified, by the claim of `flockana verify ID`; · was read and not computed."
+_SIGNS = "✗: refuted, ✓: verified, by `flockana verify ID`; ·: read, not computed."
 
 
 def page(items: Iterable[Erratum]) -> str:

@@ -14,12 +14,12 @@ Sort = Literal["wrong", "incomplete", "vacuous", "confirmed"]
 SORTS: dict[Sort, str] = {
     "wrong": "false as printed",
     "incomplete": "true with a hypothesis that is missing",
-    "vacuous": "true, but of no flock or of hardly any",
+    "vacuous": "true, but of no or hardly any flock",
     "confirmed": "examined, and true as printed",
 }
 FOREWORD = (
     "E1 to E16 are in lecture slides and student projects on Olfati-Saber's paper of 2006. None is shown to be in the "
-    "paper itself; the last column says where that was not looked up. The others are in the papers named."
+    "paper itself; the last column says where the paper was not looked up. All others are in the papers named."
 )
 _COLUMNS = 9
 _MARKS = {"verified": "✓", "refuted": "✗", "": "·"}
