@@ -26,7 +26,7 @@ import numpy as np
 
 from flockana.base.digests import sha256
 from flockana.base.garbage import relaxed_gc
-from flockana.base.interrupts import origin_of
+from flockana.base.interrupts import origin_of, raise_swallowed
 from flockana.base.progress import show_part
 
 try:
@@ -251,7 +251,7 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
 @contextmanager
 def compiling(mark: Path | None = None, name: str = "kernels") -> Iterator[None]:
     """Let one thread of one process compile; others wait and load the result."""
-    with _ONE, relaxed_gc(), _announced(name):
+    with _ONE, relaxed_gc(), _announced(name), raise_swallowed():  # as LLVM's callbacks do
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         free = folder is None or fcntl is None or (mark is not None and mark.exists())
         with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]

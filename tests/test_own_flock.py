@@ -119,7 +119,11 @@ def test_own_claim_is_judged_by_its_margin():
     def bound(limit):
         return fl.claim("near", lambda run: limit - np.abs(run.q).max(axis=(1, 2)), statement="agents stay near")
 
-    assert fl.verify(bound(reach + 1.0), run).status == "verified"
+    verdict = fl.verify(bound(reach + 1.0), run)
+    assert verdict.status == "verified"
+    assert [(need.status, need.name in verdict.claims[0].detail) for need in verdict.hypotheses] == [("assumed", True)]
+    steps = fl.verify(bound(reach + 1.0), law=fl.SemiImplicitEuler(LAW, 0.05), q0=PAIR, t_span=(0, 5))
+    assert (steps.status, steps.hypotheses) == ("verified", ())  # a map has no state between its steps
     assert fl.verify(bound(reach - 0.1), run).status == "refuted"
     assert fl.verify(bound(reach), run).status == "inconclusive"
     with pytest.raises(ArgumentError, match="expected a number, or one for each sample"):

@@ -5,6 +5,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
+from typing import Any
 
 ALARMS = tuple(getattr(signal, name) for name in ("SIGALRM",) if hasattr(signal, name))  # of timeouts; not on Windows
 
@@ -27,6 +28,30 @@ def defer_sigint(*others: int) -> Iterator[list[int]]:
             signal.signal(number, handler)
         for number in dict.fromkeys(came):
             signal.raise_signal(number)
+
+
+@contextmanager
+def raise_swallowed() -> Iterator[None]:
+    """Raise at the end of the block what Ctrl-C or an alarm raised within, if a library's callback swallowed it."""
+    lost: list[int] = []
+    ours = threading.current_thread() is threading.main_thread()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *ALARMS)} if ours else {}
+    handlers = {number: handler for number, handler in handlers.items() if callable(handler)}
+
+    def note(number: int, frame: Any) -> None:
+        lost.append(number)
+        handlers[number](number, frame)  # type: ignore[operator]
+        lost.remove(number)  # it raised nothing
+
+    for number in handlers:
+        signal.signal(number, note)
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    for number in dict.fromkeys(lost):
+        signal.raise_signal(number)
 
 
 @contextmanager

@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+from flockana.base.errors import ArgumentError
+
+LEAST, MOST = 1e-45, 1e45  # sixth powers of such lengths are numbers
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -9,6 +13,11 @@ class Scales:
 
     length: float
     time: float
+
+    def __post_init__(self) -> None:
+        if not (LEAST <= self.length <= MOST and LEAST <= self.time <= MOST):
+            given = f"the law's length is {self.length:.3g} and its time {self.time:.3g}"
+            raise ArgumentError(f"{given}: expected both from {LEAST:g} to {MOST:g}; choose other units")
 
     @property
     def speed(self) -> float:

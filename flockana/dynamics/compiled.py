@@ -32,6 +32,8 @@ class Engine(Integrator):
     Agents are sorted by cell, so that a pair's are close in memory: `order` has every agent's own number.
     """
 
+    in_python = False
+
     def __init__(self, law: Law, form: Compiled, tableau: Tableau, start: Start, plan: Plan) -> None:
         rows, (n, m) = int(np.clip(_NUMBERS // (4 * start.q.size), 1, _STEPS)), start.q.shape
         super().__init__(law, start, plan, rows)

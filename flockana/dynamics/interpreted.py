@@ -107,7 +107,8 @@ class Interpreter(Integrator):
             self._open(self.stops[0], self._next_step())
         self._course, start = None, float(self.block.t[0])
         try:
-            why = self._solver.step()
+            with np.errstate(over="ignore", invalid="ignore"):  # such a state ends the run, in words
+                why = self._solver.step()
             if self._solver.status != "failed" and self._write(1):
                 if self.block.t[1] > start:
                     return True

@@ -17,6 +17,7 @@ from flockana.laws.law import LawOfMotion
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
 _ENDLESS = 1e9  # and so do steps of which so many more would be needed: hours of the fastest flocks
+_SLUGGISH, _LONG = 1e-3, 5e4  # of steps made in Python this share of the law's time, and as many more: a minute
 
 
 class Stepper(ABC):
@@ -55,6 +56,7 @@ class Integrator(Stepper):
     order: npt.NDArray[np.uint64]  # every agent's own number, in the order of the vectors
 
     law: Any
+    in_python: bool = True  # whether its steps are made one by one in Python
 
     def __init__(self, law: LawOfMotion, start: Start, plan: Plan, rows: int = 1) -> None:
         self.law, self.plan, self.notes = law, plan, {"redone": 0}
@@ -115,12 +117,14 @@ class Integrator(Stepper):
         if steps < before + _MANY:
             return ""
         mean, self._counted_from = (at - since) / (steps - before), (at, steps)
-        if ahead.size and ahead[-1] - at > _ENDLESS * mean:
+        own = np.inf if self.law.scales is None else self.law.scales.time
+        most = _LONG if self.in_python and mean < _SLUGGISH * own else _ENDLESS
+        if ahead.size and ahead[-1] - at > most * mean:
             return (
                 f"it would take {(ahead[-1] - at) / mean:.1e} more steps to t = {ahead[-1]:g}: the last {_MANY} are "
                 f"{mean:.2g} long on average; expected a shorter span or slower gains"
             )
-        if self.law.scales is None or mean >= _SHORT * self.law.scales.time:
+        if np.isinf(own) or mean >= _SHORT * own:
             return ""
         text = f"steps collapse at t = {at:g}: the last {_MANY} are {mean:.2g} long on average"
         return text if 0.0 in self.law.poles else text + self._name_nearest(count)

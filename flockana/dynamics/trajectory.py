@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.scales import LEAST, MOST, Scales
 from flockana.base.seals import replace_sealed
 from flockana.base.tables import facts_html
 from flockana.base.units import rescale
@@ -149,9 +149,11 @@ class Trajectory(MeasuredRun):
         """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
         if self.law.scales is not None:
             return self.law.scales
-        extent = float(lengths(self.q - centres(self.q)[:, None]).max())
-        travel = float(lengths(self.q - self.q[0]).max())
-        return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)
+        with np.errstate(over="ignore"):
+            extent = float(lengths(self.q - centres(self.q)[:, None]).max())
+            travel = float(lengths(self.q - self.q[0]).max())
+        length, time = extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0
+        return Scales(*np.clip([length, time], LEAST, MOST).tolist())
 
     def in_units(self, length: float, time: float) -> Trajectory:
         """The same run in other units (`flockana.rescale`).

@@ -54,10 +54,11 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
     """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006)."""
     own, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
+    enough = tol * potential.force_scale
     step, mixing, downhill, v = _STEP * own, 0.1, 0, np.zeros_like(q)
     for _ in range(steps):
         force = potential.force(q)
-        if _largest(force) <= tol * potential.force_scale:
+        if _largest(force) <= enough:
             break
         if float(np.vdot(force, v)) > 0.0:
             v = (1.0 - mixing) * v + mixing * sqrt(float(np.vdot(v, v) / np.vdot(force, force))) * force

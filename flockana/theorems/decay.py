@@ -22,6 +22,7 @@ from flockana.theorems.toolkit import Checked, Claim, FloatArray, Observed, Tole
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense
+_STEPS = 100  # of a solve: an equilibrium beside the last state takes a few
 _RANGE_FIELDS = ("exponent", "amplitudes", "deviations", "net_changes", "margin")
 _EXPONENT = 0.05  # how far from 2: the first amplitudes still hold a share of the next term
 
@@ -109,7 +110,8 @@ def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
     if law.target is not None:
         law = replace(law, target=StaticTarget(law.target.position(float(seen.t[-1]))))
     try:
-        linear = linearise(law, find_equilibrium(law, seen.end.q, method="descent"))  # from beside it, a few steps
+        beside = find_equilibrium(law, seen.end.q, method="descent", max_iter=_STEPS)
+        linear = linearise(law, beside)
     except FlockanaError as error:
         return None, str(error)
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"

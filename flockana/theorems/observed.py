@@ -305,10 +305,10 @@ def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) 
     if not seen.unresolved:
         return tuple(hypotheses), claims
     need = Hypothesis(NAME, "assumed", detail=seen.unresolved)
-    return (*hypotheses, need), tuple(_with_hypothesis(claim, need) for claim in claims)
+    return (*hypotheses, need), tuple(with_hypothesis(claim, need) for claim in claims)
 
 
-def _with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
+def with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
     """Return a claim under one more hypothesis, unless a proof decides it or it says nothing of this run."""
     if claim.rigour not in ("numeric", "statistical") or claim.status == "vacuous":
         return claim

@@ -7,15 +7,18 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, format_value
-from flockana.theorems.observed import by_both_runs
+from flockana.theorems.observed import by_both_runs, with_hypothesis
 from flockana.theorems.theorem import Theorem
 from flockana.theorems.toolkit import Claim, Enclosure, Hypothesis, Observed, Tolerances, Trajectory, judged
+
+BETWEEN = "the margin is not negative between samples"
 
 
 def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = "") -> Theorem:
     """Return a theorem with one claim: that a margin is not negative at any sample of a run.
 
-    The margin's numerical error is its difference between the run and a second, tighter one.
+    The margin's numerical error is its difference between the run and a second, tighter one. What lies between the
+    samples of a flow is assumed, and the verdict says so.
 
     Parameters
     ----------
@@ -57,7 +60,11 @@ class OwnCheck:
 
     def __call__(self, seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
         """Return the claim, judged on a run and its tighter repetition."""
-        return [], [by_both_runs(seen, self.of_run)]
+        judged_claim = by_both_runs(seen, self.of_run)
+        if seen.is_map or judged_claim.status != "verified":
+            return [], [judged_claim]
+        need = Hypothesis(BETWEEN, "assumed", detail=f"{len(seen.t)} samples are judged")
+        return [need], [with_hypothesis(judged_claim, need)]
 
     def of_run(self, run: Trajectory) -> Claim:
         """Return the claim by the least margin of one run."""

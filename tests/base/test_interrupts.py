@@ -1,4 +1,5 @@
 import contextlib
+import ctypes
 import signal
 import subprocess
 import sys
@@ -6,7 +7,7 @@ import threading
 
 import pytest
 
-from flockana.base.interrupts import defer_sigint, restore_interrupts
+from flockana.base.interrupts import defer_sigint, raise_swallowed, restore_interrupts
 from tests.programs import out_of_a_kernel, posix
 
 REPORT = "import signal; print(*(s.name for s in signal.pthread_sigmask(signal.SIG_BLOCK, ())), sep=',')"
@@ -157,3 +158,20 @@ def plain():
 def test_other_errors_stay_what_they_are(work):
     with pytest.raises(ValueError, match="another subject"), restore_interrupts():
         work()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_ctrl_c_that_a_librarys_callback_swallows_is_raised_after_the_block(monkeypatch):
+    """As within the code that LLVM calls while it compiles: Python can only print what is raised there."""
+    callback = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+    callback()
+    passed = []
+    with pytest.raises(KeyboardInterrupt), raise_swallowed():
+        callback()
+        passed.append("block")
+    assert passed == ["block"]
+    before = signal.signal(signal.SIGINT, lambda number, frame: passed.append("handled"))
+    with raise_swallowed():
+        callback()  # nothing is raised, so nothing is lost
+    signal.signal(signal.SIGINT, before)
+    assert passed == ["block", "handled"]

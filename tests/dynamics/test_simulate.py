@@ -385,3 +385,12 @@ def test_steps_that_collapse_at_a_collision_end_a_run_and_name_the_pair():
     assert float(told[1]) == pytest.approx(run.t[-1], rel=1e-5)
     assert float(told[4]) == pytest.approx(np.linalg.norm(run.q[-1, 0] - run.q[-1, 1]), rel=1e-2)
     assert run.stats["steps"] < 60_000
+
+
+@pytest.mark.parametrize("scale", [{"length": 1e100, "time": 1.0}, {"length": 1.0, "time": 1e-100}])
+def test_a_law_beyond_the_scales_of_numbers_is_refused_in_a_line(scale):
+    law = fl.rescale(Algorithm1(), **scale)
+    with pytest.raises(
+        ArgumentError, match=r"the law's length is .*: expected both from 1e-45 to 1e\+45; choose other"
+    ):
+        simulate(law, scale["length"] * np.array([[0.0], [7.0]]), np.zeros((2, 1)), (0.0, scale["time"]))

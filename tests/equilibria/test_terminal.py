@@ -5,8 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget, simulate, verify
 from flockana.base.errors import SolverError
+from flockana.equilibria import descent
 from flockana.equilibria.curvature import least_curvature
 from flockana.equilibria.gradient_flow import gradient_flow, structural_force
 from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
@@ -140,3 +141,12 @@ class TestGradientFlow:
     def test_a_short_horizon_is_said_not_to_have_converged(self):
         limit = gradient_flow(Algorithm1(AlphaInteraction(a=1e-3, b=1e-3)), [[0.0], [8.39]], horizon=1e-3)
         assert not limit.converged
+
+
+def test_the_search_beside_a_last_state_is_short(monkeypatch):
+    """Six agents fall onto each other for ever (k log s): 300,000 steps downhill, several times, took minutes."""
+    counts = []
+    monkeypatch.setattr(descent, "relax", lambda potential, q, steps, **_: counts.append(steps) or q)
+    run = simulate(Algorithm1(), [[0.0, 0.0], [8.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0))
+    verify("linearised-decay-terminal", run)
+    assert 0 < max(counts) <= 10_000

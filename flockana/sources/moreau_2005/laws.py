@@ -53,7 +53,8 @@ class NetAveraging(DiscreteLaw):
     Parameters
     ----------
     nets : array_like, shape (K, n, n) or (n, n)
-        Weights w_ij >= 0 of each net, with which agent i hears agent j; rows sum to 1.
+        Weights w_ij >= 0 of each net, with which agent i hears agent j; rows sum to 1, to the rounding of their
+        numbers, and stand for the means w_ij/Σ_k w_ik.
     lengths : sequence of int
         Steps for which each net acts in the first round; by default 1 each.
     growth : sequence of int

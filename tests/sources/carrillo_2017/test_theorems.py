@@ -83,3 +83,9 @@ test_what_is_refused = refused(
     (lambda: SingularAlignment(fl.RationalWeight()), "expected SingularWeight"),
     (lambda: fl.simulate(HALF, [[1.0], [1.0]], PAIR, (0.0, 1.0)), "agents 0 and 1 coincide: the alignment weight has"),
 )
+
+
+def test_a_pair_that_meets_at_rest_or_nearly_is_judged():
+    """At w = −4 both end at one place to the last bit, where the law has no input: that was taken for an edited run."""
+    for speed in (4.0, 4.0000001):
+        assert statuses(verify("singular-pair", closing(speed, end=20.0))) == {"meet": "verified", "apart": "vacuous"}

@@ -59,3 +59,12 @@ test_what_is_refused = refused(
     (lambda: FiniteTimeAlignment(((0, 1),), exponent=1.5), "exponent = 1.5: expected 0 < exponent <= 1"),
     (lambda: FiniteTimeAlignment(((0, 5),)).acceleration(0.0, P, P), "links name agent 5"),
 )
+
+
+@pytest.mark.slow
+def test_a_run_far_beyond_agreement_is_refused_after_so_many_steps():
+    """Steps of about 2e-4 of the law's time, made in Python: to t = 30 they would take minutes."""
+    law = FiniteTimeAlignment(((0, 1), (1, 2)), exponent=0.5)
+    run = fl.simulate(law, np.zeros((3, 1)), [[1.0], [-2.0], [0.0]], (0.0, 30.0))
+    assert (run.status, run.stats["steps"]) == ("failed", 10_000)
+    assert "more steps to t = 30" in run.message

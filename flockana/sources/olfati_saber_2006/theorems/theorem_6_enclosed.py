@@ -28,7 +28,7 @@ def _declared_velocity(tube: Tube) -> FloatArray:
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
     """Return condition (76), and the first step from which it certainly holds to the end."""
-    name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
+    name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 to the end (76)"
     pull, half, m = flow.terms[0], tube.n * tube.m, tube.m
     slack = []
     for step in tube.taken:

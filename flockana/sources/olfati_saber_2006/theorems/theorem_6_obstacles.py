@@ -45,7 +45,7 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     """Return condition (76), and the first sample from which it holds to the end."""
     # It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
     # decides, or what lies between two samples, it is assumed to hold.
-    run, slack, name = seen.run, condition_76(seen.run), "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
+    run, slack, name = seen.run, condition_76(seen.run), "(n/2)⟨p_c, p_d⟩ <= T from some t0 to the end (76)"
     any_p_r = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
     if not any_p_r.any() and run.law.target.constant_velocity:
         return Hypothesis(name, "met", float(slack.min()), "p_d = 0: T >= 0 at all times"), 0
