@@ -35,12 +35,12 @@ def raise_swallowed() -> Iterator[None]:
     """Raise at the end of the block what Ctrl-C or an alarm raised within, if a library's callback swallowed it."""
     lost: list[int] = []
     ours = threading.current_thread() is threading.main_thread()
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *ALARMS)} if ours else {}
-    handlers = {number: handler for number, handler in handlers.items() if callable(handler)}
+    known: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, *ALARMS)} if ours else {}
+    handlers = {number: handler for number, handler in known.items() if callable(handler)}
 
     def note(number: int, frame: Any) -> None:
         lost.append(number)
-        handlers[number](number, frame)  # type: ignore[operator]
+        handlers[number](number, frame)
         lost.remove(number)  # it raised nothing
 
     for number in handlers:

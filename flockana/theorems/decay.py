@@ -18,10 +18,20 @@ from flockana.stability.decay import Decay, LinearRange, decay, decay_table, lin
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.theorems.claims import erratum, spectral, undecided
-from flockana.theorems.toolkit import Checked, Claim, FloatArray, Observed, Tolerances, condition, run_theorem
+from flockana.theorems.toolkit import (
+    Checked,
+    Claim,
+    FloatArray,
+    Hypothesis,
+    Observed,
+    Tolerances,
+    condition,
+    run_theorem,
+)
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense
+_KNOWN = 0.1  # of the law's length: to which a recorded last state must be known
 _STEPS = 100  # of a solve: an equilibrium beside the last state takes a few
 _RANGE_FIELDS = ("exponent", "amplitudes", "deviations", "net_changes", "margin")
 _EXPONENT = 0.05  # how far from 2: the first amplitudes still hold a share of the next term
@@ -151,9 +161,13 @@ def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
     dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method). Checked at the equilibrium that the run's
     last state is near to.
     """
+    name, known = "an equilibrium near the last state is stable", seen.accuracy_of_end
+    if known > _KNOWN * seen.scales.length:
+        need = Hypothesis(name, "assumed", detail=f"the last state is known to {known:.2g} only")
+        return [need], [undecided(each, need.detail, [need]) for each in _NAMES]
     linear, why = _terminal(seen)
     stable = linear is not None and bool(linear.modes) and linear.stable
-    given = [condition("an equilibrium near the last state is stable", stable, detail=why, decided="enclosed")]
+    given = [condition(name, stable, detail=why, decided="enclosed")]
     if linear is None or not stable:
         return given, []
     try:

@@ -163,3 +163,11 @@ def test_the_energy_of_a_start_is_enclosed_over_the_balls_of_its_samples():
         worst = max(worst, abs(law.structural_energy(seen.run.q[0] + x, seen.run.p[0] + v) - best))
     assert 0.0 < worst < allowed < 100.0 * worst
     assert energy_within_accuracy(Observed.of(run), 0) == 0.0
+
+
+def test_of_a_last_state_that_is_not_known_no_equilibrium_is_near(own):
+    """It was that of the law's own solution, however wide the stated bound."""
+    for bound, status in ((1e-6, "met"), (1e30, "assumed")):
+        verdict = fl.verify("linearised-decay-terminal", fl.Recording(T, *own, bound=bound), law=LAW)
+        assert verdict.hypotheses[-1].status == status
+        assert {c.status for c in verdict.claims} == {"verified" if status == "met" else "inconclusive"}
