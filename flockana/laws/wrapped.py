@@ -295,7 +295,7 @@ def _heard_input(law: Law, view: View) -> FloatArray:
     return u
 
 
-def _has_pairs(law: Law) -> bool:
+def _has_pairs(law: Any) -> bool:
     return any(isinstance(term, PairTerm) for term in law.terms)
 
 

@@ -21,7 +21,7 @@ from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
 from flockana.laws.law import Arrays, Law, LawOfMotion
 from flockana.laws.velocity import first_order
-from flockana.laws.wrapped import Step, View, Wrapper, input_of, needs_steps, wrappers_within
+from flockana.laws.wrapped import Step, View, Wrapper, WrappingLaw, input_of, needs_steps, wrappers_within
 from flockana.solvers.past import Past, Row
 from flockana.solvers.solver import Limits, Rate, Rows, Solver
 from flockana.solvers.stepper import FixedStepper
@@ -146,7 +146,9 @@ class FixedSteps(DiscreteLaw):
                 )
         if self._first_order and self.solver.position_factor:
             raise ArgumentError(f"{self.solver.name}: {self.law.title} is of first order; expected RK4 or Heun")
-        core = self.law.core if isinstance(self.law, Wrapper) else self.law
+        core: Any = self.law
+        while isinstance(core, WrappingLaw):  # whose switches are those of the law within
+            core = core.law
         if type(core).switches is not LawOfMotion.switches:
             raise ArgumentError(
                 f"{core.title}: steps of exactly dt would lead over its switches; expected simulate(law, ..., "
