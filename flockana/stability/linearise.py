@@ -21,7 +21,7 @@ from flockana.base.checks import (
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws import Delayed, DiscreteLaw, Law, Sampled, ensure_law
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.velocity import VelocityLaw, first_order
 from flockana.laws.wrapped import needs_steps
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
@@ -153,6 +153,11 @@ def linearise(
     if isinstance(ensure_law(law), DiscreteLaw):
         return _linearised_map(law, equilibrium, p, how)
     if needs_steps(law):
+        if first_order(law) is not None:
+            raise ArgumentError(
+                f"{law.title} is around a law of first order: expected that law itself; linearise(...).delay_margin() "
+                "and .sampling_margin() tell what delay and period it bears"
+            )
         return _linearised_loop(law, equilibrium, p, how | {"links": links})
     if isinstance(equilibrium, Equilibrium):
         ensure_unedited_equilibrium("equilibrium", equilibrium)

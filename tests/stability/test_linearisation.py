@@ -12,6 +12,7 @@ from flockana import (
     Algorithm1,
     Algorithm2,
     AverageConsensus,
+    Delayed,
     DirectedNet,
     Gains,
     NetConsensus,
@@ -99,6 +100,13 @@ def test_a_chain_of_first_order_grows_before_it_decays_and_its_poles_are_exact()
     assert chain.decay_rate == pytest.approx(1.0, abs=1e-9)
     sizes = [np.linalg.norm(expm(Chain.matrix * t), 2) for t in np.linspace(8.0, 12.0, 81)]
     assert chain.transient_growth().growth == pytest.approx(max(sizes), rel=1e-3)
+
+
+def test_a_late_law_of_first_order_is_refused_by_name():
+    with pytest.raises(
+        ArgumentError, match=r"Delayed is around a law of first order: expected that law itself; linear"
+    ):
+        linearise(Delayed(RING.law, 0.1), np.zeros((3, 1)))
 
 
 ASKS = {
