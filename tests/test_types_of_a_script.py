@@ -24,6 +24,8 @@ run = fl.simulate(law, q0, [[0, 0], [0, 0]], (0, 5), method=fl.RK4(0.01))
 verdict: fl.Verdict = fl.verify("os-1", run)
 rows: int = len(fl.verify(law=plain, q0=q0, t_span=[0.0, 5.0]).to_dataframe())
 near = fl.claim("near", lambda run: 9.0 - run.metric("cohesion_radius"), statement="all stay near")
+names = ["os-1", "energy"]
+several: int = len(fl.verify(names, run).to_dataframe()) + len(fl.verify([near, "os-1"], run).rows())
 flock = fl.Flock(plain, lambda seed: np.random.default_rng(seed).normal(size=(5, 2)), t_span=(0, 10))
 runs = fl.ensemble(flock, range(20), theorems=["energy", near], parameters={"gains.c1_alpha": [1.0, 2.0]})
 suffix: str = fl.write_report(flock, "folder", theorems=["energy", near]).suffix

@@ -1,5 +1,6 @@
 """`verify`: check a theorem on a run, a recording, a tube, a configuration, or by itself."""
 
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, TypedDict, Unpack, overload
 
@@ -35,13 +36,13 @@ class _Case(TypedDict, total=False):
 
 
 @overload
-def verify(
-    name: list[str | Theorem] | tuple[str | Theorem, ...] | None = None, trajectory: Any = None, **case: Unpack[_Case]
-) -> Verdicts: ...
+def verify(  # type: ignore[overload-overlap]  # a text is a sequence of texts, too
+    name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]
+) -> Verdict: ...
 @overload
-def verify(name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]) -> Verdict: ...
+def verify(name: Sequence[str | Theorem] | None = None, trajectory: Any = None, **case: Unpack[_Case]) -> Verdicts: ...
 def verify(
-    name: str | Theorem | list[str | Theorem] | tuple[str | Theorem, ...] | None = None,
+    name: str | Theorem | Sequence[str | Theorem] | None = None,
     trajectory: Any = None,
     *,
     basin: Any = None,
@@ -100,7 +101,7 @@ def verify(
     0.6666666666666666
     """
     used = ensure_tolerances(tolerances)
-    if isinstance(name, list | tuple):
+    if isinstance(name, Sequence) and not isinstance(name, str):
         items = [theorem(each) for each in name]
         if trajectory is None and law is not None:
             trajectory, law, q0, p0, t_span = _run(None, law, q0, p0, t_span), None, None, None, None

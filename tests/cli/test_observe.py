@@ -73,7 +73,7 @@ def test_gains_are_fitted_for_a_formula_too(call, tracks):
 
 def test_refusals_name_the_options_of_the_command(refused, tmp_path):
     (tmp_path / "odd.csv").write_text("a,b,c\n1,2,3\n", encoding="utf-8")
-    refused("name them by --columns t=NAME,id=NAME,q=NAME+NAME,p=NAME+NAME\n", "odd.csv")
+    refused("name them by --columns t=NAME,id=NAME,q=NAME+NAME,p=NAME+NAME", "odd.csv")
     (tmp_path / "frames.csv").write_text("frame,id,x,y\n0,0,0,0\n0,1,7,0\n1,0,0,1\n1,1,7,1\n", encoding="utf-8")
     refused("--dt ", "frames.csv", "--d", "7")
 
