@@ -11,8 +11,9 @@ from benchmarks.flocks import R
 from flockana.base.checks import FloatArray
 from flockana.jit import njit
 from flockana.kernels.blocks import BLOCK
+from flockana.kernels.large import fill
 from flockana.kernels.listed import Listed
-from flockana.kernels.verlet import SKIN, covers, fill, no_pairs, spatial_order
+from flockana.kernels.verlet import COUNT, SKIN, Pairs, covers, no_pairs, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
 REACH = (1.0 + SKIN) * R
@@ -24,12 +25,12 @@ def listed_evaluation(
     """An evaluation over a list that is kept, in one call: agents in the order of cells, which is given too."""
     order = spatial_order(q, REACH)
     x, v, own = q[order].copy(), p[order].copy(), np.arange(len(q), dtype=np.uint64)
-    first, second, *_, (count, _) = fill(no_pairs(*x.shape), x, REACH)
+    pairs = fill(no_pairs(*x.shape), x, REACH)
     rate = _rate(law)
 
     def call() -> tuple[FloatArray, float]:
         u = np.empty(x.shape)
-        return u, rate(x, v, u, first, second, count, own)
+        return u, rate(x, v, u, pairs, own)
 
     return call, order
 
@@ -46,12 +47,16 @@ def _rate(law: Algorithm2) -> Callable[..., float]:
         u[:] = 0.0
         return force(0.0, x, v, u, one, panels, listed) + follow(0.0, x, v, u, other, none, listed)
 
-    def rate_of(x: FloatArray, v: FloatArray, u: FloatArray, first: Any, second: Any, count: int, own: Any) -> float:
-        listed = Listed(still, first, second, count, own, *room)
+    def rate_of(x: FloatArray, v: FloatArray, u: FloatArray, pairs: Pairs, own: Any) -> float:
+        slabs = int(pairs.cuts[0])
+        room = np.empty((2 * slabs, BLOCK), np.uint64), np.empty((3 * slabs, BLOCK))
+        listed = Listed(
+            still, pairs.first, pairs.second, int(pairs.counts[COUNT]), pairs.cuts[1 : slabs + 2], own, *room
+        )
         return float(rate(x, v, u, listed, *arrays))
 
     arrays = [np.array(array) for term in form.terms for array in (term.numbers, term.panels)]
-    still, room = np.zeros((2, 2)), (np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)))
+    still = np.zeros((2, 2))
     return rate_of
 
 
@@ -69,7 +74,7 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
             x += dt * v
             if not covers(pairs, x, R):
                 pairs = fill(pairs, x, REACH)
-            rate(x, v, u, pairs.first, pairs.second, pairs.counts[0], own)
+            rate(x, v, u, pairs, own)
         moved[order], felt[order] = x, u
         return felt
 

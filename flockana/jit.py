@@ -20,6 +20,7 @@ from functools import cache, cached_property
 from multiprocessing import parent_process
 from pathlib import Path
 from threading import RLock, Timer
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ except ImportError:  # Windows: there every process compiles what it needs
 
 COMPILES = "flockana compiles for this machine, which happens once and takes up to a minute; first {} ..."
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
+prange = range  # of one thread (`Parallel`)
 _PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
 _FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
 _SILENT = 3.0  # seconds of compiling that go without a word
@@ -147,6 +149,32 @@ def kernel(function: Callable[..., Any]) -> Kernel:
     return Kernel(function, True, {"error_model": "numpy", "nogil": True})
 
 
+class Parallel(Kernel):
+    """Twin of a kernel for several threads: the same text, in which `prange` is numba's."""
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        """The twin as a dispatcher of numba."""
+        launch_threads()
+        self.function = _renamed(self.function, self.function.__name__, prange=load_numba().prange)
+        return super().dispatcher
+
+
+def _renamed(function: Callable[..., Any], name: str, **known: Any) -> Callable[..., Any]:
+    """Return a function with the same text, another name, and other values of some names of its module."""
+    code = function.__code__.replace(co_name=name, co_qualname=name)
+    return FunctionType(code, function.__globals__ | known if known else function.__globals__, name)
+
+
+def parallel(kernel: Kernel) -> Kernel:
+    """Return a kernel's twin for several threads; its module must know it as ``parallel_`` and the kernel's name.
+
+    Files and symbols of compiled code bear names of functions: it has one of its own.
+    """
+    options = kernel.options | {"parallel": True}
+    return Parallel(_renamed(kernel.function, f"parallel_{kernel.__name__}"), kernel.kept, options)
+
+
 @cache
 def callback(kernel: Kernel, signature: Any) -> Any:
     """Return a kernel compiled for one signature, as a function that compiled code can take as an argument.
@@ -194,6 +222,23 @@ def load_numba() -> Any:
         return numba.typeof(_opened(kernel.dispatcher))
 
     return numba
+
+
+@cache
+def launch_threads() -> int:
+    """Start numba's threads, as code for them cannot even be loaded before; return the process's id."""
+    numba = load_numba()
+    with _ONE:
+        numba.config.reload_config()  # NUMBA_NUM_THREADS may be set after numba's import, but not from now on
+        numba.get_num_threads()
+    return os.getpid()
+
+
+@contextmanager
+def pause_compiling() -> Iterator[None]:
+    """Let no thread compile meanwhile: numba raises where NUMBA_NUM_THREADS changes once its threads run."""
+    with _ONE:
+        yield
 
 
 def _opened(dispatcher: Any) -> Any:

@@ -12,9 +12,12 @@ from flockana.dynamics.sample import Start
 from flockana.dynamics.stepper import Integrator
 from flockana.jit import thawed
 from flockana.kernels.advance import Advanced, advance
+from flockana.kernels.grid import LARGE
+from flockana.kernels.large import fill
 from flockana.kernels.march import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
-from flockana.kernels.runge_kutta import Method
-from flockana.kernels.verlet import COUNT, MADE, fill, no_pairs, spatial_order, with_room
+from flockana.kernels.runge_kutta import Method, System
+from flockana.kernels.threads import several_threads
+from flockana.kernels.verlet import COUNT, MADE, no_pairs, spatial_order, with_room
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 from flockana.solvers.tableau import Tableau
@@ -41,6 +44,7 @@ class Engine(Integrator):
         self.block.f[0], self.evaluations = np.concatenate([speeds, start.u.ravel(), [start.power]]), 1
         self.pairs, self._sorted, self._h = no_pairs(n, m), 0, 0.0
         self._pace, self._unsorted = Pace(_BEGIN // (n * m), rows), 0
+        self._form, self._threads = form, plan.threads if n >= LARGE else 1
         self._system, self._sampled = form.system(self.frame.view, n, m), 0
         self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * n * m))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
@@ -59,10 +63,20 @@ class Engine(Integrator):
                 self._sort()
         judged = checks.judged(self.order)
         lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
-        with self._pace as steps:
+        with self._pace as steps, several_threads(self._threads) as several:
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
             made = Advanced(
-                *advance(self._system, self._method, block, self._room, self._h, lists, self.stops, samples, judged)
+                *advance(
+                    self._system_for(several),
+                    self._method,
+                    block,
+                    self._room,
+                    self._h,
+                    lists,
+                    self.stops,
+                    samples,
+                    judged,
+                )
             )
         self._unsorted -= made.steps
         self._h, self._sampled = made.h, made.samples if made.steps else 0
@@ -85,8 +99,13 @@ class Engine(Integrator):
         """List the pairs of the start; return whether they fit into memory."""
         if self._reach:
             self._sort()
-            self.pairs = fill(self.pairs, self._places, self._reach)
+            with several_threads(self._threads) as several:
+                self.pairs = fill(self.pairs, self._places, self._reach, several)
         return bool(self.pairs.counts[COUNT] >= 0)
+
+    def _system_for(self, several: bool) -> System:
+        """Return the law as steps take it, for one thread or for several: both give the same bits."""
+        return self._form.in_threads(self._system) if several else self._system
 
     @property
     def _places(self) -> FloatArray:

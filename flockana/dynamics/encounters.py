@@ -32,10 +32,12 @@ from flockana.kernels.bodies import body_numbers
 from flockana.kernels.bound import bound
 from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
 from flockana.kernels.encounters import Around, Ends
+from flockana.kernels.grid import LARGE
+from flockana.kernels.large import as_callback, lister
 from flockana.kernels.laws import guard_of
 from flockana.kernels.march import Block
 from flockana.kernels.shares import TOO_MANY
-from flockana.kernels.verlet import COUNT, Pairs, lister, no_pairs, with_room
+from flockana.kernels.verlet import COUNT, Pairs, no_pairs, with_room
 from flockana.laws.law import LawOfMotion
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
@@ -106,7 +108,7 @@ class Encounters:
         return Around(
             self.radii[order], float(self.far), (float(least), float(largest)), thawed(self.poles), toward,
             np.ascontiguousarray(first), np.ascontiguousarray(second), few, *self._guard,
-            (float(self.shell), float(self.skirt)), lister(),
+            (float(self.shell), float(self.skirt)), as_callback(lister(large=len(order) >= LARGE)),
         )  # fmt: skip
 
     @cached_property

@@ -24,6 +24,7 @@ class Plan(NamedTuple):
     stops: FloatArray  # rising times at which a step must end, the last of them the end of the run
     keep: FloatArray | None  # times of samples; None: each step is one
     control: Control = EXACT  # tolerances, and the longest step
+    threads: int = 1  # at most, of a large flock
 
     @property
     def due(self) -> FloatArray:

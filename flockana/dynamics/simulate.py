@@ -33,6 +33,8 @@ from flockana.dynamics.sample import Sample, Samples, Start, Tally
 from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
+from flockana.kernels.grid import LARGE
+from flockana.kernels.threads import ensure_threads
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
@@ -54,6 +56,7 @@ def simulate(
     dt: float | None = None,
     max_step: float | None = None,
     t_eval: Any = None,
+    threads: int | None = None,
     progress: bool = False,
     watch: Callable[[Sample], object] | None = None,
 ) -> Trajectory:
@@ -94,6 +97,9 @@ def simulate(
     t_eval : array_like, optional
         Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
         such as `Trajectory.min_distance`, rest on the steps in either case.
+    threads : int, optional
+        Cores for a flock of 10,000 agents or more, with the same bits for any number; by default NUMBA_NUM_THREADS, or
+        all, and one in worker processes. Laws that are compiled use them for their pair forces.
     progress : bool
         Show a progress bar on the terminal.
     watch : callable, optional
@@ -126,6 +132,7 @@ def simulate(
     law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
+    threads = ensure_threads(threads) if threads is not None or len(q0) >= LARGE else 1
     start = first_call(law, t_span[0], q0, p0)
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
@@ -139,7 +146,7 @@ def simulate(
         plan, how = _plan(solver_of(method, dt), law, start, t_span, keep, (rtol, atol, max_step))
         if isinstance(law, VelocityLaw) and getattr(plan.solver, "position_factor", None):
             raise ArgumentError(f"method = {plan.solver.name!r}: {law.title} is of first order; expected RK4 or Heun")
-        name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan)
+        name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan._replace(threads=threads))
     started, tally = time.perf_counter(), Tally()
     kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
     counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}

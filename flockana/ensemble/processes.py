@@ -14,6 +14,7 @@ from typing import Any
 
 from flockana.base.garbage import SELDOM, freeze_gc
 from flockana.base.interrupts import block_sigint, defer_sigint
+from flockana.jit import pause_compiling
 
 _END = 10.0  # seconds in which killed processes are gone
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -67,11 +68,12 @@ def _end_with(parent: BaseProcess) -> None:
 @contextmanager
 def single_threaded_children() -> Iterator[None]:
     """Limit processes started inside to one thread of linear algebra each."""
-    before = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
-    os.environ |= dict.fromkeys(_ONE_THREAD, "1")
-    try:
-        yield
-    finally:
-        for name in _ONE_THREAD:
-            os.environ.pop(name, None)
-        os.environ |= before
+    with pause_compiling():
+        before = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
+        os.environ |= dict.fromkeys(_ONE_THREAD, "1")
+        try:
+            yield
+        finally:
+            for name in _ONE_THREAD:
+                os.environ.pop(name, None)
+            os.environ |= before

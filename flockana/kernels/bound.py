@@ -11,6 +11,7 @@ from contextlib import suppress
 from functools import cache
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
+from threading import RLock
 from types import ModuleType
 from typing import Any
 
@@ -18,7 +19,7 @@ from flockana.base.digests import sha256
 from flockana.base.files import write_atomic
 from flockana.jit import Kernel, is_modules_own, kernels_folder, sources_digest, sources_folder
 
-_COUNT = itertools.count()
+_COUNT, _ONE = itertools.count(), RLock()  # no thread is given a module that another still runs
 _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re.MULTILINE)
 
 
@@ -56,16 +57,17 @@ def made(text: str, name: str, **functions: Kernel) -> ModuleType:
     digest = sha256(["\n".join(parts)])[:16]
     whole = f"flockana_{name}_{digest}"
     own = {key: known for key, known in functions.items() if key not in named}
-    if not own and whole in sys.modules:
-        return sys.modules[whole]
-    module = None if own else _from_file(text, whole, digest)
-    if module is None:
-        whole = f"{whole}_{next(_COUNT)}" if own else whole  # another closure of the same text is another module
-        module = ModuleType(whole)
-        vars(module).update(own)
-        sys.modules[whole] = module
-        exec(compile(text, f"<{whole}>", "exec"), vars(module))
-    return module
+    with _ONE:
+        if not own and whole in sys.modules:
+            return sys.modules[whole]
+        module = None if own else _from_file(text, whole, digest)
+        if module is None:
+            whole = f"{whole}_{next(_COUNT)}" if own else whole  # another closure of the same text is another module
+            module = ModuleType(whole)
+            vars(module).update(own)
+            sys.modules[whole] = module
+            exec(compile(text, f"<{whole}>", "exec"), vars(module))
+        return module
 
 
 def _source(known: Kernel) -> str:

@@ -62,7 +62,7 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
                     for i in range(size):
                         trial[size + i] += kicks[k, i]
             if _finite(trial):
-                if reach > 0.0 and system.listed(trial[:size].reshape(n, m), reach, pairs) < 0:
+                if reach > 0.0 and system.work.listed(trial[:size].reshape(n, m), reach, pairs) < 0:
                     return False
                 rate_of(times[k] + method.c[s] * h, trial, rates[s], system, pairs)
             else:

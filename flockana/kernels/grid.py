@@ -1,11 +1,14 @@
 """Agents sorted into the cells of a grid: those within a range of each other are in the same or in adjacent cells."""
 
+from typing import Any
+
 import numpy as np
 
 from flockana.jit import inlined, kernel
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most
+LARGE, _SLABS = 10_000, 64  # agents from which on sums go in slabs, and slabs at most
 _ROUNDINGS = 2.0**-49  # eight of the largest coordinate: two agents, each closed up in rounds that shrink by a quarter
 
 
@@ -53,24 +56,30 @@ def _closed_up(q, width, most):
 def sort_into_grid(q, side):
     """(order, start, rows): agents by cell, first agent of each cell, and where the later adjacent rows of cells are.
 
-    Cells are numbered row by row, with an empty margin around. What is adjacent to cell c, each two cells once, is the
-    rest of c, cell c + 1, and of each row d in `rows` the cells c + d − 1 to c + d + 1. Where cells would be many more
-    than agents, gaps are closed up; if that does not do, cells are strips across the longest side.
+    Cells are numbered row by row, along the longest side last if the flock is large, with an empty margin around. What
+    is adjacent to cell c, each two cells once, is the rest of c, cell c + 1, and of each row d in `rows` the cells
+    c + d − 1 to c + d + 1. Where cells would be many more than agents, gaps are closed up; if that does not do, cells
+    are strips across the longest side.
     """
     (n, m), most, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
     low, across, strides, total, farthest = np.empty(m), np.empty(m), np.zeros(m, np.int64), np.inf, 0.0
+    ranks = np.zeros(m, np.int64)  # the same strides, rising
     for attempt in range(2):
         if total <= most:
             break
         if attempt == 1:
             width += _ROUNDINGS * farthest  # or what is closed up might round two apart by more than the margin
             x = _closed_up(q, width, most)
-        total = 1.0
+        total, last = 1.0, m - 1
         for k in range(m):
             low[k], high = _ends(x, k)
             farthest = max(farthest, max(abs(low[k]), abs(high)))
             across[k] = np.floor((high - low[k]) / width) + 3.0
-            strides[k] = np.int64(total) if total <= most else 0
+        for k in range(m):
+            last = k if n >= LARGE and across[k] > across[last] else last
+        for rank in range(m):
+            k = last if rank == m - 1 else (m - 1 if rank == last else rank)
+            strides[k] = ranks[rank] = np.int64(total) if total <= most else 0
             total *= across[k]
     strips = not total <= most  # of NaN too
     if strips:
@@ -95,7 +104,34 @@ def sort_into_grid(q, side):
         fill[cell[i]] += np.uint64(1)
     rows = np.empty((0, 1, 4)[0 if strips else m - 1], np.uint64)
     if rows.size == 1:
-        rows[0] = strides[1]
+        rows[0] = ranks[1]
     elif rows.size == 4:
-        rows[0], rows[1], rows[2], rows[3] = strides[1], strides[2] - strides[1], strides[2], strides[2] + strides[1]
+        rows[0], rows[1], rows[2], rows[3] = ranks[1], ranks[2] - ranks[1], ranks[2], ranks[2] + ranks[1]
     return order, start, rows
+
+
+def empty_cuts(n: int) -> Any:
+    """Return room for the number of slabs of n agents, where each begins and the last one ends: one empty slab."""
+    cuts = np.zeros((_SLABS if n >= LARGE else 1) + 2, np.int64)
+    cuts[0] = 1
+    return cuts
+
+
+@kernel
+def cut_into_slabs(start, rows, cuts):
+    """Write the number of slabs of a grid, and the cells at which they begin and end; return the number.
+
+    A slab is layers of cells across the longest side: only cells of the slab itself and of the next are adjacent to
+    its own and later than they, so that all even slabs may add to both agents of their pairs at once, and all odd ones.
+    """
+    layer, end, most, slabs = np.int64(1), start.size - 2, cuts.size - 2, 1
+    if rows.size > 0:
+        layer = np.int64(rows[rows.size // 2])
+    cuts[1] = 0
+    for cell in range(layer, end, layer):
+        agents = np.float64(start[cell] - start[cuts[slabs]])
+        if slabs < most and agents * most >= np.float64(start[end]) and start[cell] < start[end]:
+            slabs += 1
+            cuts[slabs] = cell
+    cuts[0], cuts[slabs + 1] = slabs, end
+    return slabs

@@ -10,18 +10,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import Kernel, callback, load_numba
+from flockana.jit import Kernel, callback, launch_threads, load_numba
 from flockana.kernels.bound import made
+from flockana.kernels.large import parallel_twin
 
 _HEAD = """from flockana.jit import kernel
 from flockana.kernels.listed import Listed
 
 """
-_SEEN = "frame, numbers, panels, starts, first, second, count, order, near, room"
-_ACT = f"def force(t, x, v, u, {_SEEN}):\n    seen, total = Listed(frame, first, second, count, order, near, room), 0.0"
-_ENERGY = (
-    f"def energy(t, x, v, {_SEEN}):\n    seen, total = Listed(frame, first, second, count, order, near, room), 0.0"
-)
+_SEEN = "frame, numbers, panels, starts, first, second, count, cuts, order, near, room"
+_LISTED = "    seen, total = Listed(frame, first, second, count, cuts, order, near, room), 0.0"
+_ACT = f"def force(t, x, v, u, {_SEEN}):\n{_LISTED}"
+_ENERGY = f"def energy(t, x, v, {_SEEN}):\n{_LISTED}"
 _GUARD = "def guard(points, allowance, numbers, starts, shell, far, share):\n"
 
 
@@ -51,8 +51,11 @@ def law_numbers(terms: Any) -> LawNumbers:
 
 
 @cache
-def law_functions(terms: tuple[tuple[Kernel, Kernel], ...]) -> LawFunctions:
-    """Return the functions of a law with such terms, compiled."""
+def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = False) -> LawFunctions:
+    """Return the functions of a law with such terms, compiled for one thread or for several."""
+    if several:
+        launch_threads()
+        terms = tuple((parallel_twin(act), parallel_twin(energy)) for act, energy in terms)
     functions: dict[str, Kernel] = {}
     lines: dict[str, list[str]] = {_ACT: [], _ENERGY: []}
     for k, (act, energy) in enumerate(terms):
@@ -87,6 +90,7 @@ def signatures() -> LawFunctions:
     float64, int64 = numba.float64, numba.int64
     matrix, vector, indices = float64[:, ::1], float64[::1], numba.uint32[::1]
     seen = (
-        matrix, vector, matrix, int64[:, ::1], indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix,
+        matrix, vector, matrix, int64[:, ::1], indices, indices, int64, int64[::1], numba.uint64[::1],
+        numba.uint64[:, ::1], matrix,
     )  # fmt: skip
     return LawFunctions(float64(float64, matrix, matrix, matrix, *seen), float64(float64, matrix, matrix, *seen))

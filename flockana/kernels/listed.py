@@ -14,9 +14,10 @@ class Listed(NamedTuple):
     first: Any  # the pairs: uint32
     second: Any
     count: Any  # how many there are
+    cuts: Any  # where those of each slab begin, and those of the last one end (`flockana.kernels.grid`)
     order: Any  # (n,), uint64: every agent's own number
-    near: Any  # (2, BLOCK), work space of each term in turn
-    room: Any  # (3, BLOCK), the same
+    near: Any  # (2 slabs, BLOCK), work space of each term in turn
+    room: Any  # (3 slabs, BLOCK), the same
 
 
 @kernel

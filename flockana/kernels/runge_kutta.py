@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined, kernel, register_jitable
 from flockana.kernels.sums import column_squares, squared_deviations
-from flockana.kernels.verlet import COUNT, covers
+from flockana.kernels.verlet import COUNT
 
 
 class Method(NamedTuple):
@@ -43,6 +43,14 @@ class Step(NamedTuple):
     trial: Any
 
 
+class Work(NamedTuple):
+    """Functions of large arrays that one thread runs or several, as callbacks with the same results."""
+
+    listed: Any  # `flockana.kernels.verlet.listed_anew`
+    covers: Any
+    combine: Any
+
+
 class System(NamedTuple):
     """Law as steps take it: functions, numbers, frame of the state, and work space."""
 
@@ -52,31 +60,36 @@ class System(NamedTuple):
     seen_from: Any  # start, origin and drift of the frame of the vectors
     moving: Any  # whether the energy is that in the moving frame
     reach: Any  # distance within which all pairs are needed, and the skin of a list
-    listed: Any  # `flockana.kernels.verlet.listed_anew`
+    work: Any  # `Work`: what takes time beside them
     order: Any  # (n,), uint64: every agent's own number
     frame: Any  # room (`flockana.kernels.listed.Listed`)
     near: Any
     room: Any
 
 
-_STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
+STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
+
+
+@register_jitable
+def combine_strip(begin, y, h, weights, rates, rows, count, out):
+    """`combine` for the components of a strip."""
+    end = min(begin + STRIP, y.size)
+    total, start = out[begin:end], y[begin:end]
+    total[:] = 0.0
+    for j in range(count):
+        if weights[j] != 0.0:
+            rate, weight = rates[rows[j], begin:end], weights[j]
+            for k in range(end - begin):
+                total[k] += weight * rate[k]
+    for k in range(end - begin):
+        total[k] = start[k] + h * total[k]
 
 
 @kernel
 def combine(y, h, weights, rates, rows, count, out):
     """y + h Σ weights_j K_j over the first `count` stages."""
-    for begin in range(0, y.size, _STRIP):
-        end = min(begin + _STRIP, y.size)
-        total = out[begin:end]
-        total[:] = 0.0
-        for j in range(count):
-            if weights[j] != 0.0:
-                rate, weight = rates[rows[j], begin:end], weights[j]
-                for k in range(end - begin):
-                    total[k] += weight * rate[k]
-        start = y[begin:end]
-        for k in range(end - begin):
-            total[k] = start[k] + h * total[k]
+    for begin in range(0, y.size, STRIP):
+        combine_strip(begin, y, h, weights, rates, rows, count, out)
 
 
 @kernel
@@ -93,14 +106,14 @@ def rate_of(t, y, f, system, pairs):
     n, m, law, frame, (reach, skin) = system.order.size, system.frame.shape[1], system.law, system.frame, system.reach
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
-    if reach > 0.0 and not covers(pairs, x, reach):
-        system.listed(x, reach + skin, pairs)
+    if reach > 0.0 and not system.work.covers(pairs, x, reach):
+        system.work.listed(x, reach + skin, pairs)
     frame_at(t, system.seen_from, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     f[2 * size] = system.force(
         t, x, v, u, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.counts[COUNT],
-        system.order, system.near, system.room,
+        pairs.cuts[1 : pairs.cuts[0] + 2], system.order, system.near, system.room,
     )  # fmt: skip
 
 
@@ -117,7 +130,7 @@ def energy_of(t, y, system, pairs):
             total += 0.5 * column_squares(v, c, -frame[1, c])
     return total + system.energy(
         t, x, v, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.counts[COUNT],
-        system.order, system.near, system.room,
+        pairs.cuts[1 : pairs.cuts[0] + 2], system.order, system.near, system.room,
     )  # fmt: skip
 
 
@@ -127,7 +140,7 @@ def stages_of(step, method, begin, end, system, pairs):
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
         into = step.reached if s == method.stages else step.trial
-        combine(step.y, step.h, method.a[s], rates, rows, s, into)
+        system.work.combine(step.y, step.h, method.a[s], rates, rows, s, into)
         if method.lead != 0.0:  # of one stage, whose rate is in row 0
             for k in range(into.size // 2):
                 into[k] += method.lead * step.h * step.h * rates[0, into.size // 2 + k]
@@ -159,8 +172,8 @@ def error_of(step, method):
     h, y, reached, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
         weights, square, other = method.estimates[estimate], 0.0, square
-        for begin in range(0, y.size, _STRIP):
-            end = min(begin + _STRIP, y.size)
+        for begin in range(0, y.size, STRIP):
+            end = min(begin + STRIP, y.size)
             for k in range(end - begin):
                 strip[k] = 0.0
             for j in range(weights.size):

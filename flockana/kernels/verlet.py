@@ -4,13 +4,12 @@ A list is a half list of two index arrays with room to spare, which kernels fill
 what a pair needs close in memory.
 """
 
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import callback_like, kernel
-from flockana.kernels.grid import sort_into_grid
+from flockana.jit import inlined, kernel, register_jitable
+from flockana.kernels.grid import empty_cuts, sort_into_grid
 from flockana.kernels.sums import put, slope_along
 
 
@@ -21,6 +20,7 @@ class Pairs(NamedTuple):
     second: Any
     places: Any  # (n, m): where the agents were
     reach: Any  # (1,): the pairs closer than this are listed; 0 of an empty list
+    cuts: Any  # int64: number of slabs, and where the pairs of each begin and those of the last end
     counts: Any  # (2,), int64: of pairs, or as `list_pairs` returns it where they do not fit; of lists made so far
 
 
@@ -36,29 +36,25 @@ def spatial_order(q: Any, side: float) -> Any:
     return sort_into_grid(q, side)[0]
 
 
-@kernel
-def list_pairs(q, reach, first, second):
-    """Write the pairs closer than `reach` into two arrays; return their count.
+@inlined
+def later_agents(start, rows, cell):
+    """Return with how many agents one of a cell may be listed, at most."""
+    count = np.int64(start[cell + 2] - start[cell])
+    for row in range(rows.size):
+        there = np.int64(cell) + np.int64(rows[row])
+        count += np.int64(start[there + 2] - start[there - 1])
+    return count
 
-    It is CROWDED if there are too many for memory, and minus the room that is needed, or below, if that is more than
-    the arrays have.
-    """
-    if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
-        return 0
-    order, start, rows = sort_into_grid(q, reach)
-    m = q.shape[1]
-    x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
-    for i in range(order.size):
-        for c in range(m):
-            x[i, c] = q[order[i], c]
-    for cell in range(start.size - 2):
+
+@register_jitable
+def list_cells(x, grid, limit, cells, lists, count):
+    """List the pairs of the agents in some cells from a place on; return where they end, or as `list_pairs`."""
+    (order, start, rows), (first, second), m = grid, lists, x.shape[1]
+    for cell in range(cells[0], cells[1]):
         begin, end = start[cell], start[cell + 1]
         if begin == end:
             continue
-        candidates = np.int64(start[cell + 2] - begin)
-        for row in range(rows.size):
-            there = np.int64(cell) + np.int64(rows[row])
-            candidates += np.int64(start[there + 2] - start[there - 1])
+        candidates = later_agents(start, rows, cell)
         if rows.size > 0 and count + candidates * np.int64(end - begin) > MOST:  # cells as wide as the reach
             return CROWDED
         for i in range(begin, end):
@@ -77,6 +73,24 @@ def list_pairs(q, reach, first, second):
                     first[count], second[count] = order[i], order[j]
                     count += square < limit
     return count
+
+
+@kernel
+def list_pairs(q, reach, first, second):
+    """Write the pairs closer than `reach` into two arrays; return their count.
+
+    It is CROWDED if there are too many for memory, and minus the room that is needed, or below, if that is more than
+    the arrays have.
+    """
+    if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
+        return 0
+    order, start, rows = sort_into_grid(q, reach)
+    x = np.empty(q.shape)
+    for i in range(order.size):
+        for c in range(q.shape[1]):
+            x[i, c] = q[order[i], c]
+    cells, limit = (0, start.size - 2), max(reach * reach, 5e-324)
+    return list_cells(x, (order, start, rows), limit, cells, (first, second), 0)
 
 
 @kernel
@@ -108,9 +122,8 @@ def covers(pairs, q, within):
 
 
 @kernel
-def listed_anew(q, reach, pairs):
-    """List the pairs closer than `reach` in place of an old list; return their count, as `list_pairs` does."""
-    count = list_pairs(q, reach, pairs.first, pairs.second)
+def noted(count, q, reach, pairs):
+    """Note what a new list was made from, and return its count."""
     put(q, pairs.places)
     pairs.reach[0] = reach if count >= CROWDED else 0.0
     pairs.counts[COUNT] = count
@@ -118,17 +131,18 @@ def listed_anew(q, reach, pairs):
     return count
 
 
-@cache
-def lister() -> Any:
-    """Return `listed_anew` as a callback for compiled code."""
-    pairs = no_pairs(1, 1)
-    return callback_like(listed_anew, 0, np.empty((1, 1)), 0.0, pairs)
+@kernel
+def listed_anew(q, reach, pairs):
+    """List the pairs closer than `reach` in place of an old list; return their count, as `list_pairs` does."""
+    count = list_pairs(q, reach, pairs.first, pairs.second)
+    pairs.cuts[0], pairs.cuts[1], pairs.cuts[2] = 1, 0, max(count, 0)
+    return noted(count, q, reach, pairs)
 
 
 def no_pairs(n: int, m: int) -> Pairs:
     """Return an empty list of pairs, to be filled later."""
     first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return Pairs(first, second, np.empty((n, m)), np.zeros(1), np.zeros(2, np.int64))
+    return Pairs(first, second, np.empty((n, m)), np.zeros(1), empty_cuts(n), np.zeros(2, np.int64))
 
 
 def with_room(pairs: Pairs) -> Pairs | None:
@@ -137,10 +151,3 @@ def with_room(pairs: Pairs) -> Pairs | None:
         return None
     room = max(needed, 2 * pairs.first.size)
     return pairs._replace(first=np.empty(room, np.uint32), second=np.empty(room, np.uint32))
-
-
-def fill(pairs: Pairs, q: Any, reach: float) -> Pairs:
-    """List the pairs closer than `reach`; return the list, with as much room as they need unless they are CROWDED."""
-    while listed_anew(q, reach, pairs) < CROWDED:
-        pairs = with_room(pairs) or pairs
-    return pairs

@@ -16,6 +16,7 @@ from flockana.kernels.encounters import (
     share_of_pair,
     steepest,
 )
+from flockana.kernels.grid import empty_cuts
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.paths import bernstein, centred
 from flockana.kernels.verlet import Pairs, listed_anew, no_pairs
@@ -172,7 +173,7 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
     kept, near = no_pairs(40, m), no_pairs(200, m)._replace(places=np.empty((40, m)))
     if listed in ("all", "too few"):
         count, reach = (i.size, 1e6) if listed == "all" else (0, R)
-        kept = Pairs(i, j, states.q0, np.array([reach]), np.array([count, 1]))
+        kept = Pairs(i, j, states.q0, np.array([reach]), empty_cuts(40), np.array([count, 1]))
     given = around(radii)._replace(listed=found)
     share = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flockana.kernels.large import fill
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.verlet import COUNT, CROWDED, covers, fill, list_pairs, listed_anew, no_pairs, spatial_order
+from flockana.kernels.verlet import COUNT, CROWDED, covers, list_pairs, listed_anew, no_pairs, spatial_order
 
 
 def listed(q, reach, room=1):

@@ -10,10 +10,12 @@ from flockana.base.shown import ShortRepr
 from flockana.interactions.functions import LawFunction
 from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
+from flockana.kernels.grid import LARGE, empty_cuts
+from flockana.kernels.large import work_of
 from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
 from flockana.kernels.listed import Listed
 from flockana.kernels.runge_kutta import System
-from flockana.kernels.verlet import SKIN, lister
+from flockana.kernels.verlet import SKIN
 from flockana.laws.features import Feature, Unknown, function_feature
 
 Derivatives = tuple[Any, Any]  # (∂u/∂q, ∂u/∂p), sparse or as blocks
@@ -54,7 +56,7 @@ class TermKernel(NamedTuple):
         """
         (n, m), none = q.shape, np.empty(0, np.uint32)
         order, room = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
-        listed = Listed(np.zeros((2, m)), none, none, 0, order, room, np.empty((3, m)))
+        listed = Listed(np.zeros((2, m)), none, none, 0, np.zeros(2, np.int64), order, room, np.empty((3, m)))
         x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
         return float(self.act(t, x, v, u, self.numbers, self.panels, listed))
 
@@ -70,10 +72,9 @@ class Compiled(NamedTuple):
         """Distance within which the term needs all pairs."""
         return max((term.reach for term in self.terms), default=0.0)
 
-    @property
-    def functions(self) -> LawFunctions:
-        """Compiled functions of the term."""
-        return law_functions(tuple((term.act, term.energy) for term in self.terms))
+    def functions(self, *, several: bool = False) -> LawFunctions:
+        """Return the compiled functions of the law, for one thread or for several."""
+        return law_functions(tuple((term.act, term.energy) for term in self.terms), several)
 
     @property
     def numbers(self) -> LawNumbers:
@@ -89,8 +90,14 @@ class Compiled(NamedTuple):
             The frame (start, origin, drift) that forces are seen from.
         """
         reach, own = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
-        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
-        return System(*self.functions, self.numbers, view, self.moving, reach, lister(), own, *room)
+        slabs = empty_cuts(n).size - 2
+        room = np.empty((2, m)), np.empty((2 * slabs, BLOCK), np.uint64), np.empty((3 * slabs, BLOCK))
+        return System(*self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), own, *room)
+
+    def in_threads(self, system: System) -> System:
+        """Return the system with the functions that several threads run."""
+        force, energy = self.functions(several=True)
+        return system._replace(force=force, energy=energy, work=work_of(large=True, several=True))
 
 
 class Term(ShortRepr, ABC):

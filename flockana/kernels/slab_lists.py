@@ -1,0 +1,67 @@
+"""Lists of pairs of large flocks: slabs are listed at once, by all threads, each into a part of the list."""
+
+import numpy as np
+
+from flockana.jit import kernel, parallel, prange, register_jitable
+from flockana.kernels.grid import cut_into_slabs, sort_into_grid
+from flockana.kernels.verlet import MOST, later_agents, list_cells, list_pairs, noted
+
+
+@register_jitable
+def _most_pairs(start, rows, begin, end):
+    """Number of pairs of the agents in some cells, at most."""
+    total = 0
+    for cell in range(begin, end):
+        size = np.int64(start[cell + 1] - start[cell])
+        total += size * later_agents(start, rows, cell) if size > 0 else 0
+    return total
+
+
+@kernel
+def list_slabs(q, reach, first, second, cuts):
+    """As `list_pairs`, with the same list; write the number of slabs, and where the pairs of each begin and end."""
+    cuts[0], cuts[1], cuts[2], count = 1, 0, 0, 0
+    if not reach > 0.0:
+        return count
+    order, start, rows = sort_into_grid(q, reach)
+    x, slabs, limit = np.empty(q.shape), cut_into_slabs(start, rows, cuts), max(reach * reach, 5e-324)
+    for i in prange(order.size):
+        for c in range(q.shape[1]):
+            x[i, c] = q[order[i], c]
+    cells, places, ends = cuts[1:].copy(), np.empty(slabs + 1, np.int64), np.empty(slabs, np.int64)
+    for s in prange(slabs):
+        places[s + 1] = _most_pairs(start, rows, cells[s], cells[s + 1])
+    places[0] = 0
+    for s in range(slabs):
+        places[s + 1] += places[s]
+    if places[slabs] > min(first.size, MOST):
+        cuts[0], cuts[1], cuts[2] = 1, 0, 0
+        if places[slabs] <= MOST:
+            return -(places[slabs] + 2)
+        count = list_pairs(q, reach, first, second)
+        cuts[2] = max(count, 0)
+        return count
+    for s in prange(slabs):
+        part = cells[s], cells[s + 1]
+        ends[s] = list_cells(x, (order, start, rows), limit, part, (first, second), places[s])
+    for s in range(slabs):
+        for k in range(places[s], ends[s]):
+            first[count], second[count] = first[k], second[k]
+            count += 1
+        cuts[s + 2] = count
+    return count
+
+
+parallel_list_slabs = parallel(list_slabs)
+
+
+@kernel
+def listed_in_slabs(q, reach, pairs):
+    """As `listed_anew`, slab by slab."""
+    return noted(list_slabs(q, reach, pairs.first, pairs.second, pairs.cuts), q, reach, pairs)
+
+
+@kernel
+def listed_by_threads(q, reach, pairs):
+    """As `listed_in_slabs`, by several threads."""
+    return noted(parallel_list_slabs(q, reach, pairs.first, pairs.second, pairs.cuts), q, reach, pairs)

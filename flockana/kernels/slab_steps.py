@@ -1,0 +1,60 @@
+"""Work of the steps of large flocks beside forces and lists, by all threads, with the results of one."""
+
+import numpy as np
+
+from flockana.jit import kernel, parallel, prange
+from flockana.kernels.runge_kutta import STRIP, combine_strip
+from flockana.kernels.sums import slope_along
+
+_PARTS = 64  # of the agents
+
+
+@kernel
+def combine_strips(y, h, weights, rates, rows, count, out):
+    """As `flockana.kernels.runge_kutta.combine`."""
+    for strip in prange((y.size + STRIP - 1) // STRIP):
+        combine_strip(np.int64(strip) * STRIP, y, h, weights, rates, rows, count, out)
+
+
+@kernel
+def ways_between(q, reference, along, low, high):
+    """Write the least and greatest way of each part of the agents along each coordinate, beside the common stretch."""
+    n, m = q.shape
+    for part in prange(_PARTS):
+        begin, end = np.int64(part) * n // _PARTS, (np.int64(part) + 1) * n // _PARTS
+        for c in range(m):
+            least = most = q[0, c] - along[c] * reference[0, c]
+            for i in range(begin, end):
+                way = q[i, c] - along[c] * reference[i, c]
+                least, most = way if way < least else least, way if way > most else most
+            low[part, c], high[part, c] = least, most
+
+
+parallel_combine_strips, parallel_ways_between = parallel(combine_strips), parallel(ways_between)
+
+
+@kernel
+def combined_by_threads(y, h, weights, rates, rows, count, out):
+    """As `flockana.kernels.runge_kutta.combine`, by several threads."""
+    parallel_combine_strips(y, h, weights, rates, rows, count, out)
+
+
+@kernel
+def covered_by_threads(pairs, q, within):
+    """As `flockana.kernels.verlet.covers`, by several threads."""
+    reference, m = pairs.places, q.shape[1]
+    along, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
+    for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
+        square, least = 0.0, np.inf
+        for c in range(m):
+            along[c] = slope_along(reference, q, c, 1.0) if stretched else 1.0
+            least = min(least, along[c])
+        parallel_ways_between(q, reference, along, low, high)
+        for c in range(m):
+            first, last = low[0, c], high[0, c]
+            for part in range(1, _PARTS):
+                first, last = min(first, low[part, c]), max(last, high[part, c])
+            square += (last - first) ** 2
+        if np.sqrt(square) <= least * pairs.reach[0] - within:
+            return True
+    return False
