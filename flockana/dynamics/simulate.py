@@ -34,7 +34,7 @@ from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.grid import LARGE
-from flockana.kernels.threads import ensure_threads
+from flockana.kernels.threads import ensure_threads, limited_threads
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
@@ -99,7 +99,9 @@ def simulate(
         such as `Trajectory.min_distance`, rest on the steps in either case.
     threads : int, optional
         Cores for a flock of 10,000 agents or more, with the same bits for any number; by default NUMBA_NUM_THREADS, or
-        all, and one in worker processes. Laws that are compiled use them for their pair forces.
+        all, and one in worker processes. What threads are pair forces within a range and their energies, lists of
+        pairs, and the stages of compiled methods; alignment alone, links, obstacles, directed nets, maps, zone flocking
+        and the checks of steps run on one.
     progress : bool
         Show a progress bar on the terminal.
     watch : callable, optional
@@ -133,7 +135,8 @@ def simulate(
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
     threads = ensure_threads(threads) if threads is not None or len(q0) >= LARGE else 1
-    start = first_call(law, t_span[0], q0, p0)
+    with limited_threads(threads):
+        start = first_call(law, t_span[0], q0, p0)
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
     if isinstance(law, DiscreteLaw):
@@ -148,7 +151,8 @@ def simulate(
             raise ArgumentError(f"method = {plan.solver.name!r}: {law.title} is of first order; expected RK4 or Heun")
         name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan._replace(threads=threads))
     started, tally = time.perf_counter(), Tally()
-    kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
+    with limited_threads(threads):
+        kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
     counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     if not kept:  # ended before the first time to keep

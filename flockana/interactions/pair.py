@@ -14,9 +14,11 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError
 from flockana.interactions.functions import DistanceFunction, InnerValues
 from flockana.jit import thawed
+from flockana.kernels.grid import LARGE
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.scalars import sigma_norm
+from flockana.kernels.threads import several_threads
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -166,7 +168,11 @@ class PairInteraction(DistanceFunction):
         u = np.zeros_like(q) if out is None else out
         par = self._constants
         sums = self.kernels.sums(q.shape[1], par.size)
-        return u, sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
+        if len(q) < LARGE:
+            return u, sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
+        with several_threads() as several:
+            sum_up = sums.parallel_forces_in_slabs if several else sums.forces_in_slabs
+            return u, sum_up(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
 
     @cached_property
     def _constants(self) -> FloatArray:

@@ -1,7 +1,5 @@
 """Agents sorted into the cells of a grid: those within a range of each other are in the same or in adjacent cells."""
 
-from typing import Any
-
 import numpy as np
 
 from flockana.jit import inlined, kernel
@@ -110,10 +108,11 @@ def sort_into_grid(q, side):
     return order, start, rows
 
 
-def empty_cuts(n: int) -> Any:
+@inlined
+def empty_cuts(n):
     """Return room for the number of slabs of n agents, where each begins and the last one ends: one empty slab."""
-    cuts = np.zeros((_SLABS if n >= LARGE else 1) + 2, np.int64)
-    cuts[0] = 1
+    cuts = np.empty((_SLABS if n >= LARGE else 1) + 2, np.int64)
+    cuts[0], cuts[1], cuts[2] = 1, 0, 0
     return cuts
 
 

@@ -17,7 +17,7 @@ from flockana.kernels.alpha import stress_alpha as pair  # bound
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.blocks import apart_2 as apart  # bound
 from flockana.kernels.blocks import as_they_are as as_tuple  # bound
-from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.grid import cut_into_slabs, empty_cuts, sort_into_grid
 
 M = 2  # bound
 NORMED = True  # bound
@@ -129,7 +129,7 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
 def energy(t, x, v, numbers, panels, listed):
     """c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
-    slabs, total, pairs, n, own = cuts.size - 1, 0.0, 0, x.shape[0], OWN[:0]
+    slabs, total, pairs, n, own = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
     for s in prange(slabs):
         _energy_in_slab(own, np.int64(s), x, numbers, panels, (first, second), cuts, near, room)
     for s in range(slabs):
@@ -176,13 +176,13 @@ def energy_links(t, x, v, numbers, panels, listed):
 
 
 @inlined
-def _sweep(start, rows, flock, r2, par, gains, pairs, room):
-    """The forces of a flock (q, p, u) sorted into a grid."""
+def _sweep(cells, start, rows, flock, r2, par, gains, pairs, room):
+    """The forces of a flock (q, p, u) sorted into a grid, between agents in some cells and later ones."""
     (x, v, forced), (first, second), s2 = flock, pairs, room[0]
     count, total = np.int64(0), 0.0  # typed: of a literal, `_add` would be compiled once more
     if x.shape[1] != M:
         return np.nan  # as above
-    for cell in range(start.size - 2):
+    for cell in range(cells[0], cells[1]):
         for i in range(start[cell], start[cell + 1]):
             for row in range(-1, np.int64(rows.size)):
                 begin, end = i + np.uint64(1), start[cell + 2]
@@ -214,13 +214,47 @@ def forces(q, p, r, numbers, c1, c2, u, room):
     for k in range(order.size):
         for c in range(M):
             x[k, c], v[k, c], forced[k, c] = q[order[k], c], p[order[k], c], 0.0
-    pairs = np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)
+    pairs, cells = (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)), (0, start.size - 2)
     block, par = (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)), as_tuple(numbers)
-    total = _sweep(start, rows, (x, v, forced), max(r * r, 5e-324), par, (c1, c2), pairs, block)
+    total = _sweep(cells, start, rows, (x, v, forced), max(r * r, 5e-324), par, (c1, c2), pairs, block)
     for k in range(order.size):
         for c in range(M):
             u[order[k], c] += forced[k, c]
     return total
+
+
+@register_jitable
+def _sweep_slab(own, low, high, start, rows, flock, r2, numbers, gains):
+    """`_sweep` over the cells of a slab."""
+    pairs, par = (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)), as_tuple(numbers)
+    room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    return _sweep((low, high), start, rows, flock, r2, par, gains, pairs, room)
+
+
+@kernel
+def forces_in_slabs(q, p, r, numbers, c1, c2, u, room):
+    """As `forces` for a large flock: even slabs at once, then odd ones."""
+    order, start, rows = sort_into_grid(q, r)
+    x, v, forced, cuts, own, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
+    slabs, r2 = cut_into_slabs(start, rows, cuts), max(r * r, 5e-324)
+    totals = np.empty(slabs)
+    for k in prange(order.size):
+        for c in range(M):
+            x[k, c], v[k, c], forced[k, c] = q[order[k], c], p[order[k], c], 0.0
+    for parity in range(2):
+        for half in prange((slabs + 1 - parity) // 2):
+            s = 2 * np.int64(half) + parity
+            low, high = cuts[s + 1], cuts[s + 2]
+            totals[s] = _sweep_slab(own, low, high, start, rows, (x, v, forced), r2, numbers, (c1, c2))
+    for k in prange(order.size):
+        for c in range(M):
+            u[order[k], c] += forced[k, c]
+    for k in range(slabs):
+        total += totals[k]
+    return total
+
+
+parallel_forces_in_slabs = parallel(forces_in_slabs)
 
 
 @kernel

@@ -8,6 +8,7 @@ threading layers may be entered by two threads at once.
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from multiprocessing import parent_process
 from threading import Lock
 from typing import Any
@@ -16,6 +17,7 @@ from flockana.base.errors import ArgumentError
 from flockana.jit import launch_threads, load_numba
 
 _ONE_RUN = Lock()
+_LIMIT: ContextVar[int | None] = ContextVar("threads of a run", default=None)
 
 
 def most_threads() -> int:
@@ -40,18 +42,29 @@ def ensure_threads(threads: Any) -> int:
 
 
 @contextmanager
-def several_threads(threads: int) -> Iterator[bool]:
+def several_threads(threads: int | None = None) -> Iterator[bool]:
     """Set numba's number of threads; yield whether code for several threads may run inside."""
-    if threads < 2 or launch_threads() != os.getpid() or not _ONE_RUN.acquire(blocking=False):
+    count = ensure_threads(_LIMIT.get() if threads is None else threads)
+    if count < 2 or launch_threads() != os.getpid() or not _ONE_RUN.acquire(blocking=False):
         yield False
         return
     try:
         numba = load_numba()
         before = numba.get_num_threads()
-        numba.set_num_threads(threads)
+        numba.set_num_threads(count)
         try:
             yield True
         finally:
             numba.set_num_threads(before)
     finally:
         _ONE_RUN.release()
+
+
+@contextmanager
+def limited_threads(threads: int | None) -> Iterator[None]:
+    """Let `several_threads` use so many inside, unless it is given a number itself."""
+    token = _LIMIT.set(threads)
+    try:
+        yield
+    finally:
+        _LIMIT.reset(token)

@@ -22,7 +22,7 @@ import numpy as np
 import flockana as fl
 from flockana.kernels.large import fill
 from flockana.kernels.runge_kutta import energy_of, rate_of
-from flockana.kernels.threads import several_threads
+from flockana.kernels.threads import limited_threads, several_threads
 from flockana.kernels.verlet import no_pairs
 
 LAWS = {"alpha": fl.Algorithm1(), "dead zone": fl.DeadZoneFlocking()}
@@ -38,6 +38,10 @@ def run(threads, n=10_001, m=2):
     made = fl.simulate(LAWS["alpha"], *flock(n, m), (0.0, 0.02), method="RK4", dt=0.01, threads=threads)
     return told(made.q, made.p, made.u, made.extra["work"])
 
+def forces(threads, n=10_001):
+    with limited_threads(threads):
+        return told(*(x for m in (1, 2, 3) for x in LAWS["alpha"].flow(0.0, *flock(n, m))))
+
 def rate(name, threads, n=10_001, m=2):
     q, p = flock(n, m)
     form = LAWS[name].compiled(m)
@@ -48,7 +52,7 @@ def rate(name, threads, n=10_001, m=2):
         system = form.in_threads(system) if several else system
         pairs = fill(no_pairs(n, m), q, sum(system.reach), several)
         rate_of(0.0, y, f, system, pairs)
-        return told(f, energy_of(0.0, y, system, pairs), pairs.cuts)
+        return told(f, energy_of(0.0, y, system, pairs), pairs.cuts[: pairs.cuts[0] + 2])
 """
 RATES = """
 for name in sys.argv[1:]:
@@ -67,7 +71,10 @@ AT_ONCE = """
 with ThreadPoolExecutor(4) as pool:
     print(*pool.map(run, [2] * 4), run(1))
 """
-MANY = "print(*(run(k) for k in (1, 2, 3, 8)))\nprint(*(rate('alpha', k, m=3) for k in (1, 2, 3, 8)))\n"
+MANY = """
+for told_by in (run, forces, lambda k: rate("alpha", k, m=3)):
+    print(*(told_by(k) for k in (1, 2, 3, 8)))
+"""
 
 
 def same(body, *arguments, layer="default", before=(), **environment):

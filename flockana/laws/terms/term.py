@@ -18,6 +18,7 @@ from flockana.kernels.runge_kutta import System
 from flockana.kernels.verlet import SKIN
 from flockana.laws.features import Feature, Unknown, function_feature
 
+_NO_PAIRS = np.zeros(2, np.int64)  # where those of the only slab begin and end
 Derivatives = tuple[Any, Any]  # (∂u/∂q, ∂u/∂p), sparse or as blocks
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
@@ -56,7 +57,7 @@ class TermKernel(NamedTuple):
         """
         (n, m), none = q.shape, np.empty(0, np.uint32)
         order, room = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
-        listed = Listed(np.zeros((2, m)), none, none, 0, np.zeros(2, np.int64), order, room, np.empty((3, m)))
+        listed = Listed(np.zeros((2, m)), none, none, 0, _NO_PAIRS, order, room, np.empty((3, m)))
         x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
         return float(self.act(t, x, v, u, self.numbers, self.panels, listed))
 
