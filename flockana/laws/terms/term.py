@@ -74,7 +74,13 @@ class Compiled(NamedTuple):
         return max((term.reach for term in self.terms), default=0.0)
 
     def functions(self, *, several: bool = False) -> LawFunctions:
-        """Return the compiled functions of the law, for one thread or for several."""
+        """Return the compiled functions of the law.
+
+        Parameters
+        ----------
+        several : bool
+            Whether they are for several threads.
+        """
         return law_functions(tuple((term.act, term.energy) for term in self.terms), several)
 
     @property
@@ -96,7 +102,13 @@ class Compiled(NamedTuple):
         return System(*self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), own, *room)
 
     def in_threads(self, system: System) -> System:
-        """Return the system with the functions that several threads run."""
+        """Return a system with functions for several threads.
+
+        Parameters
+        ----------
+        system : System
+            The law for one thread.
+        """
         force, energy = self.functions(several=True)
         return system._replace(force=force, energy=energy, work=work_of(large=True, several=True))
 
