@@ -227,10 +227,14 @@ def load_numba() -> Any:
 @cache
 def launch_threads() -> int:
     """Start numba's threads, as code for them cannot even be loaded before; return the process's id."""
-    numba = load_numba()
+    numba, policy = load_numba(), "OMP_WAIT_POLICY"
     with _ONE:
+        given = policy in os.environ
+        os.environ.setdefault(policy, "passive")  # threads that wait in a loop take the cores that others need
         numba.config.reload_config()  # NUMBA_NUM_THREADS may be set after numba's import, but not from now on
         numba.get_num_threads()
+        if not given:
+            del os.environ[policy]
     return os.getpid()
 
 
