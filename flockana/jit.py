@@ -89,7 +89,7 @@ class Kernel:
             raise origin_of(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
-        """Return the arguments with writable views of read-only arrays; note that this kernel gets such arrays."""
+        """Return the arguments with writable views of read-only arrays, and note that this kernel gets such arrays."""
         code, given = self.function.__code__, list(arguments)
         for k, each in enumerate(arguments):
             if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
@@ -246,7 +246,7 @@ def pause_compiling() -> Iterator[None]:
 
 
 def _opened(dispatcher: Any) -> Any:
-    """Return the dispatcher, allowed to compile for new types until `compiling` ends."""
+    """Allow a dispatcher to compile for new types until `compiling` ends, and return it."""
     if hasattr(dispatcher, "disable_compile"):
         dispatcher.disable_compile(False)
         _OPEN.append(dispatcher)
@@ -291,7 +291,7 @@ def _folder(function: Callable[..., Any]) -> Path | None:
 
 
 def _mark(function: Callable[..., Any], types: Any) -> Path | None:
-    """Return the path of the file that marks a function as compiled for these types by some process."""
+    """Return the path of the file that says that some process has compiled a function for these types."""
     config, folder = load_numba().config, _folder(function)
     known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
     return None if folder is None else folder / f"{sha256([repr(known)])[:16]}.known"
@@ -325,7 +325,7 @@ def compiling(mark: Path | None = None, name: str = "kernels") -> Iterator[None]
 
 @contextmanager
 def _announced(name: str) -> Iterator[None]:
-    """Say that kernels are compiled, or waited for, once that takes long."""
+    """Say within the block that kernels are compiled, or waited for, as soon as that takes long."""
     show_part(f"compiling {name}")  # beside a bar of tasks
     timer = Timer(_SILENT, _announce, [name])
     timer.daemon = True

@@ -28,7 +28,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
 
 
 def ensure_positive(name: str, value: Any) -> float:
-    """Return `value` as a finite float > 0 (arguments and errors as `ensure_finite_scalar`)."""
+    """Return `value` as a finite float > 0; errors as `ensure_finite_scalar`."""
     number = ensure_finite_scalar(name, value)
     if number <= 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number > 0")
@@ -66,7 +66,7 @@ def freeze_vector(item: Any, name: str, m: int | None = None) -> FloatArray:
 
 
 def _real(value: Any) -> Any:
-    """Return the value; raise on text, booleans, dates and masked entries, which numpy would convert."""
+    """Return a number or array as it is; raise on text, booleans, dates and masked entries."""
     if isinstance(value, str | bytes | bool | np.bool_ | np.datetime64 | np.timedelta64) or np.ma.is_masked(value):
         raise TypeError(f"{format_value(value)} is no number")
     return value
@@ -123,7 +123,7 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def draw_start(q0: Any, p0: Any, seed: int, velocities: Any = None) -> tuple[FloatArray, FloatArray]:
-    """Return positions and velocities of a start, given as arrays or as functions of a seed; at rest without p0.
+    """Return positions and velocities of a start, given as arrays or as functions of a seed; at rest by default.
 
     `velocities` is a function of positions that completes a start without p0 otherwise.
 
@@ -237,7 +237,7 @@ def ensure_index(what: str, value: Any, count: int, kind: str = "a whole number"
 
 
 def ensure_seed(seed: Any, bits: int | None = None) -> int:
-    """Return a seed, a whole number >= 0, of so many bits at most."""
+    """Return a seed as a whole number >= 0 that fits into a given number of bits."""
     seed = _ensure_whole("seed", seed, 0)
     if bits is not None and seed >= 2**bits:
         raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number below 2**{bits}")

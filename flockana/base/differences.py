@@ -22,7 +22,7 @@ class Differences(NamedTuple):
 
 
 def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, unit: float) -> Differences:
-    """Return ∂f/∂x at x, shape (f.size, x.size), by central differences of order 6 at the width that serves best.
+    """Return the derivative ∂f/∂x, shape (f.size, x.size), by central differences of order 6 at the best width.
 
     Examples
     --------

@@ -12,7 +12,7 @@ _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 
 @dataclass(frozen=True)
 class Fact:
-    """One property of a function."""
+    """Fact about a function: met, unmet or assumed, with its reason."""
 
     status: FactStatus
     detail: str = ""
@@ -21,7 +21,7 @@ class Fact:
 
 
 def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
-    """Return the conjunction of facts: unmet if one is, else assumed if one is, else met."""
+    """Return the status of several facts together: unmet if one is unmet, else assumed if one is assumed, else met."""
     facts = list(facts)
     met: FactStatus = "met"
     worst = min((met, *(fact.status for fact in facts)), key=_ORDER.index)
@@ -46,5 +46,5 @@ class PairFacts(ShortRepr):
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """Violations of smoothness that are certain, each in words."""
+        """Sentences that name where the pair law is certainly not smooth."""
         return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()

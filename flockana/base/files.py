@@ -25,7 +25,7 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 
 
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
-    """Return the file behind a path, links followed; raise if it is something that must not be replaced."""
+    """Return the file that a path leads to through links; raise if it is something that must not be replaced."""
     # A device or a pipe is left alone, and so is a link: what it points to is written.
     given = ensure_path(path, action="write", remedy=remedy)
     target, reason = Path(os.path.realpath(given)), ""
@@ -83,7 +83,7 @@ def write_atomic(
 
 
 def read_text_file(path: Any) -> str:
-    """Return the UTF-8 text of a regular file; raise on devices and on huge files."""
+    """Return the UTF-8 text of a regular file; raise on devices and on files too large for a text."""
     # What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
     source = ensure_path(path)
     try:

@@ -80,7 +80,7 @@ def restore_interrupts() -> Iterator[None]:
 
 
 def origin_of(error: BaseException) -> BaseException:
-    """Return the exception that the last of a chain of causes was raised for."""
+    """Return the first exception of a chain of causes."""
     return error if error.__cause__ is None else origin_of(error.__cause__)
 
 

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]  # of the package
 
 
 def kept_data(name: str, compute: Callable[[], Any]) -> Any:
-    """Return what a function computes, from the cache folder as long as no file of the package is another."""
+    """Return a function's result, read from the user's cache folder until a file of the package changes."""
     path = None
     with suppress(OSError, ValueError, RuntimeError):  # RuntimeError: there is no home folder
         path = _folder() / f"{name}-{_installation()}.json"

@@ -9,7 +9,7 @@ from flockana.base.errors import ArgumentError
 
 
 def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
-    """Return whether no subclass overrides `others` without overriding `name` too."""
+    """Return whether each subclass that overrides one of the methods `others` overrides `name` too."""
     ways = list(kind.__mro__)
     defined = next(k for k, base in enumerate(ways) if name in vars(base))
     return not any(other in vars(base) for base in ways[:defined] for other in others)

@@ -46,7 +46,7 @@ def progress_bar(
 
 
 def show_part(text: str) -> None:
-    """Show which part of a task is under way, beside the bar of the tasks on a terminal; nothing once it is done."""
+    """Show the name of the current part of a task beside the progress bar; remove it once the part is done."""
     _PART.get()(text)
 
 

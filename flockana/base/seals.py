@@ -52,7 +52,7 @@ def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = No
 
 
 def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their name.
+    """Return the SHA-256 of a value: of numbers bit by bit, of objects field by field, of functions by their name.
 
     `modules` names, by class, modules that count as part of a class's name, as in seals of older files.
     """
@@ -62,7 +62,7 @@ def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> s
 
 
 def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return the name by which digests and files know a class or function: one of flockana's by no module."""
+    """Return a class's or function's name in digests and files: for those of flockana without the module."""
     module, name = item.__module__, item.__qualname__
     if module.partition(".")[0] == "flockana":
         module = modules.get(name, "flockana")
@@ -70,7 +70,7 @@ def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) ->
 
 
 def sealed(evidence: _Evidence) -> _Evidence:
-    """Return a frozen dataclass with a seal added; for functions that compute or read it."""
+    """Return a copy of a frozen dataclass with its seal; for functions that compute or read it."""
     object.__setattr__(evidence, _ATTRIBUTE, seal_of(evidence))
     return evidence
 
@@ -154,7 +154,7 @@ def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -
 
 
 def _numbers(value: Any) -> npt.NDArray[Any] | None:
-    """Return a sequence of numbers as an array; None for anything else."""
+    """Return a sequence of numbers as an array; None for any other value."""
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):

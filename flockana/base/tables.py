@@ -28,7 +28,7 @@ def tex(text: str) -> str:
 
 
 def _letter(letter: str, accent: str) -> str:
-    """Return a letter of text, perhaps with an accent, as LaTeX."""
+    """Return one letter of text, accented or not, as LaTeX."""
     if accent:
         return rf"\'{{{letter}}}" if accent == _ACUTE else rf"$\{_ACCENTS[accent]}{{{_letter(letter, '').strip('$')}}}$"
     if letter in _WORDS or letter in _TEX:

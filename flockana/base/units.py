@@ -79,7 +79,7 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
 
 
 def times(value: Any, factor: float) -> Any:
-    """Return a number, or numbers in tuples and arrays, times a factor; None stays None."""
+    """Return a number, or all numbers in tuples and arrays, multiplied by a factor; None stays None."""
     if value is None:
         return None
     if isinstance(value, tuple | list):

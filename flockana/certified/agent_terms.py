@@ -22,7 +22,7 @@ Block = list[list[Any]]
 
 @dataclass(frozen=True)
 class Pull:
-    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²)."""
+    """Pull −c1γ (x − q_r) − c2γ (v − p_r) of a γ-agent; if bounded, its first term over √(1 + ‖x − q_r‖²/ℓ²)."""
 
     start: tuple[arb, ...]  # start, velocity, declared: q_r = start + velocity t, and p_r
     velocity: tuple[arb, ...]
@@ -32,11 +32,11 @@ class Pull:
     unit: arb | None = None  # ℓ; None for the linear pull
 
     def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
-        """Return x − q_r."""
+        """Return x − q_r, the way from the γ-agent."""
         return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
 
     def _saturation(self, away: Sequence[Any], unit: arb) -> Any:
-        """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
+        """Return 1/√(1 + ‖x − q_r‖²/ℓ²), the factor that bounds the pull."""
         return (1 + norm2(away) / (unit * unit)).rsqrt()
 
     def piece(self, x: Sequence[arb]) -> Piece:
@@ -44,7 +44,7 @@ class Pull:
         return Piece.CORE
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """Return no switch."""
+        """Return the switches of the pull: none, as it is analytic everywhere."""
         return []
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
@@ -87,17 +87,17 @@ class SphereTerm:
     damping: arb
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
-        """Return ((x − y)/‖x − y‖, ‖x − y‖)."""
+        """Return the unit vector (x − y)/‖x − y‖ from the sphere's centre, and the distance ‖x − y‖."""
         away = minus(x, self.centre)
         distance = norm2(away).sqrt()
         return [a / distance for a in away], distance
 
     def clearance(self, x: Sequence[arb]) -> arb:
-        """Return ‖x − y‖ − R, negative inside."""
+        """Return the clearance ‖x − y‖ − R from the sphere, negative inside."""
         return norm(minus(x, self.centre)) - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
-        """Return the piece of ρ_h that holds the clearance, anywhere in a box."""
+        """Return the piece of ρ_h that holds the clearance of every point of a box."""
         return self.beta.piece(square(self.clearance(x)))
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:

@@ -43,7 +43,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
 
 
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
-    """Return the equations in (x, μ, ν) about a computed x̄, and their derivative."""
+    """Return the equations of an equilibrium in (x, μ, ν) about a computed x̄, and their derivative."""
     centre, size = [arb(y) for y in x], len(x)
     motions, shifts = u.rotation_tangents(centre), u.translations()
     held = motions + shifts
@@ -63,12 +63,12 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
 
 
 def _multipliers(u: Structure) -> list[arb]:
-    """Return zeros for μ and ν, one for each rotation and each translation."""
+    """Return multipliers μ and ν that are 0, one for each rotation and each translation."""
     return [arb(0)] * (u.m * (u.m + 1) // 2)
 
 
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
-    """Return whether no configuration in the box has a rotation orthogonal to all those of the computed one."""
+    """Return whether the condition that fixes rotations is regular in the whole box: only the rotation 0 meets it."""
     fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
 
@@ -120,7 +120,7 @@ def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
 
 
 def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
-    """Return balls around a rotation matrix, proposed by a singular value decomposition."""
+    """Return balls that hold a rotation matrix near that of a singular value decomposition."""
     m = rest.shape[1]
     if m == 1:
         return [[arb(1)]]

@@ -88,7 +88,7 @@ def clamp(x: arb) -> arb:
 
 
 def place(z: Any, h: arb, piece: Piece) -> Any:
-    """Return the place on the taper from 0 to 1: of a ball on any pieces, or of a series on one within the range."""
+    """Return the place in [0, 1] of a σ-norm on the taper of ρ_h: of a ball on any pieces, or of a series on one."""
     if piece is Piece.CORE and not isinstance(z, arb):
         return arb_series([0])
     on_taper = (z - h) / (1 - h)
@@ -106,7 +106,7 @@ def series_length(length: int) -> Iterator[None]:
 
 
 class _Exact:
-    """Base class of bundles of exact rationals, given as printed decimals."""
+    """Base class of bundles of exact rational numbers, given as printed decimals."""
 
     def __post_init__(self) -> None:
         for name in vars(self):

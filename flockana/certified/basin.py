@@ -114,7 +114,7 @@ class Basin(ShortRepr):
         return float(self.radius) / float(self.law.alpha.d)
 
     def above(self, q: Any, p: Any) -> tuple[arb, arb]:
-        """Return upper bounds of a state's distance to the orbit and of its energy above the equilibrium's.
+        """Return upper bounds of a state's distance to the orbit, and of its energy above that of the equilibrium.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class Basin(ShortRepr):
 
 @dataclass(frozen=True, eq=False)
 class Proved:
-    """Evidence behind a basin, for its certificate."""
+    """Bounds and shells that prove a basin, as its certificate needs them."""
 
     structure: Structure
     rest: tuple[arb, ...]
@@ -228,7 +228,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
 
 
 def _largest(around: BondTable) -> float:
-    """Return the largest radius for which floating point proposes enough curvature, by bisection."""
+    """Return the largest radius at which floating point proposes enough curvature for a basin, by bisection."""
     d = float(around.law.alpha.d)
     shortest = min(float(length) for _, length in around.gaps.values())
     at_rest = around.proposed(_SMALLEST * d).mean

@@ -69,7 +69,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
 
 
 def head(kind: str) -> dict[str, Any]:
-    """Return what every certificate of a kind begins with."""
+    """Return the entries that every certificate of a kind begins with."""
     statement, prose = STATEMENTS[kind]
     made_with = {"flockana": __version__, "python-flint": version("python-flint")}
     return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": made_with}
@@ -156,7 +156,7 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
 
 
 def _spheres(law: Any) -> dict[str, Any]:
-    """Return the obstacles of Algorithm 3 and the law of β-agents."""
+    """Return the obstacles of Algorithm 3 and their β-law as a certificate states them."""
     if not isinstance(law, Algorithm3):
         return {}
     numbers: dict[str, Any] = {f"beta_{name}": _decimal(getattr(law.beta, name)) for name in ("d", "eps", "h")}
@@ -166,7 +166,7 @@ def _spheres(law: Any) -> dict[str, Any]:
 
 
 def _paths(tube: Tube) -> list[list[list[str]]]:
-    """Return Taylor polynomials of positions, each from the end of the one before, exactly."""
+    """Return Taylor polynomials of the positions in a run's steps, each from the exact end of the one before."""
     flow, half, paths = flow_of(tube.law, tube.n, tube.m), tube.n * tube.m, []
     state = [arb(x) for x in (*tube.q0.ravel().tolist(), *tube.p0.ravel().tolist())]
     for t, end, step in zip(tube.t[:-1], tube.t[1:], tube.taken, strict=True):
@@ -179,7 +179,7 @@ def _paths(tube: Tube) -> list[list[list[str]]]:
 
 
 def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]) -> list[list[arb]]:
-    """Return polynomials of positions, of third order where a pair changes its piece."""
+    """Return polynomials of the positions in a run's steps, of third order where a pair changes its piece."""
     half = flow.n * flow.m
     if Piece.SWITCH not in pieces:
         return [[c.mid() for c in row] for row in flow.taylor(t, state, _ORDER, pieces)[:half]]
@@ -189,7 +189,7 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
-    """Return errors that the steps justify, with bounds of distances, radii and energy."""
+    """Return error bounds that the steps of a tube justify, with bounds of distances, radii and energy."""
     start = state = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())]
     error, errors, boxes = arb(0), [], []
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):
@@ -210,7 +210,7 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
 
 
 def _ending(tube: Tube, basin: Basin | None) -> dict[str, Any]:
-    """Return the basin's certificate, and the rotation of its equilibrium."""
+    """Return the certificate of the basin in which a tube ends, and the rotation of its equilibrium."""
     if basin is None:
         return {"basin": None, "turn": "0"}
     x = tube.q[-1] - tube.q[-1].mean(axis=0)

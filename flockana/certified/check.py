@@ -97,13 +97,13 @@ def check_data(data: Mapping[str, Any]) -> Checked:
 
 
 def ensure(holds: bool, otherwise: str) -> None:
-    """Raise `RejectedError` unless something holds."""
+    """Raise `RejectedError` unless a condition of the check holds."""
     if not holds:
         raise RejectedError(otherwise)
 
 
 def unit(stated: Fraction, digits: int) -> Fraction:
-    """Return one unit in the last of the significant digits of a stated number."""
+    """Return one unit in the last of a stated number's significant digits."""
     exponent = 0
     while stated and abs(stated) >= Fraction(10) ** (exponent + 1):
         exponent += 1

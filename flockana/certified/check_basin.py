@@ -25,7 +25,7 @@ Pair = tuple[int, int]
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the expected form of a certificate, by key (`check`)."""
+    """Return the form of a basin certificate: the expected kind of each entry, by key."""
     numbers = ("box", "second_eigenvalue", "degree", "radius", "level", "curvature", "surplus", "rate", "overshoot")
     return dict.fromkeys((*numbers, "distance"), NUMBER) | {
         "law": PAIR_LAW,
@@ -37,7 +37,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a basin certificate and return the verified steps."""
+    """Verify a basin certificate and return what was verified, step by step."""
     with ctx.workdps(DIGITS):
         net = Net(data)
         x = net.equilibrium()
@@ -84,7 +84,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 def _check_bounds(
     data: Mapping[str, Any], net: Net, x: Sequence[Sequence[arb]], lengths: Mapping[Pair, arb], k: Sequence[Fraction]
 ) -> Iterator[str]:
-    """Check level, curvature, surplus, damping and rate against the shells and the net."""
+    """Check the stated energy level, curvature, surplus, damping and rate against the shells and the net."""
     radius = Fraction(data["radius"])
     step = radius / len(k)
     slopes = [step * total for total in accumulate(k)]  # G' at the shells' ends
@@ -129,7 +129,7 @@ def _check_bounds(
 
 
 def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
-    """Return whether a stated number is the value rounded down to the given digits."""
+    """Return whether a stated decimal is the given value rounded down."""
     number = Fraction(stated)
     above = number + unit(number, digits)
     if number % unit(number, digits):
@@ -140,7 +140,7 @@ def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
 
 
 class Net:
-    """Law and positions of a certificate."""
+    """Law and equilibrium positions as a basin certificate states them."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.text = data["law"]
@@ -157,19 +157,19 @@ class Net:
         ensure(min(self.c1_alpha, self.c2_alpha, self.c1_gamma, self.c2_gamma) >= 0, "a gain is negative")
 
     def tension(self, length: arb) -> arb:
-        """Return F'(ℓ)/ℓ of the pair potential F."""
+        """Return the tension F'(ℓ)/ℓ of a pair of length ℓ with the potential F."""
         s, eps = square(length), ball(self.par.eps)
         return ball(self.c1_alpha) * phi_alpha(sigma_of_square(s, eps), self.par) / (1 + eps * s).sqrt()
 
     def stiffness(self, length: arb) -> arb:
-        """Return F''(ℓ) of the pair potential F."""
+        """Return the stiffness F''(ℓ) of a pair of length ℓ with the potential F."""
         s = square(length)
         root, z = (1 + ball(self.par.eps) * s).sqrt(), sigma_of_square(s, self.par.eps)
         slope, action = phi_alpha_slope(z, self.par), phi_alpha(z, self.par)
         return ball(self.c1_alpha) * (slope * s / root**2 + action / root**3)
 
     def weight(self, length: arb) -> arb:
-        """Return the weight a_ij at a length."""
+        """Return the weight a_ij of a pair of a given length."""
         return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
 
     def equilibrium(self) -> list[list[arb]]:
@@ -190,7 +190,7 @@ class Net:
         return self.rows([y + change for y, change in zip(middles, shift, strict=False)])
 
     def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
-        """Return Krawczyk's image (1 − Y F'(B)) (B − c) − Y F(c) of the box B about c."""
+        """Return Krawczyk's image (1 − Y F'(B)) (B − c) − Y F(c); inside B − c it proves a zero."""
         size = len(centre)
         wide = self.slope(self.rows([y + arb(0, r) for y, r in zip(centre, radii, strict=False)]), held)
         factor = proposed_inverse(wide)
@@ -200,7 +200,7 @@ class Net:
         return moved.entries()
 
     def rows(self, flat: Sequence[arb]) -> list[list[arb]]:
-        """Return coordinates grouped by agent."""
+        """Return a vector of coordinates as a list of agents."""
         return [list(flat[self.m * i : self.m * (i + 1)]) for i in range(self.n)]
 
     def translations(self) -> list[list[arb]]:
@@ -208,7 +208,7 @@ class Net:
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
-        """Return ∇²U, bordered by the motions that are held."""
+        """Return the Hessian ∇²U, bordered by the rigid motions that are held."""
         blocks = {}
         for (i, j), gap, length in self.pairs(x):
             pull = self.tension(length)
@@ -217,7 +217,7 @@ class Net:
         return arb_mat(rows + [[*motion, *[arb(0)] * len(held)] for motion in held])
 
     def force(self, x: Sequence[Sequence[arb]]) -> list[arb]:
-        """Return ∇U."""
+        """Return the gradient ∇U of the structural potential."""
         total = [[ball(self.c1_gamma) * y for y in row] for row in x]
         for (i, j), gap, length in self.pairs(x):
             for a, y in enumerate(gap):
@@ -234,7 +234,7 @@ class Net:
                 yield (i, j), gap, length
 
     def assembled(self, blocks: Mapping[Pair, list[list[arb]]]) -> list[list[arb]]:
-        """Return the matrix of c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩."""
+        """Return the matrix of the form c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩ over pairs with their blocks B."""
         m, size = self.m, self.n * self.m
         total = [[ball(self.c1_gamma) * int(i == j) for j in range(size)] for i in range(size)]
         for (i, j), own in blocks.items():
@@ -246,7 +246,7 @@ class Net:
     def radial(
         self, x: list[list[arb]], gaps: Mapping[Pair, list[arb]], floors: Mapping[Pair, tuple[Fraction, Fraction]]
     ) -> arb_mat:
-        """Return a lower bound of the Hessian from bounds of its pairs, with large eigenvalues for rigid motions."""
+        """Return a matrix below the Hessian, from bounds of its pairs; rigid motions have large eigenvalues."""
         blocks = {}
         for pair, (along, across) in floors.items():
             gap = gaps[pair]
@@ -309,10 +309,10 @@ class Net:
 
 
 def proposed_inverse(matrix: arb_mat) -> arb_mat:
-    """Return about the inverse of a matrix of balls, exact; nothing rests on it."""
+    """Return nearly the inverse of a matrix of balls; no proof rests on its accuracy."""
     return matrix.mid().inv().mid()
 
 
 def block(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """Return the matrix across·1 + more·gap gapᵀ."""
+    """Return the pair block across·1 + more·gap gapᵀ."""
     return [[more * y * z + (across if a == b else 0) for b, z in enumerate(gap)] for a, y in enumerate(gap)]

@@ -39,7 +39,7 @@ Vector = list[arb]
 
 @dataclass(frozen=True)
 class Motion:
-    """Law for n agents in m dimensions; numbers given as text are exact decimals."""
+    """Law of a tube's certificate for n agents in m dimensions; its numbers are exact decimals."""
 
     par: AlphaParameters
     gain: Mapping[str, arb]
@@ -52,7 +52,7 @@ class Motion:
     spheres: tuple[Sphere, ...]
 
     def shifted(self, path: Sequence[Vector], s: arb) -> list[Vector]:
-        """Return coefficients of q and then of p = q' about a time s into the step."""
+        """Return the Taylor coefficients of q, then of p = q', about a later time s of the step."""
         rows = [
             [sum((comb(i, j) * row[i] * s ** (i - j) for i in range(j, len(row))), arb(0)) for j in range(len(row))]
             for row in path
@@ -60,11 +60,11 @@ class Motion:
         return rows + [[(j + 1) * row[j + 1] for j in range(len(row) - 1)] for row in rows]
 
     def at(self, path: Sequence[Vector], s: arb) -> Vector:
-        """Return (q, p) at a time s into the step."""
+        """Return positions and velocities at a time s into the step."""
         return [row[0] for row in self.shifted(path, s)]
 
     def agents(self, x: Sequence[Any]) -> list[Sequence[Any]]:
-        """Return coordinates grouped by agent."""
+        """Return a vector of coordinates as a list of agents."""
         return [x[k : k + self.m] for k in range(0, len(x), self.m)]
 
     def gaps(self, x: Sequence[Any]) -> Iterator[tuple[int, int, list[Any]]]:
@@ -79,7 +79,7 @@ class Motion:
         return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
     def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
-        """Return u along series of q and p about a time."""
+        """Return the accelerations u along Taylor series of q and p."""
         size, m = self.n * self.m, self.m
         q, p, g = self.agents(x[:size]), self.agents(x[size:]), self.gain
         leader = [arb_series([q + p * t, p]) for q, p in zip(self.start, self.velocity, strict=True)]
@@ -102,18 +102,18 @@ class Motion:
         return u
 
     def near(self) -> list[tuple[int, Sphere]]:
-        """Return every agent with every sphere, in the order of `pieces`."""
+        """Return the pairs of an agent and a sphere, in the order of `pieces`."""
         return [(i, sphere) for sphere in self.spheres for i in range(self.n)]
 
     def pull(self, x: Vector) -> list[Vector]:
-        """Return the derivative c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
+        """Return the slope c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
         away = [a - b for a, b in zip(x, self.start, strict=True)]
         slant = (1 + norm2(away)).rsqrt()
         cube, gain, rows = slant * slant * slant, self.gain["c1_gamma"], list(enumerate(away))
         return [[gain * ((slant if k == c else 0) - cube * a * b) for c, b in rows] for k, a in rows]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
-        """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as numbers at the begin."""
+        """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as balls for the whole step."""
         par, s2 = self.par, norm2(gap)
         if piece is None:
             z = sigma_of_square(s2[0], par.eps)
@@ -173,7 +173,7 @@ class Motion:
         return [[a - b for a, b in zip(row, means, strict=True)] for row in rows]
 
     def energy(self, x: Vector) -> arb:
-        """Return the energy c1α V + c1γ J + K in the moving frame; with a bounded pull in the given frame."""
+        """Return the energy c1α V + c1γ J + K in the moving frame; with a bounded pull, in the given frame."""
         size = self.n * self.m
         pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
         total = self.gain["c1_alpha"] * sum(pairs, arb(0))
@@ -188,7 +188,7 @@ class Motion:
 
 
 def number(text: str) -> arb:
-    """Return a decimal as the ball of its value."""
+    """Return the ball around a decimal's value."""
     return ball(Fraction(text))
 
 
@@ -215,15 +215,15 @@ class Sphere:
         return norm([a - b for a, b in zip(x, self.centre, strict=True)]) - self.radius
 
     def height(self, x: Sequence[arb]) -> arb:
-        """Return ‖c‖_σ of the clearance c."""
+        """Return the σ-norm ‖c‖_σ of a clearance c from the sphere."""
         return sigma_of_square(square(self.clearance(x)), self.par.eps)
 
     def energy(self, x: Sequence[arb]) -> arb:
-        """Return c1β ψ_β."""
+        """Return the potential c1β ψ_β of an agent near the sphere."""
         return self.push * psi_beta(self.height(x), self.par)
 
     def piece(self, x: Sequence[arb]) -> int | None:
-        """Return an agent's piece (`piece_of`)."""
+        """Return the piece of ρ_h on which an agent's clearance lies (`piece_of`)."""
         return piece_of(self.height(x), d_beta(self.par), self.par.h)
 
     def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:

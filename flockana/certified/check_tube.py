@@ -41,7 +41,7 @@ CLAIMS = (  # what a certificate states of all of a run, its name, and the step 
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the expected form of a certificate, by key; only Algorithm 3 has spheres and a clearance."""
+    """Return the form of a tube certificate: the expected kind of each entry, by key; Algorithm 3 alone has spheres."""
     law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "declared")}
     if bounded := data["law"]["algorithm"] == "Algorithm3":
         law |= dict.fromkeys(("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta"), NUMBER)
@@ -61,7 +61,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a tube certificate and return the verified steps."""
+    """Verify a tube certificate and return what was verified, step by step."""
     with ctx.workprec(BITS):
         run = Run.of(data)
         yield from run.follow(data)
@@ -69,7 +69,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Run(Motion):
-    """Motion of a certificate with the weight w of its norm."""
+    """Path of a tube certificate, and the weight w by which its norm weighs positions."""
 
     weight: arb
 
@@ -124,7 +124,7 @@ class Run(Motion):
             yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)
 
     def stated(self, boxes: Sequence[Vector], start: Vector) -> dict[str, Any]:
-        """Return what a certificate states of all boxes of a run, and of the energy at its start."""
+        """Return what a certificate states of a run's boxes (distances, radii) and of the energy at its start."""
         size, level = self.n * self.m, self.energy(start)
         places = [(sphere, x) for box in boxes for sphere in self.spheres for x in self.agents(box[:size])]
         return {
@@ -158,11 +158,11 @@ class Run(Motion):
         yield "all of the end lies in the basin: the run converges to its orbit, with matched velocities"
 
     def jumped(self, state: Vector, path: Sequence[Vector], error: arb) -> arb:
-        """Return the error where one path follows another."""
+        """Return the error bound after the change from one path to the next."""
         return error + self.norm([a - b for a, b in zip(state, self.at(path, arb(0)), strict=True)])
 
     def grown(self, t: arb, h: arb, path: Sequence[Vector], error: arb, bound: arb) -> tuple[arb, Vector]:
-        """Return a bound of the error after a step, and a box that holds all states within `bound` of its path."""
+        """Return the error bound after a step, and a box that holds all states within `bound` of the step's path."""
         span = arb(0).union(h)
         reach = self.at(path, span)
         half, size = bound / self.weight, self.n * self.m
@@ -197,7 +197,7 @@ class Run(Motion):
         return self.length(total)
 
     def logarithmic_norm(self, slope: arb_mat) -> arb:
-        """Return a bound μ of ⟨e, A e⟩/|e|² over all A in the balls, in the weighted coordinates (w q, p)."""
+        """Return an upper bound of ⟨e, A e⟩/|e|² over all A in the balls, in the weighted coordinates (w q, p)."""
         size, w, a = self.n * self.m, self.weight, slope.tolist()
         scale = [w] * size + [arb(1)] * size
         rows = [[(x * a[r][c] / y + y * a[c][r] / x) / 2 for c, y in enumerate(scale)] for r, x in enumerate(scale)]
@@ -209,12 +209,12 @@ class Run(Motion):
         raise RejectedError("no bound of the growth of errors")
 
     def norm(self, x: Vector) -> arb:
-        """Return √(w²|q|² + |p|²)."""
+        """Return the weighted norm √(w²|q|² + |p|²)."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
 
 
 def exact(text: str) -> Fraction:
-    """Return a number from its hexadecimal mantissa and exponent of 2: -0x3p-1 is −3/2."""
+    """Return an exact number from its text of hexadecimal mantissa and exponent of 2: -0x3p-1 is −3/2."""
     mantissa, _, exponent = text.partition("p")
     return Fraction(int(mantissa, 16)) * Fraction(2) ** int(exponent)

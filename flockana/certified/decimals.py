@@ -25,7 +25,7 @@ def interval(x: arb, places: int = 6) -> str:
 
 
 def small(x: arb, digits: int = 2) -> str:
-    """Return an upper bound of a positive number in scientific notation, rounded up."""
+    """Return an upper bound of a small positive number, rounded up, in scientific notation."""
     top = _end(x.upper())
     exponent = _exponent(top)
     mantissa = ceil(top * Fraction(10) ** (digits - 1 - exponent))
@@ -53,7 +53,7 @@ def fraction(x: fmpq) -> Fraction:
 
 
 def _exponent(size: Fraction) -> int:
-    """Return the exponent of 10 in scientific notation; 0 of 0."""
+    """Return the exponent of 10 of a number in scientific notation; 0 for the number 0."""
     exponent = 0
     while size >= Fraction(10) ** (exponent + 1):
         exponent += 1
@@ -81,12 +81,12 @@ def decimal(x: Fraction | fmpq) -> str:
 
 
 def _end(x: arb) -> Fraction:
-    """Return the value of a ball of radius 0."""
+    """Return the exact value of a ball of radius 0."""
     mantissa, exponent = x.man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def _shifted(whole: int, places: int) -> str:
-    """Return a whole number with its decimal point moved to the left."""
+    """Return the digits of a whole number with the decimal point moved to the left."""
     digits = str(abs(whole)).rjust(places + 1, "0")
     return "-" * (whole < 0) + (f"{digits[:-places]}.{digits[-places:]}" if places else digits)

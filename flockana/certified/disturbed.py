@@ -110,5 +110,5 @@ def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
 
 
 def _share(basin: Basin) -> arb:
-    """Weight e = ε/√λ of the Lyapunov function's cross term."""
+    """Return the weight e = ε/√λ of the Lyapunov function's cross term."""
     return ball(basin.proof.decay.eps) / ball(basin.proof.bounds.curvature).sqrt()

@@ -119,7 +119,7 @@ def enclose(
 def _collected(
     march: _March, start: StateSet, span: tuple[float, float], most: int, progress: bool
 ) -> tuple[tuple[float, ...], tuple[StateSet, ...], tuple[Step, ...], str, str]:
-    """Return times, sets and steps, all or those before Ctrl-C or the failure of the enclosure, status and message."""
+    """Return times, sets and steps up to the end, Ctrl-C or a step that cannot be proved, and a status and message."""
     times, sets, taken = [span[0]], [start], list[Step]()
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
@@ -144,7 +144,7 @@ def _collected(
 
 @dataclass(frozen=True)
 class _March:
-    """Step control of `enclose`, with its options and the law's length."""
+    """Steps of `enclose`: their lengths, the options, and the law's length."""
 
     flow: Flow
     length: float
@@ -192,16 +192,16 @@ class _March:
         return end, step, crosses
 
     def _width(self, step: Step) -> float:
-        """Return the half-width of the set after a step."""
+        """Return the largest half-width of the set after a step."""
         return size(self.flow, [arb(x.rad()) for x in step.after.hull])
 
     def _excess(self, step: Step) -> float:
-        """Return a step's remainder divided by the allowed one."""
+        """Return by what factor a step's remainder is above the allowed one."""
         return step.added / max(self.remainder * self.length, _PART * self._width(step))
 
 
 def _factor(excess: float, order: int) -> float:
-    """Return the factor to lengthen a step by, from the order of its remainder."""
+    """Return the factor by which to lengthen the next step, from the order of the remainder."""
     return float(0.9 * excess ** (-1.0 / order)) if excess > 0.0 else inf
 
 
@@ -225,7 +225,7 @@ def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, boo
 
 
 def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
-    """Yield how far each pair and agent is beyond a switch, and how fast it moves away."""
+    """Yield how far the distance of each pair and agent is beyond a switch, and how fast it grows."""
     switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):
         apart, relative = q[j] - q[i], p[j] - p[i]
@@ -238,7 +238,7 @@ def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
 
 
 def _where(flow: Flow, current: StateSet) -> str:
-    """Return in words which pairs and agents are about a switching distance."""
+    """Return in words which pairs and agents are near a switching distance."""
     names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
     names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
     about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]

@@ -61,7 +61,7 @@ def work(tube: Tube) -> arb:
 
 
 def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-    """Return Taylor coefficients of dH/dt along the solutions from a box."""
+    """Return Taylor coefficients in time of dH/dt along the solutions from a box."""
     path = flow.taylor(t, state, _ORDER, pieces)
     with series_length(_ORDER + 1):
         total = sum(flow.powers([arb_series(row) for row in path], pieces), arb_series([0]))
@@ -69,7 +69,7 @@ def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]
 
 
 def coincident_floor(alpha: Any, n: int, m: int) -> arb:
-    """Return a lower bound of V of n agents, two of which coincide."""
+    """Return a lower bound of the potential V of n agents, two of which coincide."""
     with ctx.workprec(BITS):
         pair, clique = PairNumbers.of_alpha(alpha), _largest_clique(alpha, m)
         if clique is None:
@@ -78,7 +78,7 @@ def coincident_floor(alpha: Any, n: int, m: int) -> arb:
 
 
 def coincident_state(alpha: Any, n: int, m: int) -> arb:
-    """Return V of a state of n agents two of which coincide."""
+    """Return the potential V of one state of n agents, two of which coincide."""
     q = coincident_lattice(alpha, n, m)
     with ctx.workprec(BITS):
         rows = [[arb(float(a)) for a in x] for x in q]
@@ -87,7 +87,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
 
 
 def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
-    """Return V of the best lattice of n − 1 agents with one agent far away; None if unknown."""
+    """Return the potential V of the best lattice of n − 1 agents and one far away; None if unknown."""
     with ctx.workprec(BITS):
         square_of_kappa = (exact(alpha.r) / exact(alpha.d)) ** 2
         if n < 2 or square_of_kappa >= (4 if m == 1 else 3):
@@ -109,7 +109,7 @@ def _shortest_bound(alpha: Any) -> fmpq | None:
 
 
 def _largest_clique(alpha: Any, m: int) -> int | None:
-    """Return a bound of the number of points whose pairs all have ψ_α < ψ_α(r_α); None if unbounded."""
+    """Return a bound of the number of points whose pairs all have ψ_α < ψ_α(r_α); None if there is no bound."""
     shortest = _shortest_bound(alpha)
     if not shortest:
         return None

@@ -41,13 +41,13 @@ class Flow:
     terms: tuple[AgentTerm, ...] = ()  # What acts on each agent by itself: the γ-agent, obstacles
 
     def pieces(self, state: Sequence[arb]) -> Pieces:
-        """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
+        """Return the piece of the law on which each pair and each agent lies, for every state of a box."""
         q = self.split(state)[0]
         pairs = [self.pair.piece(norm2(minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
-        """Return positions and velocities, grouped by agent."""
+        """Return positions and velocities of a state, each as a list of agents."""
         m, half = self.m, self.n * self.m
         return [state[k : k + m] for k in range(0, half, m)], [state[k : k + m] for k in range(half, 2 * half, m)]
 
@@ -79,7 +79,7 @@ class Flow:
         return [-self.damping * heat, *powers]
 
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
-        """Return (∂u/∂q, ∂u/∂p), square tables with the number 0 where nothing depends."""
+        """Return the derivatives (∂u/∂q, ∂u/∂p) as square tables, with the number 0 where nothing depends."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
         for i, j, piece, apart, relative in self._pairs(q, p, pieces):
@@ -106,7 +106,7 @@ class Flow:
         return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near)
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
-        """Return the number of a term, an agent and its piece, for all agents on which terms act."""
+        """Return (number of the term, agent, piece) for all agents on which terms of single agents act."""
         own = enumerate(pieces[self.n * (self.n - 1) // 2 :])
         return ((*divmod(k, self.n), piece) for k, piece in own if piece is not Piece.OUT)
 
@@ -141,17 +141,17 @@ class Flow:
         return [arb_mat(a.tolist() + b.tolist()) for a, b in zip(upper, lower, strict=True)]
 
     def rate(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """Return x' = (p, u) on a box that may lie on several pieces."""
+        """Return the rate x' = (p, u) on a box that may lie on several pieces."""
         return [*state[self.n * self.m :], *self.input(t, state, pieces)]
 
     def jacobian(self, t: arb, state: Sequence[arb], pieces: Pieces) -> arb_mat:
-        """Return ∂(p, u)/∂(q, p) on a box that may lie on several pieces."""
+        """Return the derivative ∂(p, u)/∂(q, p) on a box that may lie on several pieces."""
         half = self.n * self.m
         by_q, by_p = self.slopes(t, state, pieces)
         return arb_mat(identity(2 * half).tolist()[half:] + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
 
     def acceleration(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """Return x'' = ∂x'/∂x x' + ∂x'/∂t on a box that may lie on several pieces."""
+        """Return the second derivative x'' in time on a box that may lie on several pieces."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
         for term in self.terms:
             drift = [a for x in self.split(state)[0] for a in term.drift(t, x)]
@@ -160,7 +160,7 @@ class Flow:
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
-    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction."""
+    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and the reaction on j."""
     for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
         table[row * m + k][other * m + h] += value if sign > 0 else -value
 
@@ -188,7 +188,7 @@ def ensure_enclosable(law: Any) -> None:
 
 
 def flow_of(law: Any, n: int, m: int, *, number: Callable[[Any], fmpq] = exact) -> Flow:
-    """Return a law for n agents in m dimensions in balls, each number by default as its exact decimal."""
+    """Return a law for n agents in m dimensions as a right-hand side in balls; by default with exact decimals."""
     gains, alpha, target = law.gains, law.alpha, law.target
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]

@@ -111,7 +111,7 @@ def _corner(law: Algorithm2, *shares: float) -> list[Any]:
 
 
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
-    """Return by how much a link may change in the box for which stability is proved; NaN if it is not."""
+    """Return by what share a link may change in the box for which stability is proved; NaN if it is not proved."""
     unit: float = getattr(law.alpha, "unit", 1.0)
     own, nothing = in_lengths_of_unit(law), float("nan")
     gains, (n, m) = own.gains, q.shape
@@ -130,14 +130,14 @@ def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
 
 
 def _turns(y: FloatArray) -> FloatArray:
-    """Return orthonormal rotations about the γ-agent that move agents, shape (n m, k)."""
+    """Return orthonormal rotations about the γ-agent, those that move agents, as columns of shape (n m, k)."""
     turns = np.array([(y @ turn.T).ravel() for turn in generators(y.shape[1])]).reshape(-1, y.size)
     basis, sizes, _ = np.linalg.svd(turns.T, full_matrices=False)
     return np.asarray(basis[:, sizes > _ON_A_LINE * sizes.max(initial=0.0)])
 
 
 def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb] | None:
-    """Return balls of z = y − c for all κ of the box, or None."""
+    """Return balls of the equilibrium's displacement z = y − c for all gain ratios κ of the box; None if unproved."""
     n, m = y.shape
     centre, turns = y.mean(axis=0), _turns(y)
     size, k = n * m, turns.shape[1]
@@ -211,7 +211,7 @@ def _has_full_rank(matrix: arb_mat) -> bool:
 
 
 def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
-    """Return whether the form ∇²V + κ (1 − 11ᵀ/n) on δ is certainly positive but along rotations, agent 0 left out."""
+    """Return whether the form ∇²V + κ (1 − 11ᵀ/n) is certainly positive but along rotations, agent 0 left out."""
     # A pair's block in the ball is at least its middle less its radius ρ: the form is at least one of numbers. With
     # s TTᵀ of the middle of a rotation added it exceeds g; across the true one it then exceeds g − s ‖T − middle‖².
     n, m = structure.n, structure.m

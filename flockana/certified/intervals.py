@@ -78,7 +78,7 @@ def d_beta(par: BetaParameters) -> arb:
 
 @dataclass(frozen=True)
 class _Action:
-    """Action ρ_h(z/cutoff)(A σ₁(z + offset) + B), zero where the potential is, of either law."""
+    """Pair action ρ_h(z/cutoff)(A σ₁(z + offset) + B) common to the α- and the β-law; zero beyond the cutoff."""
 
     factor: arb
     level: arb
@@ -101,7 +101,7 @@ class _Action:
         return self.factor * sigma_1(z + self.offset) + self.level
 
     def potential(self, z: arb) -> arb:
-        """Return the integral from the zero: decreasing to it, increasing to the cutoff, constant beyond."""
+        """Return the action's integral from its zero: decreasing to it, increasing to the cutoff, constant beyond."""
         if z.is_exact():
             return self._potential(z)
         if z <= self.zero or z >= self.zero:
@@ -109,17 +109,17 @@ class _Action:
         return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
 
     def _potential(self, z: arb) -> arb:
-        """Return the potential at a point."""
+        """Return the potential at one σ-norm."""
         return (self.at_cutoff if z >= self.cutoff else self._from_knee(z)) - self.at_zero
 
     @cached_property
     def at_zero(self) -> arb:
-        """Integral from h times the cutoff to the zero."""
+        """Return the action's integral from h times the cutoff to its zero."""
         return self._from_knee(self.zero)
 
     @cached_property
     def at_cutoff(self) -> arb:
-        """Integral from h times the cutoff to the cutoff."""
+        """Return the action's integral from h times the cutoff to the cutoff."""
         return self._from_knee(self.cutoff)
 
     def _from_knee(self, z: arb) -> arb:
@@ -140,7 +140,7 @@ class _Action:
 
 @cache
 def _action(par: AlphaParameters | BetaParameters, prec: int) -> _Action:
-    """Return the action of a law, at a precision."""
+    """Return the action of a law with its numbers at a precision."""
     if isinstance(par, BetaParameters):
         return _Action(arb(1), arb(-1), -d_beta(par), d_beta(par), d_beta(par), ball(par.h))
     a, b, zero = ball(par.a), ball(par.b), d_alpha(par)

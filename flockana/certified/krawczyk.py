@@ -38,7 +38,7 @@ def krawczyk_shift(
     centre: Sequence[arb],
     radii: Sequence[arb],
 ) -> list[arb]:
-    """Return K − c of Krawczyk's test on a box about c: where each entry is below its radius, the box has one zero."""
+    """Return K − c of Krawczyk's test on a box about c: the box has one zero if each entry is below its radius."""
     # With an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K lies inside
     # B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
     offsets = [arb(0, radius) for radius in radii]

@@ -27,7 +27,7 @@ _VARIATION = 14  # order of the derivative of a step
 
 @dataclass(frozen=True)
 class StateSet:
-    """Set of states x̂ + C r₀ + B r."""
+    """Set of states x̂ + C r₀ + B r, with centre x̂ and balls r₀, r (Lohner's form)."""
 
     centre: tuple[arb, ...]  # x̂, exact
     c: arb_mat  # c, b: C and B, exact
@@ -45,7 +45,7 @@ class StateSet:
 
     @property
     def hull(self) -> list[arb]:
-        """Return the smallest box, in the coordinates of the state."""
+        """Return the smallest box around the set, in the coordinates of the state."""
         spread = (self.c * column(self.start) + self.b * column(self.error)).entries()
         return [x + y for x, y in zip(self.centre, spread, strict=True)]
 
@@ -62,7 +62,7 @@ class Step(NamedTuple):
 
 
 def variation_order(order: int) -> int:
-    """Return the order of the derivative of a Taylor step."""
+    """Return the order of the Taylor polynomial of the derivative ∂x(t + h)/∂x(t)."""
     return min(_VARIATION, order - 1)
 
 
@@ -109,7 +109,7 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
 def _enclosed(
     flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
 ) -> tuple[list[arb], list[arb]] | None:
-    """Return the box of the solutions during a step and the remainder at its end, if proved."""
+    """Return a box that holds the solutions during a step, and the remainder at its end; None if unproved."""
     # If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
     # would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
     growth = _first_growth(reach, h)
@@ -129,7 +129,7 @@ def _enclosed(
 
 
 def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | None:
-    """Return a box that no solution leaves, since start + [0, h] x'(box) lies inside it."""
+    """Return a box that no solution leaves during a step: start + [0, h] x'(box) lies inside it."""
     image = list(start)
     for _ in range(_INFLATIONS):
         growth = _first_growth(image, span.upper())
@@ -144,7 +144,7 @@ def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | 
 
 
 def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
-    """Return the margin added to a candidate box: an eighth, and never nothing."""
+    """Return the margin by which a candidate box grows: an eighth of its radius, and never 0."""
     half = len(box) // 2
     far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
     least = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
@@ -172,7 +172,7 @@ def _variation(
 
 
 def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
-    """Return the image of a set by the mean value theorem, its centre at `moved`, derivatives in `slope`."""
+    """Return the image of a set by the mean value theorem, from its centre's image and the derivatives on the set."""
     centre = tuple(x.mid() for x in moved)
     rest = column([x - y for x, y in zip(moved, centre, strict=True)])
     c, b = slope * before.c, slope * before.b
@@ -200,7 +200,7 @@ def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
 
 
 def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
-    """Return q_j − q_i of each pair and q_i − q_c of each agent, from linear combinations of coordinates."""
+    """Return q_j − q_i of each pair and q_i − q_c of each agent during a step."""
     n, m, share = flow.n, flow.m, arb(1) / flow.n
     relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
     deviations = [[combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)]
@@ -215,14 +215,14 @@ def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: S
 
 
 def size(flow: Flow, remainder: Sequence[arb]) -> float:
-    """Return the largest coordinate, velocities scaled by the law's time; for step control only."""
+    """Return the largest coordinate of a box, velocities multiplied by the law's time; for step control only."""
     half = len(remainder) // 2
     far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)
 
 
 def _blur(flow: Flow, slope: arb_mat) -> float:
-    """Return the largest row sum of a derivative's radii; for step control only."""
+    """Return the largest row sum of a derivative's radii, a measure of overestimation; for step control only."""
     weights = np.repeat((1.0, 1.0 / flow.pace), slope.nrows() // 2)
     radii = np.array([[float(x.rad()) for x in row] for row in slope.tolist()])
     return float((radii * weights[:, None] / weights).sum(axis=1).max())

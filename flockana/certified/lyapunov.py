@@ -43,7 +43,7 @@ _HALVINGS = 60
 
 @dataclass(frozen=True)
 class Bounds:
-    """Bounds of U and of the damping in the basin: curvature λ, surplus s, damping μ <= D <= M."""
+    """Bounds in the basin: curvature λ and surplus s of U, and the damping D with μ <= D <= M."""
 
     curvature: fmpq
     surplus: fmpq
@@ -53,7 +53,7 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Decay:
-    """Parameters ε, θ, κ, τ of the function, half the proved rate α, and the factor (1 + e)/(1 − e)."""
+    """Parameters ε, θ, κ, τ of the Lyapunov function, half the proved rate α, and the factor (1 + e)/(1 − e)."""
 
     eps: fmpq
     theta: fmpq
@@ -64,7 +64,7 @@ class Decay:
 
 
 def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -> tuple[fmpq, fmpq]:
-    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up."""
+    """Return the weighted net's second eigenvalue, rounded down, and its largest degree, rounded up."""
     # So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
     away = ball(reach)
     weakest = {pair: u.weight(square(length + away)).lower() for pair, length in lengths.items()}
@@ -113,7 +113,7 @@ def decay(bounds: Bounds) -> Decay:
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return θ, κ and τ best suited to ε and α; κ and τ are not positive where α is too large."""
+    """Return θ, κ and τ that suit ε and α best; κ and τ are not positive where α is too large."""
     curvature, surplus, least, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     room = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
@@ -122,7 +122,7 @@ def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatAr
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return the slack in the inequality of the speeds."""
+    """Return what is left of the inequality for the speeds: negative if it does not hold."""
     _, kappa, tau = _others(bounds, eps, alpha)
     least, sound = float(bounds.least), tau > 0.0
     cost = 1.0 + 0.5 * least / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)

@@ -99,7 +99,7 @@ def _pass(
 
 
 def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
-    """Return the state after a step of the method, and how many pairs were evaluated."""
+    """Return the state after one step of the method, and how many pairs were evaluated."""
     half, slopes, count, solver = flow.n * flow.m, list[list[arb]](), 0, law.solver
     for row, s in zip(solver.a, (sum(row) for row in solver.a), strict=True):
         there = _moved(state, h, row, slopes)
@@ -114,13 +114,13 @@ def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[l
 
 
 def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[list[arb]]) -> list[arb]:
-    """Return y + h Σ_j w_j K_j."""
+    """Return the stage's state y + h Σ_j w_j K_j."""
     used = [(h * arb(w), slope) for w, slope in zip(weights, slopes, strict=False) if w]
     return [sum((w * slope[k] for w, slope in used), x) for k, x in enumerate(state)]
 
 
 def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
-    """Return the piece of each pair and agent, and how many pairs may be in range; far pairs by floating point."""
+    """Return the piece of each pair and agent, and how many pairs may be in range."""
     places = state[: flow.n * flow.m]
     x = np.array([float(y.mid()) for y in places]).reshape(flow.n, flow.m)
     off = max(float(y.rad()) for y in places)

@@ -22,7 +22,7 @@ def laplacian_of(weights: Sequence[Sequence[float]]) -> fmpq_mat:
 
 
 def stable_off_agreement(laplacian: fmpq_mat, position: float, velocity: float) -> bool:
-    """Return whether all poles but the two of the agreement are in the open left half-plane.
+    """Return whether all poles but the two of the agreement lie in the open left half-plane.
 
     det(s²I + (α + βs)L) = Σ_k c_k (−1)^(n−k) s^2k (α + βs)^(n−k) with the characteristic polynomial Σ_k c_k μ^k of L;
     Hurwitz's criterion decides its cofactor of s² with rationals.

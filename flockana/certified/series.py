@@ -81,7 +81,7 @@ class PairNumbers:
         return formulas.slopes(_nonnegative(s2), self, piece)
 
     def stiffness(self, s2: arb) -> arb:
-        """Return F''(ℓ) of the potential F = ψ(‖·‖_σ), by s² = ℓ²."""
+        """Return the stiffness F''(ℓ) of the pair potential F = ψ(‖·‖_σ), by s² = ℓ²."""
         return formulas.stiffness(_nonnegative(s2), self, Piece.SWITCH)
 
     def potential(self, s2: arb) -> arb:
@@ -102,7 +102,7 @@ class PairNumbers:
         return self._potential(arb(0))
 
     def _potential(self, z: arb) -> arb:
-        """Return ψ at a point."""
+        """Return the potential ψ at one squared distance."""
         return self.far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
 
     def _from_knee(self, z: arb) -> arb:

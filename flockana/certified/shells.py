@@ -62,7 +62,7 @@ class LengthCells:
     kept: dict[tuple[int, int], tuple[arb, arb, arb]] = field(default_factory=dict, compare=False)
 
     def at(self, level: int, k: int) -> tuple[arb, arb, arb]:
-        """Return (x, F'', T) over x in reach·[k, k + 1]/2^level."""
+        """Return (x, F'', T) on one cell of lengths: x in reach·[k, k + 1]/2^level."""
         if (level, k) not in self.kept:
             unit = self.reach / 2**level
             x = ball(unit * k).union(ball(unit * (k + 1)))
@@ -71,7 +71,7 @@ class LengthCells:
         return self.kept[level, k]
 
     def holds(self, shell: int, along: fmpq, across: fmpq) -> bool:
-        """Return whether (α, β) certainly are lower bounds up to η = reach·shell/SHELLS; False also if undecided."""
+        """Return whether (α, β) certainly are lower bounds of a bond's curvatures up to a shell; False if undecided."""
         cells = [(LEVELS, k) for k in range(-shell, shell)]
         limit = square(ball(self.reach * shell / SHELLS))
         while cells:
@@ -96,7 +96,7 @@ class LengthCells:
 
 
 def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
-    """Return a β for an α, proposed in floating point at points x, with slack for the proof."""
+    """Return a β that goes with an α, proposed in floating point at points x, with slack for the proof."""
     length, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
     most = np.maximum((eta**2 - x**2) / (2.0 * length * rest), 0.0)
     d1 = 2.0 * x * (stiff * rest + along * length) + 2.0 * pull * rest**2
@@ -109,7 +109,7 @@ def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray,
 
 
 def points(reach: float) -> FloatArray:
-    """Return displacements at which floating point evaluates: the shells' ends, denser near 0."""
+    """Return displacements at which floating point evaluates a bond: the shells' ends, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
     ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
     return reach * np.unique(np.concatenate([inner, ends]))
@@ -117,7 +117,7 @@ def points(reach: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Bond:
-    """Pairs of nearly one length that are or may come into range."""
+    """Pairs of agents of nearly one length that are in range or may come into it."""
 
     pairs: tuple[tuple[int, int], ...]
     rest: arb
@@ -125,7 +125,7 @@ class Bond:
 
 @dataclass(frozen=True)
 class ProposedBounds:
-    """Bounds proposed in floating point for a radius: α and β of each bond in each shell, and curvatures."""
+    """Bounds for a radius, proposed in floating point: α and β of each bond in each shell, and curvatures."""
 
     radius: float
     along: FloatArray
@@ -134,7 +134,7 @@ class ProposedBounds:
 
     @property
     def mean(self) -> float:
-        """Return the least mean λ of the curvatures over the first shells."""
+        """Return the least mean curvature over the first shells."""
         return float(np.min(np.cumsum(self.curvatures) / np.arange(1, SHELLS + 1)))
 
 
@@ -161,7 +161,7 @@ class BondTable:
 
     @cached_property
     def lifts(self) -> arb_mat:
-        """Return Σ g gᵀ/‖g‖² over the rigid motions, times a large number."""
+        """Return Σ g gᵀ/‖g‖² over the rigid motions g, times a large number: a shift of their eigenvalues."""
         total = arb_mat(len(self.rest), len(self.rest))
         stiffest = max(abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values())
         for motion in self.u.rotation_tangents(self.rest) + self.u.translations():
@@ -210,14 +210,14 @@ class BondTable:
         return ProposedBounds(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return (F'', T) in floating point."""
+        """Return the curvature F'' and the tension T of a bond at its displacements, in floating point."""
         alpha, gain = self.law.alpha, self.law.gains.c1_alpha
         root, z = np.sqrt(1.0 + alpha.eps * length**2), alpha.sigma_norm(length)
         action = alpha.phi_alpha(z)
         return gain * (alpha.phi_alpha_slope(z) * (length / root) ** 2 + action / root**3), gain * action / root
 
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the matrices that α and β of each bond multiply, and the rest, in floating point."""
+        """Return the matrices by which α and β of each bond are multiplied, and the constant one, in floating point."""
         size, m = len(self.rest), self.u.m
         motions = np.array([[float(y) for y in g] for g in self.u.rotation_tangents(self.rest) + self.u.translations()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
@@ -235,7 +235,7 @@ class BondTable:
 
 @dataclass(frozen=True)
 class Shells:
-    """Proved curvatures k_i in the shells of a radius.
+    """Proved lower bounds k_i of the curvature in the shells of a radius.
 
     `along` and `across` hold, shell by shell, the α and β of every bond that the k_i were proved with.
     """
@@ -248,25 +248,25 @@ class Shells:
 
     @property
     def slopes(self) -> tuple[fmpq, ...]:
-        """Slopes G'(t_i) of the energy bound G."""
+        """Slopes G'(t_i) of the energy bound G at the shells' ends."""
         step, total = self.radius / SHELLS, fmpq(0)
         return tuple(total := total + k * step for k in self.curvatures)
 
     @property
     def level(self) -> fmpq:
-        """Energy bound G(ρ) at the radius."""
+        """Least energy above the equilibrium's on the sphere of the radius ρ: the bound G(ρ)."""
         step, slopes = self.radius / SHELLS, (fmpq(0), *self.slopes)
         return sum(((a + b) * step / 2 for a, b in pairwise(slopes)), fmpq(0))
 
     @property
     def curvature(self) -> fmpq:
-        """Bound λ = min G'(t)/t: ⟨∇U, w⟩ >= λ‖w‖² and U − U* >= ½ λ‖w‖²."""
+        """Curvature λ = min G'(t)/t, for which ⟨∇U, w⟩ >= λ‖w‖² and U − U* >= ½ λ‖w‖²."""
         step = self.radius / SHELLS
         return min(slope / (step * (i + 1)) for i, slope in enumerate(self.slopes))
 
     @property
     def surplus(self) -> fmpq:
-        """Bound min (t G' − G)/t² of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
+        """Surplus min (t G' − G)/t², a lower bound of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
         step, total, least = self.radius / SHELLS, fmpq(0), []
         for i, k in enumerate(self.curvatures):
             total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
@@ -275,7 +275,7 @@ class Shells:
 
 
 def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
-    """Return proposed bounds rounded down and proved; None where a bound is not certain."""
+    """Return proposed bounds, rounded down and proved; None where a bound is not certain."""
     radius = round_down(arb(floors.radius), _DIGITS)
     reach = ROOT_TWO * radius
     bonds = around.bonds(reach)

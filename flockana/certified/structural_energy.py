@@ -22,13 +22,13 @@ def structural_energy(law: Any, q: Vectors, p: Vectors) -> arb:
 
 
 def pair_energy(law: Any, q: Vectors) -> arb:
-    """Return c1α V."""
+    """Return the pair energy c1α V of a box of states."""
     squares = (norm2(minus(y, x)) for x, y in combinations(q, 2))
     return gain(law) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
 
 
 def _inertia(x: Vectors) -> arb:
-    """Return ½ Σ‖x_i − x_c‖²."""
+    """Return ½ Σ‖x_i − x_c‖², the moment of inertia about the centre."""
     columns = list(zip(*x, strict=True))
     means = [sum(column, arb(0)) / len(x) for column in columns]
     return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2

@@ -35,7 +35,7 @@ def in_lengths_of_unit(law: Any) -> Any:
 
 @dataclass(frozen=True)
 class Structure:
-    """Parameters and gains of U and of the damping as exact rationals, for n agents in m dimensions."""
+    """Exact gains and parameters of the structural potential U and of the damping, for n agents in m dimensions."""
 
     par: AlphaParameters
     c1_alpha: fmpq
@@ -75,19 +75,19 @@ class Structure:
         return (pair for pair in self.pairs(x) if not pair[3] >= beyond)
 
     def tension(self, s: arb) -> arb:
-        """Return the stress F'(ℓ)/ℓ of a pair's potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²."""
+        """Return the tension F'(ℓ)/ℓ of a pair with the potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²."""
         return ball(self.c1_alpha) * self._law.pair(s)[0]
 
     def stiffness(self, s: arb) -> arb:
-        """Return F''(ℓ), by s = ℓ²."""
+        """Return the stiffness F''(ℓ) of a pair, by s = ℓ²."""
         return ball(self.c1_alpha) * self._law.stiffness(s)
 
     def weight(self, s: arb) -> arb:
-        """Return a_ij by s = ℓ²."""
+        """Return the adjacency a_ij of a pair, by s = ℓ²."""
         return self._law.pair(s)[1]
 
     def gradient(self, x: Balls) -> list[arb]:
-        """Return ∇U."""
+        """Return the gradient ∇U of the structural potential."""
         m, total = self.m, [ball(self.c1_gamma) * y for y in x]
         for i, j, gap, s in self.near(x):
             pull = self.tension(s)
@@ -97,7 +97,7 @@ class Structure:
         return total
 
     def hessian(self, x: Balls) -> arb_mat:
-        """Return ∇²U: the block T 1 + (F'' − T) uuᵀ of each pair, and c1γ."""
+        """Return the Hessian ∇²U: of each pair the block T 1 + (F'' − T) uuᵀ, and c1γ."""
         near = ((i, j, gap, s, self.tension(s)) for i, j, gap, s in self.near(x))
         return self.assembled([(i, j, outer(gap, t, (self.stiffness(s) - t) / s)) for i, j, gap, s, t in near])
 
@@ -112,7 +112,7 @@ class Structure:
         return arb_mat(total)
 
     def energy(self, x: Balls) -> arb:
-        """Return U."""
+        """Return the structural potential U."""
         law, beyond = self._law, ball(self.par.r) ** 2
         total = sum((law.far if s >= beyond else law.potential(s) for *_, s in self.pairs(x)), arb(0))
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * norm2(x)
@@ -141,7 +141,7 @@ def _numbers(par: AlphaParameters, bits: int) -> PairNumbers:
 
 
 def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """Return the matrix across·1 + more·gap gapᵀ."""
+    """Return the pair block across·1 + more·gap gapᵀ."""
     return [
         [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
         for a, x in enumerate(gap)

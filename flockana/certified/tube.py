@@ -138,7 +138,7 @@ class Tube:
         return np.array(rows).reshape(len(self.t), 2, self.n, self.m)
 
     def state(self, k: int) -> tuple[list[list[arb]], list[list[arb]]]:
-        """Return (q, p) at step k as balls, grouped by agent.
+        """Return (q, p) at step k as balls, each as a list of agents.
 
         Parameters
         ----------

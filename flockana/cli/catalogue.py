@@ -54,7 +54,7 @@ def theorems_command(
 
 
 def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) -> None:
-    """Print which claims hold of a flock by its law and its start."""
+    """Print which theorems' claims hold of a flock by its law and its start."""
     from flockana.base.errors import ArgumentError
     from flockana.cli.own import is_own, read_own
     from flockana.cli.show import show, show_json

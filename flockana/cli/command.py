@@ -1,4 +1,4 @@
-"""Checks of arguments common to all commands, and recording of the options given."""
+"""Base of all commands: checks of their arguments, and a record of the options given."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Command(TyperCommand):
     """Command that rejects empty paths, and whose errors name the refused value."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Read the arguments as typer does."""
+        """Parse the arguments with typer's rules, after empty paths are refused."""
         given, *_ = self.make_parser(ctx).parse_args(args=list(args))
         try:
             left = super().parse_args(ctx, args)

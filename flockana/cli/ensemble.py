@@ -85,7 +85,7 @@ def ensemble_command(
 
 
 def read_options(texts: list[str]) -> dict[str, Any]:
-    """Parse options: numbers, truth values or texts, and lists of several.
+    """Parse options ``NAME=VALUES``: numbers, truth values or texts, and lists of several.
 
     Examples
     --------

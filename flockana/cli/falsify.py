@@ -93,7 +93,7 @@ def falsify_command(
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
-    """Return bounds by parameter.
+    """Return the bounds of the parameters to vary, by name, from the option's text.
 
     Examples
     --------
@@ -114,7 +114,7 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
 
 
 def search_facts(search: Falsification) -> dict[str, Any]:
-    """Return a search as plain data."""
+    """Return a search and its result as plain data."""
     names = ("theorem", "claim", "scenario", "found", "status", "margin", "error")
     facts = {name: getattr(search, name) for name in names}
     facts |= {name: facts[name] if isfinite(facts[name]) else None for name in ("margin", "error")}

@@ -70,7 +70,7 @@ def read_motion(
 
 
 def announce_time(n: int, *, as_given: bool | None = None) -> None:
-    """Print the expected time for a large flock to stderr; raise if it is too long.
+    """Print the expected time of work on a large flock to stderr; raise if it is too long.
 
     `as_given` tells whether only the modes at given positions are sought; None where there is no such choice.
 
@@ -116,7 +116,7 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
-    """Return the law; raise if it lacks a potential that is needed."""
+    """Return the law; raise if it has no potential and the command needs one."""
     from flockana.equilibria.potential import ensure_flock_law
 
     return ensure_flock_law(law, m) if potential or (law.terms and law.conservative) else law

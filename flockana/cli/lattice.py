@@ -76,7 +76,7 @@ def _tolerances(tol: float | None) -> Tolerances:
 
 
 def _hint(facts: dict[str, Any], tolerances: Tolerances) -> list[str]:
-    """Return the option with which a quasi-α-lattice counts as an α-lattice."""
+    """Return the option that would count this quasi-α-lattice as an α-lattice, as a hint."""
     from math import ceil, floor, log10
 
     error = facts["edge-length error"]

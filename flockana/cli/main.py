@@ -42,7 +42,7 @@ def _command(name: str) -> Any:
 
 
 def _app(asked: str) -> typer.Typer:
-    """Return the program with the requested command only, or with all."""
+    """Return the command-line program with the requested command alone, or with all."""
     app = typer.Typer(
         name=_NAME,
         cls=Groups,
@@ -58,7 +58,7 @@ def _app(asked: str) -> typer.Typer:
 
 
 def _asked(arguments: Sequence[str]) -> str:
-    """Return the requested command or global option, or nothing; raise on an unknown command."""
+    """Return the requested command or global option from the arguments; raise on an unknown command."""
     first = arguments[0] if arguments else ""
     if arguments and not first.startswith("-") and first not in EXAMPLES:
         raise UnknownNameError("command", first, EXAMPLES)

@@ -131,7 +131,7 @@ def _with_options(text: str) -> str:
 
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
-    """Return the law to compare the recording with; None if none is given."""
+    """Return the law to compare the recording with; None if no option names one."""
     from flockana.cli.own import is_own, read_law
     from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
@@ -182,7 +182,7 @@ def _numbers(name: str, text: str) -> list[float]:
 
 
 def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
-    """Return the complete part of a recording, and a note on what it is."""
+    """Return the complete part of a recording, and a sentence on what was left out."""
     if not rec.gaps:
         return rec, []
     part = rec.complete()

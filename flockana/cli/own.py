@@ -17,7 +17,7 @@ KIND = "FILE.py:NAME"
 
 
 def is_own(name: str | None) -> bool:
-    """Return whether a name is that of a Python file, or of something in one."""
+    """Return whether a name is that of a Python file, or of an object in one."""
     return name is not None and (name.endswith(".py") or ".py:" in name)
 
 

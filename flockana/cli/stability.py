@@ -128,7 +128,7 @@ def rest_of(law: Any, q: Any) -> Any:
 def _show_loop(
     linear: Any, name: str, count: int, *, delay: bool, norms: bool, as_json: bool, plot: Path | None
 ) -> int:
-    """Show a delayed law by its rightmost roots, a map by its slowest modes; they have no picture."""
+    """Show a delayed law by its rightmost roots, or a map by its slowest modes; neither has a picture."""
     from flockana.base.errors import ArgumentError
     from flockana.stability import DelayLinearisation, VelocityLinearisation
 
@@ -165,7 +165,7 @@ def _show_loop(
 
 
 def _text(value: Any) -> str:
-    """Return a fact as a table writes it: complex numbers, names, numbers."""
+    """Return a fact as a table shows it: complex numbers, names, numbers."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_text(one)}" for key, one in value.items())
     if isinstance(value, list):
@@ -326,5 +326,5 @@ def _mode_table(slow: tuple[Mode, ...]) -> Table:
 
 
 def _follows(law: Any) -> bool:
-    """Return whether the centre of mass follows a γ-agent by its own linear equation."""
+    """Return whether the centre of mass follows a γ-agent by a linear equation of its own."""
     return law.target is not None and law.centre_decouples

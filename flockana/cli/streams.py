@@ -50,7 +50,7 @@ def finish_output() -> None:
 
 
 def in_output_encoding(text: str) -> str:
-    """Return JSON text, escaping letters that the output's encoding lacks.
+    """Return JSON text with letters escaped that the output's encoding lacks.
 
     Examples
     --------

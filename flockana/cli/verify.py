@@ -133,7 +133,7 @@ def _id_of(name: str | None) -> str | None:
 def _planned(
     name: str | None, seeds: int | None, seed: int, *, figures: bool
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
-    """Return all tasks, and the surveys among them."""
+    """Return the tasks of all scenarios to verify, and the surveys among them."""
     from flockana.report.section import DECAYS, LINEARISED, MANY_LAWS, MARGINS, Section
     from flockana.report.surveys import surveys
     from flockana.report.work import plan
@@ -199,7 +199,7 @@ def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | 
 
 
 def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool) -> Page:
-    """Check a theorem on a case, or a saved run as one of its scenario."""
+    """Return a page's verdict of one theorem on a scenario, or on a saved run as one of its scenario."""
     from flockana.cli.own import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.report.own import own_pages

@@ -84,7 +84,7 @@ def sources() -> list[Path]:
 
 
 def tags(cell: Any) -> list[str]:
-    """Return the tags of a cell."""
+    """Return the tags of a notebook's cell."""
     return list(cell.metadata.get("tags", ()))
 
 
@@ -151,7 +151,7 @@ def exercises(source: Path) -> Iterator[Exercise]:
 
 
 def asked(check: str) -> tuple[str, str]:
-    """Return the variable that a check reads, and the form of its answer.
+    """Return the variable that an exercise's check reads, and the form of its answer.
 
     Examples
     --------

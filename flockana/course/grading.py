@@ -37,7 +37,7 @@ class Grade:
 def grade(
     answer: Any, right: Any, *, digits: int | None = None, within: float | None = None, hint: str = "", form: str = ""
 ) -> Grade:
-    """Grade an answer against the right one, or by a function.
+    """Grade an answer against the right one, or by a function of the answer.
 
     A number counts to the precision that the question asks for, and no wider: to so many significant `digits`, that is
     half a unit of the last of them, or `within` so much. Without either, to rounding.
@@ -182,7 +182,7 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
 
 
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
-    """Return whether the answers match the right ones one to one."""
+    """Return whether each of the answers matches another one of the right ones."""
     for b in rights:
         found = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
         if found is None:

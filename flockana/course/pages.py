@@ -180,7 +180,7 @@ def references(lecture: Lecture) -> str:
 
 
 def notation_page(folder: Path) -> str:
-    """Return all symbols of the course, in Markdown."""
+    """Return all symbols of the course as a page in Markdown."""
     rows = "\n".join(_rows(notation(folder), "all"))
     meaning = "Most symbols mean the same in all lectures; where one means something else, its row says in which."
     return f"# Notation\n\n{meaning}\n\n{rows}\n"

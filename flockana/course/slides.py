@@ -64,7 +64,7 @@ def _marked(cell: Any, kind: str) -> Any:
 
 
 def shown() -> list[Path]:
-    """Return the lectures with slides; assignments have none."""
+    """Return the numbers of the lectures that have slides; assignments have none."""
     return [source for source in sources() if not source.name.startswith("A")]
 
 

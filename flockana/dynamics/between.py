@@ -67,7 +67,7 @@ class Between:
             raise ArgumentError("between.t: expected times strictly between those of the samples")
 
     def within(self, t: FloatArray, kept: FloatArray) -> Between | None:
-        """Return the steps within a window of the run; None for a single sample."""
+        """Return the steps that lie within a window of the run; None for a window of one sample."""
         if len(kept) == 1:
             return None
         start, end = kept[0], kept[-1]
@@ -84,7 +84,7 @@ class Between:
 
 
 def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: Between | None) -> Course:
-    """Samples and the steps between them in order of time."""
+    """Return samples and the steps between them, merged in order of time."""
     if between is None:
         return Course(t, q, p, u, None)
     pairs = (t, between.t), (q, between.q), (p, between.p), (u, between.u)
@@ -165,7 +165,7 @@ class Recorder:
 
 
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
-    """Return how far the path from before to after may be off if the step in the middle is left out."""
+    """Return by how much the path from before to after may be off if the step in the middle is left out."""
     knots = (before, middle, after)
     states = (tuple(np.ascontiguousarray(array) for array in (knot.q, knot.p, knot.u)) for knot in knots)
     farthest: FloatArray = detours(tuple(knot.t for knot in knots), *states, slack, later)

@@ -1,4 +1,4 @@
-"""The loop of all runs: adaptive and fixed steps, compiled or not, laws with jumps, delayed laws, maps.
+"""The loop that drives all runs: adaptive and fixed steps, compiled or not, laws with jumps, delayed laws, maps.
 
 What differs is in the stepper: which steps it makes, and what ends one. Integrators are compiled with the law
 (`flockana.dynamics.compiled`), interpreted (`flockana.dynamics.interpreted`), or go from switch to switch

@@ -83,7 +83,7 @@ class Encounters:
         return self.radii.size > 0 or self.bodies is not None or self.poles.size > 0
 
     def share(self, h: float, before: State, after: State) -> float:
-        """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole."""
+        """Return the share of a step that may be accepted, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
         around, given = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
@@ -100,7 +100,7 @@ class Encounters:
         return found
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
-        """Return the encounters for compiled code, with agents permuted by `order`."""
+        """Return the numbers by which compiled code checks encounters, with agents in the given order."""
         few = self.among is not None
         first, second = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
         edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
@@ -113,7 +113,7 @@ class Encounters:
 
     @cached_property
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
-        """Compiled check of the obstacles, the numbers that it reads, and the index at which each kind's begin."""
+        """Compiled check of obstacles, with the numbers that it reads and the index at which each kind's begin."""
         kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
         numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind.arrays) for kind in kinds]
         starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
@@ -140,7 +140,7 @@ class StepChecks:
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
     def judged(self, order: npt.NDArray[Any], *, compiled: bool = True) -> Judged:
-        """Return the data that steps are checked against, with agents permuted by `order`, for compiled code or not."""
+        """Return the numbers against which compiled code checks steps, with agents in the given order."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
             around, share = self._encounters.around(order, self._toward), self._encounters.compiled(crowd=self._crowd)
@@ -151,13 +151,13 @@ class StepChecks:
         return self._judged
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
-        """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
+        """Return (length with which to repeat the step, 0 if it is accepted; whether the run ends at a pole)."""
         judged = self.judged(order, compiled=False)
         shorter, singular = checked(block, 0, judged, self._view, kept, self.near)
         return self.examine(block, order, kept) if singular and self.make_room() else (shorter, singular)
 
     def make_room(self) -> bool:
-        """Return whether pairs did not fit into the list; give it more room, or check pairs block by block from now."""
+        """Return whether pairs did not fit into the list; enlarge it, or check pairs block by block from now on."""
         if (near := with_room(self.near)) is not None:
             self.near = near
             return True

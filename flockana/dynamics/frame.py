@@ -38,7 +38,7 @@ class Plan(NamedTuple):
         return f"{self.solver.name} gave up at t = {t:g}: {why}"
 
     def describe_cuts(self, steps: int, passed: int) -> str:
-        """Return in words why a run ends whose fixed steps are cut into very many, so many stops passed; or ''."""
+        """Return in words why a run whose fixed steps are cut too often ends here; '' if it goes on."""
         if not self.solver.dt or steps <= _PIECES * (passed + _SPARE):
             return ""
         t = float(self.stops[min(passed, len(self.stops) - 1)])
@@ -50,7 +50,7 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """States as vectors: positions and velocities relative to the mean motion of the start, and ∫ dH/dt.
+    """State of a run as a vector: positions and velocities relative to the mean motion of the start, and ∫ dH/dt.
 
     So a relative tolerance is relative to nothing that a choice of the origin, or of an inertial frame, would change.
     """
@@ -81,18 +81,18 @@ class Frame:
         return float(self.t0), self.origin[:m].copy(), self.drift[:m].copy()
 
     def start(self, q0: FloatArray, p0: FloatArray) -> FloatArray:
-        """The vector of the start."""
+        """Vector of the start's state."""
         y0: FloatArray = np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
         return y0
 
     def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(q, p) of a vector."""
+        """Return positions and velocities of a state vector."""
         whole = y + (self.origin + self.drift * (t - self.t0))
         both = whole[: 2 * self.size].reshape(2, *self.shape)
         return both[0], both[1]
 
     def rate(self, flow: Flow) -> Callable[[float, FloatArray], FloatArray]:
-        """The right-hand side of the vector."""
+        """Return the right-hand side at a state vector."""
         size, energetic = self.size, self.energetic
 
         def rhs(t: float, y: FloatArray) -> FloatArray:

@@ -32,7 +32,7 @@ class Interpreter(Integrator):
         self.begin()
 
     def begin(self) -> None:
-        """Open a solver at the first row, which knows nothing of earlier steps."""
+        """Open a solver at the first row of the block, without memory of earlier steps."""
         if self.stops.size:
             if self.plan.solver.dt:
                 t, y = float(self.block.t[0]), self.block.y[0, : self._solved].copy()
@@ -41,12 +41,12 @@ class Interpreter(Integrator):
             self._write(0)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `Law.flow`."""
+        """Return acceleration and energy rate of the law, as `Law.flow` does."""
         return self.law.flow(t, q, p)
 
     @property
     def _solved(self) -> int:
-        """Number of components of a row that the solver steps."""
+        """Number of the row's components that the solver steps."""
         return int(self.block.y.shape[1])
 
     def _rate(self) -> Callable[[float, FloatArray], FloatArray]:
@@ -54,16 +54,16 @@ class Interpreter(Integrator):
         return self.frame.rate(self._counted)
 
     def _fill(self, row: int, t: float, y: FloatArray, f: FloatArray) -> None:
-        """Write time, vector and rate of the solver into a row."""
+        """Copy time, vector and rate of the solver into a row of the block."""
         self.block.t[row], self.block.y[row], self.block.f[row] = t, y, f
 
     def _counted(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the flow, counted."""
+        """Return the law's flow, and count the evaluation."""
         u, rate = self.flow(t, q, p)
         return self._count(t, u), rate
 
     def _count(self, t: float, u: FloatArray) -> FloatArray:
-        """Count an evaluation and return it; stop a solver once values are not finite."""
+        """Count an evaluation and return its value; stop the solver once values are not finite."""
         self.evaluations += 1
         if self.plan.solver.name == "LSODA" and not finite(u):  # it would try to step over it for ever
             raise FloatingPointError(f"{self.law.title} gives no finite values at t = {t:g}")
@@ -79,7 +79,7 @@ class Interpreter(Integrator):
         self._solver: Any = self.plan.solver.open(self._rhs, t, y, f, limits)
 
     def _write(self, row: int) -> bool:
-        """Write the solver's state and rate; return whether they are finite."""
+        """Copy the solver's state and rate into a row; return whether they are finite."""
         t, y, f = float(self._solver.t), self._solver.y, getattr(self._solver, "f", None)
         self._fill(row, t, y, self._rhs(t, y) if f is None else f)
         return finite(self.block.y[row], self.block.f[row])
@@ -139,7 +139,7 @@ class Interpreter(Integrator):
         return due, states, work
 
     def course(self, t: float) -> FloatArray:
-        """The vector at a time within the last step."""
+        """Return the state vector at a time within the last step."""
         if self._course is None:
             self._course = self._solver.dense_output()
         found: FloatArray = self._course(t)
@@ -156,7 +156,7 @@ class VelocityInterpreter(Interpreter):
         return self.frame.size
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the rate of the velocities along the motion, and NaN."""
+        """Return the rate of the velocities along the motion, and NaN for the energy's."""
         return self.law.acceleration(t, q), np.nan
 
     def _rate(self) -> Callable[[float, FloatArray], FloatArray]:

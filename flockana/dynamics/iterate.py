@@ -94,7 +94,7 @@ class MapStepper(Stepper):
             )
 
     def _visit(self, times: FloatArray, own: IndexArray) -> tuple[IndexArray, States]:
-        """Return (indices of steps, states after them): its own and the last, or all that can be judged only so.
+        """Return (indices of steps, states after them): those wanted and the last, or all that checks need.
 
         All where encounters are looked at, and where the map has left the finite numbers: which step was the first?
         """
@@ -114,7 +114,7 @@ class MapStepper(Stepper):
             yield self._made._replace(extra=public).at(rows)
 
     def continue_from(self, count: int) -> None:
-        """Go on; from a copy of the memory, which a law may change in place."""
+        """Continue from the end of the block, with a copy of the memory, which a law may change in place."""
         self.q, self.p, self.done = self._made.q[-1], self._made.p[-1], self.done + count
         self.memory = copied({name: values[-1] for name, values in self._series.items()})
 

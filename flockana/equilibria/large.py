@@ -62,7 +62,7 @@ class LargeLandscape(Landscape):
         return (self.here + by * eye_array(self.q.size)).tocsr()
 
     def _off_rigid(self, x: FloatArray) -> FloatArray:
-        """Project vectors off the rigid motions."""
+        """Remove the parts of vectors that are rigid motions."""
         return x - self.rigid @ (self.rigid.T @ x)
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:

@@ -48,12 +48,12 @@ class Potential:
 
     @property
     def pinned(self) -> bool:
-        """Whether translations of the flock change the potential."""
+        """Whether the potential hangs on the flock's place: a translation of all agents changes it."""
         return any(term.invariance != "rigid motions" for term in self.law.terms)
 
     @property
     def force_scale(self) -> float:
-        """Force scale of the law, or of its pairs."""
+        """Unit of force: that of the law, or else of its pair law."""
         own = self.law.scales
         return self.gain * self.pair.strength if own is None else own.force
 
@@ -127,7 +127,7 @@ def inside_obstacle(law: Law, q: FloatArray) -> bool:
 
 
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
-    """Return the skew matrices that leave every obstacle in place."""
+    """Return the skew matrices of the rotations that leave every obstacle in place."""
     # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
     from scipy.linalg import null_space
 

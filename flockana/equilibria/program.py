@@ -32,7 +32,7 @@ _TOL = 1e-10
 
 
 class _Callback(ca.Callback):
-    """Function of the program's unknown, from the kernels."""
+    """Base of the functions of the program's unknown that CasADi calls and kernels compute."""
 
     def __init__(self, name: str, program: Program) -> None:
         ca.Callback.__init__(self)

@@ -226,7 +226,7 @@ def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
 
 
 def _fixed_in_space(potential: Potential) -> bool:
-    """Return whether the target acts through the potential alone, or does not act at all."""
+    """Return whether the target acts through the potential alone, or not at all."""
     pull = potential.law.term(Navigation)
     return potential.pinned or (pull is not None and pull.gains.c1_gamma == 0.0)
 
@@ -237,7 +237,7 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Minimise in a box about the start, then about each solution, until the box is not active."""
+    """Minimise in a box about the start, then in boxes about each solution, until one lies inside its box."""
     # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.program import Program

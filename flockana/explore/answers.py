@@ -76,7 +76,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
 
 
 def _idle(law: Any) -> tuple[str, ...]:
-    """Return paths of parameters without effect on a law, such as unused gains."""
+    """Return the paths of parameters that have no effect on a law, such as unused gains."""
     unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
     return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
 
@@ -141,7 +141,7 @@ def _shown_mode(mode: Any) -> dict[str, Any]:
 
 
 def _collapses_by_ratio(law: Any) -> bool:
-    """Return whether a γ-agent pulls all agents alike, so that c1γ/c1α decides on collapse (erratum E11)."""
+    """Return whether one linear pull acts on all agents, so that c1γ/c1α decides on collapse (erratum E11)."""
     gains, decouples = getattr(law, "gains", None), getattr(law, "centre_decouples", False)
     follows = law.target is not None and decouples and isinstance(law.pair, AlphaInteraction)
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)

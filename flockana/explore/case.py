@@ -26,7 +26,7 @@ _KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
 
 @dataclass(frozen=True)
 class Case:
-    """Start with its changes.
+    """Case of the explorer's page: a start with changed parameters and moved agents.
 
     Examples
     --------

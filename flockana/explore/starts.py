@@ -68,7 +68,7 @@ def _class_name(candidate: Candidate) -> str:
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
-    """Return a law with default parameters and its Python, with a γ-agent and a ball if it uses them."""
+    """Return a law with default parameters, a γ-agent and a ball if it uses them, and its Python."""
     here = (0.0,) * m
     there, between = (2.0 * side, *here[1:]), (side, *here[1:])
     if name == "Algorithm2":

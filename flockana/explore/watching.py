@@ -77,7 +77,7 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
 
 
 def _thin(samples: list[Sample], law: Any) -> Trajectory:
-    """Return some of the samples so far, as a run."""
+    """Return the run so far with some of its samples left out."""
     some = [samples[k] for k in kept(len(samples), _FRAMES)]
     t, q, p, u = (np.array([getattr(sample, name) for sample in some]) for name in "tqpu")
     extra = {key: np.array([sample.extra[key] for sample in some]) for key in some[0].extra}

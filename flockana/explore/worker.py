@@ -82,7 +82,7 @@ def _read_to_the_end(worker: Worker) -> None:
 
 
 def _warm() -> None:
-    """Load the modules and kernels of common answers."""
+    """Load the modules and kernels that most answers need, before the first question."""
     from flockana.explore.answers import answer
     from flockana.explore.case import Case
 

@@ -33,6 +33,6 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1."""
+    """Return how far the unmet hypotheses are from being met, at most 1 for each, summed."""
     unmet = [h.margin for h in hypotheses if h.status == "unmet"]
     return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet))

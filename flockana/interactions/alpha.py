@@ -42,7 +42,7 @@ _ALPHA = lift(
 
 
 def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBound, ...]:
-    """Return bounds of the slopes of φ_α(‖x‖_σ) dz/ds and of the bump, for a bump that ends at r.
+    """Return bounds of the slopes of the pair force φ_α(‖x‖_σ) dz/ds and of the bump, for a bump that ends at r.
 
     On each part z, φ and dz/ds rise, the bump and d²z/ds² fall, and φ′ and the bump's slope have one summit.
     """
@@ -165,7 +165,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def feature(self) -> float:
-        """Length d of repulsion; attraction ends at the range, which a run watches, and the adjacency only falls."""
+        """Narrowest feature: the length d of repulsion; attraction ends at the range, and the adjacency only falls."""
         return self.d
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
@@ -186,7 +186,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
         return float(np.abs(forces).max())
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
-        """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""
+        """Return parameters for the kernels, and Chebyshev panels of ψ_α with the constants for which ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
         taper = one_by_one(kernel.phi_alpha, par)

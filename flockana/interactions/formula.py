@@ -136,7 +136,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a user should know: where the force changes its sign besides d or is infinite, what jumps at the range.
+        """Sentences for the user: where the force changes its sign besides d or is infinite, what jumps at the range.
 
         The signs are those at 255 distances; `facts.zeros` has the places between them.
 
@@ -159,7 +159,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def resting_distance(self) -> float | None:
-        """The length d if two agents rest there; else the first distance at which repulsion gives way to attraction."""
+        """Length d if two agents rest there; else the first distance at which repulsion gives way to attraction."""
         rising = [s for s, up in self._parts.zeros if up]
         return self.d if self.d in rising or not rising else rising[0]
 

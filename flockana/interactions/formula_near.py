@@ -84,7 +84,7 @@ def _cancels(cut: PiecewiseFormula, piece: Any, end: float, scale: float) -> boo
 
 
 def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
-    """Return coefficients of powers of y/bound on [0, bound], and the largest error found."""
+    """Return coefficients of the weight's power series in y/bound on [0, bound], and its largest error."""
     import mpmath  # type: ignore[import-untyped]
     from numpy.polynomial import chebyshev
 

@@ -130,7 +130,7 @@ def _norm(x: float, eps: float) -> float:
 
 
 def _places(cut: PiecewiseFormula, eps: float) -> list[float]:
-    """Return the Euclidean distances of the cuts between the ends."""
+    """Return the Euclidean distances at which pieces of the formula meet, between both ends."""
     return [float(np.sqrt(mark * (2.0 + eps * mark))) if eps else mark for mark in cut.marks[1:-1]]
 
 
@@ -170,7 +170,7 @@ class _PreciseForce:
         return float(self._energies[self.piece(s)](self.y(s)))
 
     def look(self, d: float, *, unbounded: bool) -> None:
-        """Return samples of the force along the range; raise where it is not finite."""
+        """Return samples of the force along the range; raise where the force is not finite."""
         grid = np.linspace(0.0, self.r, _GRID)[1:-1]
         self.looks = np.array([[self.force(s) for s in grid], [self.weight(s) for s in grid]])
         energies = [self.energy(s) for s in grid]
@@ -214,7 +214,7 @@ class _PreciseForce:
         return 0.5 * (left + right)
 
     def ends(self) -> tuple[str, ...]:
-        """Return what does not vanish at the range, where it ends, in words."""
+        """Return in words what does not vanish at the range, where the law ends."""
         force = -self.force(self.r, len(self.cut.pieces) - 1)
         adjacency = float(self._weights[-1](self.y(self.r)))
         sizes = (force, self.strength, "the force"), (adjacency, float(np.abs(self.looks[1]).max()), "the adjacency")
@@ -225,7 +225,7 @@ class _PreciseForce:
         )
 
     def holds(self, d: float) -> bool:
-        """Return whether the force repels just below a distance and attracts just above."""
+        """Return whether the force repels just below a distance and attracts just above it."""
         return d < self.r and self.force(d * (1.0 - 1e-3)) < 0.0 < self.force(min(d * (1.0 + 1e-3), 0.5 * (d + self.r)))
 
     def jumps(self) -> list[float]:
@@ -264,13 +264,13 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
 
 
 def _far(view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
-    """Return ψ at the range."""
+    """Return the potential ψ at the range, which pairs beyond it keep."""
     far = float(panels[-1, 2:].sum()) if forces else view.energy(view.r)  # of powers of 1
     return far if forces or isfinite(far) else inf
 
 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:
-    """Return the source of pair, slope, potential, adjacency slope and norm, and their constants."""
+    """Return the source text of pair, slope, potential, adjacency slope and norm, and their constants."""
     from flockana.symbolic import pair_formula as pf
     from flockana.symbolic.printing import Constants, function_text
 
@@ -319,7 +319,7 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
 
 
 def _horner(otherwise: str, order: int) -> str:
-    """Return the source of the series of the weight near 0, or of its derivative."""
+    """Return the source text of the weight's power series near 0, or of its derivative."""
     terms = [f"{float(k)}*par[{4 + k}]" if order else f"par[{4 + k}]" for k in range(order, TERMS)]
     source_text = terms[-1]
     for term in reversed(terms[:-1]):
@@ -328,6 +328,6 @@ def _horner(otherwise: str, order: int) -> str:
 
 
 def _integrated(in_norm: bool) -> str:
-    """Return the source of a potential given by panels."""
+    """Return the source text of a potential given by panels."""
     at = "s2/(sqrt(1.0 + par[2]*s2) + 1.0)" if in_norm else "sqrt(s2)"
     return f"def NAME(s2, par, panels):\n    return par[1] if s2 >= par[0] else on_panels({at}, panels)"

@@ -81,7 +81,7 @@ class DistanceFunction(ShortRepr, ABC):
     @property
     @abstractmethod
     def range(self) -> float:
-        """Distance beyond which it is not felt, in the user's length unit; infinite if there is none."""
+        """Distance beyond which the function is 0, in the user's unit of length; infinite if there is none."""
 
     @abstractmethod
     def inner(self, s2: FloatArray) -> InnerValues:
@@ -95,7 +95,7 @@ class DistanceFunction(ShortRepr, ABC):
 
     @property
     def coincidence(self) -> bool:
-        """Whether two agents may coincide; False where their force or adjacency has no limit there."""
+        """Whether two agents may coincide; False where the function has no limit at distance 0."""
         return True
 
     @property
@@ -105,7 +105,7 @@ class DistanceFunction(ShortRepr, ABC):
 
     @property
     def facts(self) -> PairFacts:
-        """Facts known over all distances: those in `proofs` are met, those in `faults` unmet."""
+        """Facts over all distances, by name: met for those in `proofs`, unmet for those in `faults`."""
         known = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
         known |= {name: Fact("met", text) for name, text in self.proofs.items()}
         if self.faults:
@@ -225,7 +225,7 @@ class DistanceFunction(ShortRepr, ABC):
 
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
-    """Return whether values on two sides differ by more than rounding; unknown ones do not."""
+    """Return whether values on the two sides of a distance differ by more than rounding; unknown ones do not."""
     least = max(_CHANGED * max(abs(below), abs(above)), _SMALL * np.abs(usual[np.isfinite(usual)]).max(initial=0.0))
     return not abs(below - above) <= least and not (np.isnan(below) and np.isnan(above))
 
@@ -249,12 +249,12 @@ class LawFunction:
 
     @property
     def has_pole(self) -> bool:
-        """Whether it has no limit where any two agents meet."""
+        """Whether the function has no limit at distance 0, for some pair of agents that it couples."""
         return self.function is not None and self.edges is None and not self.function.coincidence
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Corners of what the law reads of the function."""
+        """Corners of the parts of the function that the law reads."""
         if self.function is None:
             return ()
         gains = {"force": self.stiffness, "adjacency": self.damping}

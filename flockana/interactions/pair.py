@@ -266,7 +266,7 @@ class PairInteraction(DistanceFunction):
         return w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
-        """Return `pair_matrix` over pairs."""
+        """Return the sparse matrix of blocks ±B over the pairs within range, as `pair_matrix`."""
         from scipy.sparse import csr_array
 
         n, m = q.shape

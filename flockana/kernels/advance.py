@@ -14,7 +14,7 @@ AT_ONCE = 50_000_000  # agents and pairs in all evaluations of one call, some te
 
 
 class Advanced(NamedTuple):
-    """What `advance` returns."""
+    """Numbers that `advance` returns: status, steps, evaluations."""
 
     steps: int  # number of accepted steps
     status: int  # status of the last step, which says why the block ends
@@ -51,7 +51,7 @@ def record(block, order, view, states, work):
 
 @inlined
 def _sampled(step, due, method, states, work, system, pairs):
-    """Write samples (q, p, u) at the times due within a step, in the agents' own order."""
+    """Write the samples (q, p, u) that are due within a step, in the agents' own order."""
     slope = np.empty(step.y.size)
     stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):

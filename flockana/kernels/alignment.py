@@ -42,23 +42,23 @@ def lift_weight(weight: Callable[..., float], slope: Callable[..., float]) -> We
 
 @register_jitable
 def rational(s2, par):
-    """K (1 + s²/ℓ²)^−β, by the logarithm: no power of a number near 1 is rounded."""
+    """Return the rational weight K (1 + s²/ℓ²)^−β, by the logarithm: no power of a number near 1 is rounded."""
     return par[STRENGTH] * exp(-par[DECAY] * log1p(s2 / (par[LENGTH] * par[LENGTH])))
 
 
 @register_jitable
 def rational_slope(s2, par):
-    """−β/(ℓ² + s²) times the weight, its derivative in s²."""
+    """Return the rational weight's derivative by s², −β/(ℓ² + s²) times the weight."""
     return -par[DECAY] / (par[LENGTH] * par[LENGTH] + s2) * rational(s2, par)
 
 
 @register_jitable
 def singular(s2, par):
-    """K (ℓ/s)^α; infinite at 0."""
+    """Return the singular weight K (ℓ/s)^α; infinite at distance 0."""
     return par[STRENGTH] * (s2 / (par[LENGTH] * par[LENGTH])) ** (-0.5 * par[DECAY]) if s2 > 0.0 else inf
 
 
 @register_jitable
 def singular_slope(s2, par):
-    """−α/(2 s²) times the weight, its derivative in s²."""
+    """Return the singular weight's derivative by s², −α/(2 s²) times the weight."""
     return -0.5 * par[DECAY] / s2 * singular(s2, par) if s2 > 0.0 else -inf

@@ -11,19 +11,19 @@ BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 # The differences of two rows at once: all is read before anything is written, which might be the same place.
 @register_jitable
 def apart_1(x, i, j):
-    """x_j − x_i on the line."""
+    """Return the difference x_j − x_i of two agents on the line."""
     return (x[j, 0] - x[i, 0],)
 
 
 @register_jitable
 def apart_2(x, i, j):
-    """x_j − x_i in the plane."""
+    """Return the difference x_j − x_i of two agents in the plane."""
     return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
 
 
 @register_jitable
 def apart_3(x, i, j):
-    """x_j − x_i in space."""
+    """Return the difference x_j − x_i of two agents in space."""
     return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
 
 
@@ -32,7 +32,7 @@ APART = {1: apart_1, 2: apart_2, 3: apart_3}
 
 @register_jitable
 def as_they_are(par):
-    """Return the parameters unchanged, as an array."""
+    """Return the parameters unchanged, as an array, for laws with too many for registers."""
     return par
 
 

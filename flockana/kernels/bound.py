@@ -47,7 +47,7 @@ def bound(template: str, **bindings: Any) -> ModuleType:
 
 
 def made(text: str, name: str, **functions: Kernel) -> ModuleType:
-    """Return a module with a source text, in which the given functions are known by their names."""
+    """Return a module with the given source text, in which the given functions are known by their names."""
     named = {own: known for own, known in functions.items() if is_modules_own(known)}
     sources = sorted({_source(known) for known in named.values()})
     imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))
@@ -75,7 +75,7 @@ def _source(known: Kernel) -> str:
 
 
 def _of_text(text: str) -> str:
-    """Return a digest of all package sources that a text imports."""
+    """Return a digest of the sources of all package modules that a text imports."""
     names = sorted(set(re.findall(r"^from (flockana\.[\w.]+) import", text, re.MULTILINE)))
     return "".join(sources_digest(str(spec.origin)) for name in names if (spec := find_spec(name)))
 

@@ -68,7 +68,7 @@ def balanced(first, last, work, balance, ledger):
 
 @inlined
 def ends_of(block, k, n, m):
-    """Both ends of step k of a block."""
+    """Return the states at both ends of step k of a block."""
     y0, f0, y1, f1, size = block.y[k], block.f[k], block.y[k + 1], block.f[k + 1], n * m
     return Ends(
         block.t[k + 1] - block.t[k],

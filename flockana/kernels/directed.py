@@ -59,7 +59,7 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
 
 @kernel
 def seen_edges(q, p, first, second, reach, width, slow2, h, least):
-    """(head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
+    """Return (head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
     head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
     for k in range(first.size):
         s2 = square_between(q, first[k], second[k])

@@ -10,7 +10,7 @@ _HIGH, _MIDDLE, _LOW = 1.5707963267341256, 6.077100506303966e-11, 2.022266248795
 
 @inlined
 def _of_quarter(x, m):
-    """The sine of x − ½πm, which is at most ½π in size, by its series: y and a rest whose parts need not wait."""
+    """Return sin(x − ½πm), of an argument at most ½π in size, by its series: y and a rest whose parts need not wait."""
     y = ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW
     x2 = y * y
     x4 = x2 * x2
@@ -21,19 +21,19 @@ def _of_quarter(x, m):
 
 @register_jitable
 def quarter_sine(x):
-    """sin x to 3e-16 for |x| up to ½π."""
+    """Return sin x to 3e-16 for |x| up to ½π."""
     return _of_quarter(x, 0.0)
 
 
 @register_jitable
 def sine(x):
-    """sin x to 3e-16 for |x| up to a million."""
+    """Return sin x to 3e-16 for |x| up to a million."""
     k = floor(x * (1.0 / pi) + 0.5)
     return (1.0 - 2.0 * (k - 2.0 * floor(0.5 * k))) * _of_quarter(x, 2.0 * k)
 
 
 @register_jitable
 def cosine(x):
-    """cos x to 3e-16 for |x| up to a million."""
+    """Return cos x to 3e-16 for |x| up to a million."""
     k = floor(x * (1.0 / pi))
     return (2.0 * (k - 2.0 * floor(0.5 * k)) - 1.0) * _of_quarter(x, 2.0 * k + 1.0)

@@ -30,7 +30,7 @@ class Ends(NamedTuple):
 
 
 class Around(NamedTuple):
-    """Encounters that no step may leap over (`flockana.dynamics.encounters.Encounters`)."""
+    """Distances and obstacles over which no step may leap (`flockana.dynamics.encounters.Encounters`)."""
 
     radii: Any  # (n, K): distances at which each agent begins or ceases to feel another
     far: Any  # how far two may go within them
@@ -48,7 +48,7 @@ class Around(NamedTuple):
 
 
 class PairRoom(NamedTuple):
-    """Room for one pair: halved curves and their spans; control points, reaches, allowances and radii of the two."""
+    """Work space for one pair: halved curves and their spans; control points, reaches, allowances, radii."""
 
     stack: Any
     spans: Any
@@ -60,7 +60,7 @@ class PairRoom(NamedTuple):
 
 @inlined
 def pair_room(radii):
-    """Return room for a pair of agents with so many radii each."""
+    """Return work space for a pair of agents with so many radii each."""
     points = np.empty((2, 6, 3))
     points[:] = 0.0
     return PairRoom(
@@ -70,7 +70,7 @@ def pair_room(radii):
 
 @kernel
 def relative_curve(points, curve):
-    """The pair's relative control points into `curve`; the largest distance from the first of them."""
+    """Write a pair's relative control points into `curve`; return their largest distance from the first."""
     way = 0.0
     for k in range(6):
         s2 = 0.0
@@ -121,14 +121,14 @@ def _visit(points, edge, far, stack, spans):
 
 @inlined
 def _apart2(points, k):
-    """Squared distance of the pair's control points k."""
+    """Return the squared distance of two agents at the control point k of their paths."""
     x, y, z = points[1, k, 0] - points[0, k, 0], points[1, k, 1] - points[0, k, 1], points[1, k, 2] - points[0, k, 2]
     return x * x + y * y + z * z
 
 
 @inlined
 def share_of_pair(room, far, share):
-    """The share of the step that the pair in `room` allows, if less than `share`."""
+    """Return the share of a step that the pair in `room` allows, if less than `share`."""
     points, radii = room.points, room.radii
     s2, travel = _apart2(points, 0), room.reach[0] + room.reach[1]
     slack, last = room.allowance[0] + room.allowance[1], radii.shape[1] - 1
@@ -154,7 +154,7 @@ def share_of_pair(room, far, share):
 
 @kernel
 def steepest(slope):
-    """The largest of all slopes."""
+    """Return the largest of the slopes of all agents' paths."""
     most = 0.0
     for k in range(6):
         for c in range(3):
@@ -224,7 +224,7 @@ def band(common, farthest, edges, far):
 
 @inlined
 def _stays_beyond(ends, i, j, edge):
-    """Whether a pair that starts beyond `edge` stays there, as its control points seen along its first line show."""
+    """Return whether a pair that starts beyond `edge` stays there, by its control points along its first line."""
     h, q0, p0, u0, q1, p1, u1 = ends
     s2 = d1 = d2 = d3 = d4 = d5 = 0.0
     s, z = h / 5.0, h * h / 20.0

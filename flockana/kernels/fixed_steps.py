@@ -22,7 +22,7 @@ class Coefficients(NamedTuple):
 
 @inlined
 def _combine(y, h, weights, count, rates, out):
-    """y + h Σ weights_j K_j, position and velocity."""
+    """Return y + h Σ weights_j K_j, positions and velocities."""
     for i in range(out.size - 1):
         total = 0.0
         for j in range(count):

@@ -12,7 +12,7 @@ _ROUNDINGS = 2.0**-49  # eight of the largest coordinate: two agents, each close
 
 @inlined
 def _place(x, low, width, last):
-    """Number of the cell of a coordinate, the first of what is no number."""
+    """Return the number of the cell in which a coordinate lies; 0 for NaN."""
     place = min((x - low) / width, last)
     return np.int64(place) if place > 0.0 else 0
 

@@ -10,7 +10,7 @@ from flockana.kernels.sums import column_mean
 
 @kernel
 def least_distances(q):
-    """Least distance between two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent.
+    """Return the least distance of two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent.
 
     Each agent keeps the least square to those after it, so that the inner loop is compiled to SIMD.
     """
@@ -55,7 +55,7 @@ def _farthest(x, place):
 
 @kernel
 def greatest_distances(q):
-    """Greatest distance between two agents at each instant, shape (T,) of (T, n, m); 0 for one agent.
+    """Return the greatest distance of two agents at each instant, shape (T,) of (T, n, m); 0 for one agent.
 
     Two agents are no farther from each other than both together from their centre: all pairs are looked at only of
     those so far out that they may be farther than two that are found at once.

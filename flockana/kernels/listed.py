@@ -8,7 +8,7 @@ from flockana.jit import kernel
 
 
 class Listed(NamedTuple):
-    """The frame that x and v are seen from, the listed pairs, and room for a block of them."""
+    """Pairs listed for a term, the frame from which x and v are seen, and room for a block of pairs."""
 
     frame: Any  # (2, m): its place and velocity
     first: Any  # the pairs: uint32
@@ -22,7 +22,7 @@ class Listed(NamedTuple):
 
 @kernel
 def no_energy(t, x, v, numbers, panels, listed):
-    """The energy of a term without a potential."""
+    """Return 0, the energy of a term without a potential."""
     return 0.0
 
 

@@ -45,7 +45,7 @@ GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it 
 
 @inlined
 def spacing(t):
-    """The distance from a time to the next number."""
+    """Return the distance from a time to the next floating-point number."""
     return np.nextafter(abs(t), np.inf) - abs(t)
 
 
@@ -61,7 +61,7 @@ def _controlled(h, error, exponent, rejected):
 
 @inlined
 def step_of(block, k, room):
-    """The step from row k of a block to the next."""
+    """Return the step from row k of a block to the next row."""
     return Step(block.t[k], block.t[k + 1] - block.t[k], block.y[k], block.y[k + 1], room.rates, room.trial)
 
 

@@ -16,7 +16,7 @@ _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 @inlined
 def _place(t, co, si, path, k):
-    """Coordinate k of the path, from the cosine and sine of ωt."""
+    """Return coordinate k of the path at a time, from the cosine and sine of ωt."""
     return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
 
 
@@ -50,7 +50,7 @@ def act(t, x, v, u, numbers, panels, listed):
 
 @kernel
 def energy(t, x, v, numbers, panels, listed):
-    """½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1)."""
+    """Return ½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1) of the bounded pull."""
     (n, m), unit, gains = x.shape, numbers[_UNIT], numbers[_GAINS]
     path, c1, total = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :], 0.0
     if numbers[_MOVING] != 0.0:

@@ -23,7 +23,7 @@ BLOCK = 8192  # pairs in a block: two index arrays of 32 kB stay in the first-le
 
 @kernel
 def _fill_direct(x, r2, row, first, second):
-    """Fill the block from `row` on; return (row to go on from, pairs found)."""
+    """Fill a block with pairs by testing all, from `row` on; return (row to go on from, number of pairs)."""
     n, capacity, count = x.shape[0], first.size, 0
     while row < n and count + n - 1 - row <= capacity:
         for j in range(row + 1, n):
@@ -37,7 +37,7 @@ def _fill_direct(x, r2, row, first, second):
 
 @kernel
 def fill_from_grid(x, grid, r2, cell, row, first, second):
-    """As `_fill_direct`, over agents x sorted into a grid: (cell and row to go on from, pairs found)."""
+    """Fill a block with pairs from agents sorted into a grid; return (cell and row to go on from, number of pairs)."""
     order, start, rows = grid
     n, capacity, count = x.shape[0], first.size, 0
     while row < n:
@@ -85,7 +85,7 @@ def pair_blocks(
 
 
 def pair_list(q: FloatArray, r: float) -> tuple[IndexArray, IndexArray]:
-    """All pairs of `pair_blocks` at once, i < j, in lexicographic order: O(number of pairs) memory."""
+    """Return all pairs of `pair_blocks` at once, i < j, in lexicographic order, in O(number of pairs) memory."""
     blocks = [(i.copy(), j.copy()) for i, j in pair_blocks(q, r)]
     i = np.concatenate([b[0] for b in blocks])
     j = np.concatenate([b[1] for b in blocks])

@@ -43,7 +43,7 @@ def forces(q, p, bodies, beta, reach, gains, u):
 
 @kernel
 def potential(q, bodies, beta, panels, reach):
-    """Σ ψ_β."""
+    """Return the potential Σ ψ_β over agents and the obstacles of one kind."""
     (pars, starts, balls), total = bodies, 0.0
     n, m = q.shape
     x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
@@ -60,7 +60,7 @@ def potential(q, bodies, beta, panels, reach):
 
 @kernel
 def agents(q, p, par, gap, rate, clearance):
-    """Fill the arrays for one obstacle and every agent."""
+    """Fill arrays with the β-agents of one obstacle, one for every agent."""
     n, m = q.shape
     x, v, g, w = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     for i in range(n):
@@ -114,13 +114,13 @@ def braking(q, p, par, beta, reach, by_position, by_velocity):
 
 @register_jitable
 def _distance(q, par, room):
-    """Distance of a place from the surface; `room` is for the projection."""
+    """Return the distance of a place from the surface; `room` is work space for the projection."""
     return abs(project(q, room[0], par, room[1], room[2]))
 
 
 @kernel
 def _visit(curve, edge, far, par, here, room):
-    """Share of a step at which an agent that starts beyond `edge` is first well within it; 1 if it never is."""
+    """Return the share of a step at which an agent beyond `edge` is first well within it; 1 if it never is."""
     # The distance from an obstacle changes by no more than the way: so far beyond the edge may be gone safely.
     legs = 5.0 * (curve[1:] - curve[:-1])
     fastest, s = longest(legs), 0.0
@@ -184,13 +184,13 @@ def guard(points, allowance, numbers, shell, far, most):
 
 @kernel
 def act(t, x, v, u, numbers, panels, listed):
-    """`forces` as a term of a law."""
+    """Add the forces of obstacles as a term of a law, and return their power."""
     law, reach, gains = numbers[BETA:STARTS], numbers[REACH], (numbers[C1], numbers[C2])
     return gains[1] * forces(x + listed.frame[0], v + listed.frame[1], bodies_of(numbers), law, reach, gains, u)
 
 
 @kernel
 def energy(t, x, v, numbers, panels, listed):
-    """c1 Σ ψ_β."""
+    """Return the energy c1 Σ ψ_β of the obstacle term."""
     seen = x + listed.frame[0]
     return numbers[C1] * potential(seen, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])

@@ -49,7 +49,7 @@ def no_turn(q, p, e, par, out):
 
 @register_jitable
 def project_nothing(q, p, par, gap, rate):
-    """Return infinity, the distance of an absent obstacle."""
+    """Return infinity, the distance of an obstacle that is not there."""
     return np.inf
 
 
@@ -60,7 +60,7 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
 
 @register_jitable
 def project_ball(q, p, centre, radius, along, gap, rate):
-    """The β-agent on a sphere about `centre`, which itself moves at `along`: spheres and the rims of other bodies.
+    """Write the β-agent on a sphere about `centre`, which moves at `along`: for spheres and rims of other bodies.
 
     `along` must be tangent to the sphere at the agent's foot (or zero); of `centre` the first m components are read.
     """
@@ -83,7 +83,7 @@ def project_ball(q, p, centre, radius, along, gap, rate):
 
 @register_jitable
 def turn_ball(q, p, e, centre, radius, p_centre, e_centre, out):
-    """How the velocity on a sphere (`project_ball`) turns as the agent moves along e and the centre along e_centre.
+    """Write how the velocity on a sphere turns as the agent moves along e and the centre along e_centre.
 
     −(μ/ρ) [⟨a,e⟩ Pp + ⟨a,p⟩ Pe + a ⟨Pe,p⟩], symmetric in p and e, both relative to the centre; ⟨a,p⟩ sees no centre
     that moves tangentially.

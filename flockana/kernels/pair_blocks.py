@@ -14,7 +14,7 @@ NORMED = True  # bound
 
 @kernel
 def energy(q, i, j, par, panels):
-    """Σ ψ over the block."""
+    """Return the potential Σ ψ over the pairs of a block."""
     total = 0.0
     for k in range(i.size):
         total += potential(square_between(q, i[k], j[k]), par, panels)
@@ -23,7 +23,7 @@ def energy(q, i, j, par, panels):
 
 @kernel
 def terms(q, i, j, par):
-    """Per pair the weight w, the adjacency a and dw/d(s²), shape (3, L)."""
+    """Return weight w, adjacency a and dw/d(s²) of each pair of a block, shape (3, L)."""
     out = np.empty((3, i.size))
     for k in range(i.size):
         s2 = square_between(q, i[k], j[k])

@@ -29,7 +29,7 @@ OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")
 
 @inlined
 def _law(count, s2, w, a, par, c1):
-    """The law of a block of pairs, w and a, from their squared distances.
+    """Write weight w and adjacency a of a block of pairs from their squared distances.
 
     Roots and divisions wait for each other, and a processor looks only some hundred instructions ahead: where a law
     begins with a norm, two short loops keep its dividing unit busier than one long one.
@@ -48,7 +48,7 @@ def _law(count, s2, w, a, par, c1):
 
 @register_jitable
 def _add(count, pairs, room, x, v, u, par, gains):
-    """Add to u what a block of pairs gives; return Σ a ‖p_j − p_i‖².
+    """Add the forces of a block of pairs to u; return Σ a ‖p_j − p_i‖².
 
     `room` are the squared distances and two rows for w and a; `gains` are (c1, c2).
     """
@@ -72,7 +72,7 @@ def _add(count, pairs, room, x, v, u, par, gains):
 
 @register_jitable
 def _gather(x, limit, listed, begin, end, pairs, s2):
-    """Keep the pairs of a part of a list that are within range."""
+    """Keep the pairs of a part of a list that are within range; return their number."""
     (first, second), near = listed, pairs
     count = 0
     if x.shape[1] != M:
@@ -127,7 +127,7 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
 
 @kernel
 def energy(t, x, v, numbers, panels, listed):
-    """c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
+    """Return c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
     slabs, total, pairs, n, own = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
     for s in prange(slabs):
@@ -143,7 +143,7 @@ parallel_act, parallel_energy = parallel(act), parallel(energy)
 
 @register_jitable
 def _linked(x, ends, begin, end, near, s2):
-    """Write a part of the links, given as numbers of agents in turns, as pairs and their squared distances."""
+    """Write a part of the links, given as numbers of agents in turns, as pairs with their squared distances."""
     for k in range(begin, end):
         i, j, square = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
         for c in range(M):
@@ -166,7 +166,7 @@ def act_links(t, x, v, u, numbers, panels, listed):
 
 @kernel
 def energy_links(t, x, v, numbers, panels, listed):
-    """c1 Σ ψ over links."""
+    """Return the energy c1 Σ ψ over links."""
     total, links = 0.0, np.int64(numbers[2])
     for begin in range(0, links, BLOCK):
         count = _linked(x, numbers[3:], begin, min(begin + BLOCK, links), listed.near, listed.room[0])
@@ -259,7 +259,7 @@ parallel_forces_in_slabs = parallel(forces_in_slabs)
 
 @kernel
 def forces_of(q, p, first, second, numbers, c1, c2, u):
-    """As `forces`, over pairs that are within range; return the sum."""
+    """Add the forces over given pairs that are within range; return the sum as `forces` does."""
     total, par = 0.0, as_tuple(numbers)
     room, pairs = (
         (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)),

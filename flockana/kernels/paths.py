@@ -28,13 +28,13 @@ def _norm(x):
 
 @register_jitable
 def polygon(a, b, out, back, bend0, bend1):
-    """The control points of a coordinate's quintic from a to b: of h p / 5 and h² u / 20 at both ends, and linear."""
+    """Write the control points of a coordinate's quintic from a to b: of h p/5 and h² u/20 at both ends, and linear."""
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
 @kernel
 def quintic(h, a, p0, u0, b, p1, u1, out):
-    """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
+    """Write the control points of one agent's quintic from a to b into `out`, (6, 3); return its error allowance."""
     off2, off3 = 0.0, 0.0
     for k in range(a.size):
         bends = h * h * u0[k] / 20.0, h * h * u1[k] / 20.0
@@ -92,7 +92,7 @@ def centred(points, allowance):
 
 @kernel
 def control_points(h, q0, p0, u0, q1, p1, u1):
-    """`bernstein` without the flock's common drift."""
+    """Return `bernstein` without the flock's common drift."""
     points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
     reach = centred(points, allowance)
     return points, reach, allowance
@@ -114,7 +114,7 @@ def _start(points, reach, i, j, stop, stack):
 
 @kernel
 def _hull_bound(c):
-    """A lower bound of the curve's distance to 0: its control points projected on their mean direction."""
+    """Return a lower bound of the curve's distance to 0: its control points projected on their mean direction."""
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
     for k in range(6):
         axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
@@ -129,7 +129,7 @@ def _hull_bound(c):
 
 @kernel
 def _halve(stack, spans, top):
-    """De Casteljau: the left half of the curve stack[top] goes on top of it, the right half remains in place."""
+    """Halve the curve stack[top] by de Casteljau: its left half goes on top of it, the right half stays in place."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
     middle = 0.5 * (left + right)
     for level in range(6):
@@ -143,7 +143,7 @@ def _halve(stack, spans, top):
 
 @kernel
 def _least_distance(stack, spans, stop, tol):
-    """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
+    """Return (lower bound, distance, parameter) of the closest point to 0 of the curve stack[0], within tol.
 
     The distance is (stop, -1) if none is below stop; the bound holds all the same, up to stop.
     The arrays are work space: (_DEPTH + 2, 6, 3) and (_DEPTH + 2, 2).
@@ -169,7 +169,7 @@ def _least_distance(stack, spans, stop, tol):
 
 @kernel
 def _first_touch(stack, spans, tol):
-    """The first parameter at which the curve stack[0] is within tol of 0, -1 if it never is (work space as above)."""
+    """Return the first parameter at which the curve stack[0] is within tol of 0; -1 if it never is."""
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
@@ -188,7 +188,7 @@ def _first_touch(stack, spans, tol):
 
 @kernel
 def closest_pair(points, reach, allowance, first, second, stop, tol):
-    """Over the pairs given: (lower bound, distance reached, parameter, i, j); i = -1 if none comes below `stop`.
+    """Return (lower bound, distance, parameter, i, j) over the pairs given; i = -1 if none comes below `stop`.
 
     The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
     how far each agent gets from its first control point.
@@ -251,7 +251,7 @@ def touching_pairs(points, reach, first, second, tol, out):
 
 @kernel
 def _largest_distance(stack, spans, enough, tol):
-    """(upper bound, parameter) of how far the curve stack[0] gets from 0: within tol, or no more than `enough`."""
+    """Return (upper bound, parameter) of how far the curve stack[0] gets from 0, within tol or up to `enough`."""
     proven, best, where = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
@@ -275,7 +275,7 @@ def _largest_distance(stack, spans, enough, tol):
 
 @kernel
 def farthest(points, allowance, floor, tol):
-    """(upper bound, agent, parameter) of how far any agent gets from the centre of all; `floor` is known to be reached.
+    """Return (upper bound, agent, parameter) of how far any agent gets from the centre; `floor` is known to be reached.
 
     Changes the control points. The centre's allowance is the mean one.
     """

@@ -20,7 +20,7 @@ _CHOOSE_10 = np.array([1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0,
 
 @kernel
 def _squared(points, i, j, r, out):
-    """Bernstein coefficients of ρ² - r² of two quintics."""
+    """Write the Bernstein coefficients of ρ² − r² of two quintics."""
     for k in range(11):
         out[k] = 0.0
     for a in range(6):
@@ -35,7 +35,7 @@ def _squared(points, i, j, r, out):
 
 @kernel
 def _halve(stack, top):
-    """The left half of the polynomial stack[top] goes on top of it, the right half remains in place."""
+    """Halve the polynomial stack[top]: its left half goes on top of it, the right half stays in place."""
     c = stack[top]
     for level in range(11):
         stack[top + 1, level] = c[0]
@@ -45,7 +45,7 @@ def _halve(stack, top):
 
 @kernel
 def _slopes(c):
-    """Least and largest difference of neighbouring coefficients: a tenth of the slope over the piece."""
+    """Return the least and largest difference of neighbouring coefficients: a tenth of the slope."""
     least, most = np.inf, -np.inf
     for k in range(10):
         least, most = min(least, c[k + 1] - c[k]), max(most, c[k + 1] - c[k])
@@ -54,7 +54,7 @@ def _slopes(c):
 
 @kernel
 def _follow(stack, widths, band, slope_band, was_out):
-    """(was out of range, what is known of entries) along stack[0], known to `band`, its slope to `slope_band`."""
+    """Return (was out of range, what is known of entries) along stack[0], known to `band` and `slope_band`."""
     known = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:
@@ -86,7 +86,7 @@ def _follow(stack, widths, band, slope_band, was_out):
 
 @kernel
 def follow_pairs(h, start, end, r, noise, was_out, unsure):
-    """Go on by one interval with every pair: the first that comes into range for certain, or (-1, -1).
+    """Follow every pair for one interval; return the first that comes into range for certain, or (-1, -1).
 
     `start` and `end` are (q, p, u). `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is
     (the rounding of a distance, and by how much it and its rate may be off the true ones).
@@ -123,7 +123,7 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
 
 @kernel
 def follow_steps(q, r, noise, was_out, unsure):
-    """As `follow_pairs` for one state of a map: the first pair that was out of range and is in it, or (-1, -1)."""
+    """Follow every pair for one state of a map; return the first that was out of range and is in it, or (-1, -1)."""
     n, k = len(q), -1
     for i in range(n):
         for j in range(i + 1, n):

@@ -87,7 +87,7 @@ def combine_strip(begin, y, h, weights, rates, rows, count, out):
 
 @kernel
 def combine(y, h, weights, rates, rows, count, out):
-    """y + h Σ weights_j K_j over the first `count` stages."""
+    """Return y + h Σ weights_j K_j over the first `count` stages."""
     for begin in range(0, y.size, STRIP):
         combine_strip(begin, y, h, weights, rates, rows, count, out)
 
@@ -119,7 +119,7 @@ def rate_of(t, y, f, system, pairs):
 
 @kernel
 def energy_of(t, y, system, pairs):
-    """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
+    """Return the energy H of a vector whose pairs are listed: potential, and kinetic in the law's frame."""
     n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
     x, v, total = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m), 0.0
     frame_at(t, system.seen_from, frame)
@@ -168,7 +168,7 @@ def _allowed(k, size, floor):
 
 @inlined
 def error_of(step, method):
-    """The estimated error of a step over what is allowed, as scipy's solvers weigh it, by means of its room."""
+    """Return the estimated error of a step over what is allowed, as scipy's solvers weigh it."""
     h, y, reached, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
         weights, square, other = method.estimates[estimate], 0.0, square
@@ -192,7 +192,7 @@ def error_of(step, method):
 
 @kernel
 def _weighed(a, b, y, method):
-    """The root mean square of a − b over what is allowed."""
+    """Return the root mean square of a − b over what is allowed."""
     total = 0.0
     for k in range(y.size):
         total += ((a[k] - b[k]) / (_allowed(k, y.size // 2, method.floor) + abs(y[k]) * method.rtol)) ** 2
@@ -201,7 +201,7 @@ def _weighed(a, b, y, method):
 
 @inlined
 def first_step(span, step, method, system, pairs):
-    """The first step, as scipy's solvers choose it; the second rate is overwritten."""
+    """Return the length of the first step, as scipy's solvers choose it; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
     rest = np.empty(y.size)
     rest[:] = 0.0

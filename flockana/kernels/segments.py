@@ -17,7 +17,7 @@ _TINY = 1e-280  # below, products may have underflowed
 
 @kernel
 def turn(a0, a1, b0, b1, c0, c1):
-    """Sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE.
+    """Return the sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE within rounding.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def _volume(a, b, c, d):
 
 @kernel
 def meet(c, d, a, b):
-    """Whether two closed segments with overlapping boxes meet in the plane: 1, 0 or UNSURE.
+    """Return whether two closed segments with overlapping boxes meet in the plane: 1, 0 or UNSURE within rounding.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def meet(c, d, a, b):
 
 @kernel
 def _overlap(a, b, c, planes):
-    """Whether the links a–b and a–c of one agent share more than it: they run the same way."""
+    """Return whether the links a–b and a–c of one agent share more than it: they run the same way."""
     unsure = False
     for k in range(planes):
         t = (k + 1) % 3
@@ -90,7 +90,7 @@ def _overlap(a, b, c, planes):
 
 @kernel
 def cross(x, i, j, g, h, planes):
-    """Whether the links i–j and g–h cross: 1, 0 or UNSURE.
+    """Return whether the links i–j and g–h cross: 1, 0, or UNSURE within rounding.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def cross(x, i, j, g, h, planes):
 
 @kernel
 def foot(p, a, b):
-    """Distance of a point from a segment."""
+    """Return the distance of a point from a segment."""
     along, size = 0.0, 0.0
     for k in range(3):
         along += (p[k] - a[k]) * (b[k] - a[k])
@@ -143,7 +143,7 @@ def foot(p, a, b):
 
 @kernel
 def between(a, b, c, d):
-    """Distance of two segments that do not cross: at an end of one, or along their common normal."""
+    """Return the distance of two segments that do not cross: at an end of one, or along their common normal."""
     nearest = min(min(foot(a, c, d), foot(b, c, d)), min(foot(c, a, b), foot(d, a, b)))
     uu, uv, vv, uw, vw = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
@@ -171,7 +171,7 @@ def crossing_signs(x, links, a, b, planes):
 
 @kernel
 def nearest_links(x, links, a, b, planar, best):
-    """(least distance below `best` of two links without a common agent, index of the pair, −1 without any)."""
+    """Return (least distance below `best` of two links without a common agent, index of the pair, −1 without any)."""
     nearest = -1
     for k in range(a.size):
         i, j, g, h = links[a[k], 0], links[a[k], 1], links[b[k], 0], links[b[k], 1]

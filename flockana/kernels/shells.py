@@ -14,7 +14,7 @@ LOOKS = 16  # along the way within an obstacle's range, for the closest approach
 
 @register_jitable
 def out_of_reach(q, i, balls, k, reach):
-    """Whether point i is farther than `reach` from ball k (centre, radius)."""
+    """Return whether point i is farther than `reach` from ball k (centre, radius)."""
     s2, m = 0.0, balls.shape[1] - 1
     for c in range(m):
         s2 += (q[i, c] - balls[k, c]) ** 2
@@ -51,7 +51,7 @@ def point_at(curve, s, out):
 
 @kernel
 def longest(vectors):
-    """The largest length of some vectors."""
+    """Return the largest length of some vectors."""
     s2 = 0.0
     for k in range(len(vectors)):
         s2 = max(s2, vectors[k, 0] ** 2 + vectors[k, 1] ** 2 + vectors[k, 2] ** 2)

@@ -9,7 +9,7 @@ _SAMPLE = 256  # agents that suffice to estimate the slope
 
 @inlined
 def square_between(q, i, j):
-    """‖q_j − q_i‖²."""
+    """Return the squared distance ‖q_j − q_i‖² of two agents."""
     total = 0.0
     for c in range(q.shape[1]):
         total += (q[j, c] - q[i, c]) ** 2
@@ -18,7 +18,7 @@ def square_between(q, i, j):
 
 @kernel
 def finite(x):
-    """Whether all numbers of an array are finite."""
+    """Return whether all numbers of an array are finite."""
     known = True
     for k in range(x.size):
         known &= np.isfinite(x[k])
@@ -27,7 +27,7 @@ def finite(x):
 
 @kernel
 def column_mean(x, c):
-    """The mean over agents of coordinate c."""
+    """Return the mean over agents of coordinate c."""
     n = x.shape[0]
     a = b = d = e = 0.0
     for i in range(0, n - 3, 4):
@@ -39,7 +39,7 @@ def column_mean(x, c):
 
 @kernel
 def column_squares(x, c, centre):
-    """Σ_i (x_ic − centre)²."""
+    """Return the sum of squares Σ_i (x_ic − centre)²."""
     n = x.shape[0]
     a = b = d = e = 0.0
     for i in range(0, n - 3, 4):
@@ -52,7 +52,7 @@ def column_squares(x, c, centre):
 
 @kernel
 def squared_deviations(x):
-    """Σ_i ‖x_i − mean‖²."""
+    """Return the sum of squared deviations Σ_i ‖x_i − mean‖²."""
     total = 0.0
     for c in range(x.shape[1]):
         total += column_squares(x, c, column_mean(x, c))
@@ -61,7 +61,7 @@ def squared_deviations(x):
 
 @kernel
 def slope_along(x, y, c, flat):
-    """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where that is no number."""
+    """Return by how much y_ic grows with x_ic, by least squares over a hundred agents; `flat` if undefined."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
     centre = squares = products = 0.0
     for i in range(0, n, stride):
@@ -84,7 +84,7 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
 
 @inlined
 def pull_to(u, x, v, place, velocity, c1, c2):
-    """u −= c1 (x − place) + c2 (v − velocity)."""
+    """Subtract the pull c1 (x − place) + c2 (v − velocity) from u."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
         _pull_to(u, x, v, place, velocity, c1, c2, 2)
     else:
@@ -93,7 +93,7 @@ def pull_to(u, x, v, place, velocity, c1, c2):
 
 @kernel
 def put(values, into):
-    """Write an array to the front of another; both are contiguous.
+    """Copy an array to the front of another; both are contiguous.
 
     numba's own assignment also compiles the text of an error, for a second or two.
     """

@@ -19,7 +19,7 @@ NODES = 24  # with panels no wider than half their distance to a pole the series
 
 
 def panel_edges(left: float, right: float, centre: float) -> FloatArray:
-    """Panel boundaries on [left, right] for a function with poles at centre ± i (those of σ₁).
+    """Return panel boundaries on [left, right] for a function with poles at centre ± i (those of σ₁).
 
     Each panel is about as wide as its distance from the poles, so their number grows with the logarithm of the
     interval only.
@@ -32,7 +32,7 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
 def integral_panels(
     function: Callable[[FloatArray], FloatArray], edges: FloatArray, *, anchor: float, value: float = 0.0
 ) -> FloatArray:
-    """Panels of the antiderivative of `function` that equals `value` at the edge `anchor`.
+    """Return panels of the antiderivative of `function` that equals `value` at the edge `anchor`.
 
     It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
     """
@@ -51,24 +51,24 @@ def integral_panels(
 
 
 def series_nodes() -> FloatArray:
-    """Where `series_of` asks for a function on [−1, 1]: the zeros of T_N, shape (NODES,)."""
+    """Return the points of [−1, 1] at which `series_of` needs a function: the zeros of T_N, shape (NODES,)."""
     return _cosines()[:, 1]
 
 
 def series_of(values: FloatArray) -> FloatArray:
-    """Coefficients of the Chebyshev polynomials, of functions on [−1, 1]."""
+    """Return the coefficients of functions on [−1, 1] by Chebyshev polynomials."""
     return _times(values, _orthogonality())
 
 
 def _times(rows: FloatArray, matrix: FloatArray) -> FloatArray:
-    """Rows times a matrix, summed in an order that no processor changes."""
+    """Return rows times a matrix, summed in an order that no processor changes."""
     product: FloatArray = (rows[..., :, None] * matrix).sum(axis=-2)
     return product
 
 
 @cache
 def _cosines() -> FloatArray:
-    """T_j(x_k) = cos πj(2k + 1)/2N, shape (N, N), each from the first quadrant: a recurrence would add errors up."""
+    """Return T_j(x_k) = cos πj(2k + 1)/2N, shape (N, N), each from the first quadrant, so no errors add up."""
     quadrant = np.append(np.cos(0.5 * np.pi / NODES * np.arange(NODES)), 0.0)
     turns = np.outer(2 * np.arange(NODES) + 1, np.arange(NODES)) % (4 * NODES)  # a quadrant has N steps
     turns = np.minimum(turns, 4 * NODES - turns)
@@ -79,7 +79,7 @@ def _cosines() -> FloatArray:
 
 @cache
 def _orthogonality() -> FloatArray:
-    """From values to a series: c_j = 2/N Σ_k f(x_k) T_j(x_k), of c₀ the half."""
+    """Return the matrix from values to a series: c_j = 2/N Σ_k f(x_k) T_j(x_k), of c₀ the half."""
     matrix = _cosines() * (2.0 / NODES)
     matrix[:, 0] *= 0.5
     return matrix
@@ -103,7 +103,7 @@ def _powers() -> FloatArray:
 
 @register_jitable
 def on_panels(z, panels):
-    """A function given by panels of polynomials at z: each row is (left, right, coefficients), rows in rising order.
+    """Return the value at z of a function given by panels of polynomials, rows (left, right, coefficients) that rise.
 
     A coefficient is that of a power of x, which is −1 at the left end and 1 at the right one; they are one more than a
     multiple of four, whose four sums need not wait for each other.

@@ -32,7 +32,7 @@ MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
 def spatial_order(q: Any, side: float) -> Any:
-    """An order of the agents in which those in one cell follow each other."""
+    """Return an order of the agents in which those in one cell follow each other."""
     return sort_into_grid(q, side)[0]
 
 
@@ -95,7 +95,7 @@ def list_pairs(q, reach, first, second):
 
 @kernel
 def covers(pairs, q, within):
-    """Whether a list still holds every pair that is closer than `within`.
+    """Return whether a list still holds every pair that is closer than `within`.
 
     A motion that all share brings no two nearer, and one that stretches each coordinate by a factor brings them nearer
     by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.

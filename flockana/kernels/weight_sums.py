@@ -38,7 +38,7 @@ def match(x, v, gain, r2, par, u):
 
 @kernel
 def act(t, x, v, u, numbers, panels, listed):
-    """`match` as a term of a law, over all pairs or those of the list."""
+    """Add velocity consensus as a term of a law, over all pairs or those of the list, and return its power."""
     gain, r2, par = numbers[0], numbers[2] * numbers[2], numbers[3:]
     if numbers[1] != 0.0:
         gain /= len(x)

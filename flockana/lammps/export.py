@@ -180,7 +180,7 @@ def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float
 
 
 def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> script.Clock:
-    """Return equal steps of at most dt that end on time, equally many between samples."""
+    """Return a clock of equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {law.title} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)

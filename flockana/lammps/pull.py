@@ -35,7 +35,7 @@ def path(target: Target) -> Formulas | None:
 
 
 def _turning(target: SineTarget | CircleTarget) -> tuple[str, str]:
-    """Return the angular frequency and the angle."""
+    """Return the angular frequency and the angle of a path, as formulas for the script."""
     omega = f"2.0*PI*{_number(target.frequency)}"
     return omega, f"{omega}*{TIME}+{_number(target.phase)}"
 

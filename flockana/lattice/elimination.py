@@ -24,7 +24,7 @@ _ZERO = 2.0 * float(np.finfo(np.float64).eps)  # of the largest entry of a front
 
 
 class _Front(NamedTuple):
-    """Eliminated dense front: B⁻¹ = TᵀST with S = ±1, and X = TC with its coupling C to the `boundary`."""
+    """Dense block of an elimination: B⁻¹ = TᵀST with S = ±1, and X = TC with its coupling C to the `boundary`."""
 
     rows: slice
     boundary: Indices

@@ -320,7 +320,7 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
 
 
 def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:
-    """ℓ of a bounded pull, None for the linear one."""
+    """Return the length ℓ of a bounded pull; None for the linear one."""
     if bounded is False:
         return None
     if bounded is True:
@@ -331,7 +331,7 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
 
 
 def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
-    """(α − c, β) of drag and speed control."""
+    """Return the coefficients (α − c, β) of drag and speed control along the velocity."""
     thrust, brake = 0.0, 0.0
     if speed is not None:
         if not isinstance(speed, tuple | list) or len(speed) != 2:

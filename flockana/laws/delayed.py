@@ -97,7 +97,7 @@ class Delayed(Wrapper):
             )
 
     def _past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions, velocities and accelerations, (K, n, m), at times before the start, at which the state is q, p."""
+        """Return positions, velocities and accelerations, (K, n, m), at times before the start."""
         if self.history_t is None:
             still = np.zeros((len(back), *q.shape))
             return q + back[:, None, None] * p, still + p, still

@@ -164,7 +164,7 @@ class DirectedNet(WrappingLaw):
 
     @cached_property
     def _width(self) -> float:
-        """1 − cos of half the angle of view; 2 for all round."""
+        """Width 1 − cos of half the angle of view; 2 for a view all round."""
         return 2.0 if self.view >= _ALL_ROUND * (1.0 - 1e-12) else 1.0 - cos(0.5 * self.view)
 
     @cached_property
@@ -191,7 +191,7 @@ class DirectedNet(WrappingLaw):
         return assembled(by_position), assembled(by_velocity)
 
     def _pair_derivatives(self, term: PairTerm, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
-        """Derivatives of Σ_j w_ij (c1 s_ij Δ + c2 a_ij (p_j − p_i)), Δ = q_j − q_i."""
+        """Return the derivatives of Σ_j w_ij (c1 s_ij Δ + c2 a_ij (p_j − p_i)), Δ = q_j − q_i."""
         (n, m), reach = q.shape, self._reach(len(q))
         first, second = pair_list(q, float(reach.max()))
         i, j = np.concatenate([first, second]), np.concatenate([second, first])
@@ -215,7 +215,7 @@ class DirectedNet(WrappingLaw):
     def _sight_slopes(
         self, delta: FloatArray, ahead: FloatArray, s2: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Sight w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
+        """Return the sight w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
         sight, by_delta, by_own = np.ones(len(s2)), np.zeros(delta.shape), np.zeros(delta.shape)
         if self._width >= 2.0:
             return sight, by_delta, by_own

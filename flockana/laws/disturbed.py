@@ -105,7 +105,7 @@ class Disturbed(Wrapper):
         return self.intensity > 0.0
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
-        """Yield the name and value of each push at one time, of shape (m,) or (n, m)."""
+        """Yield the name and value of each push at time 0, of shape (m,) or (n, m)."""
         first = None if self.table is None else self.table[0]
         given = {"force": self._called(0.0), "swing": self.swing, "table": first}
         yield from ((name, push) for name, push in given.items() if push is not None)
@@ -136,7 +136,7 @@ class Disturbed(Wrapper):
         return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(own(t / time)))
 
     def _called(self, t: float) -> Any:
-        """Return the force alone at a time, a function of time called; None without one."""
+        """Return the constant force, or that of a function at a time; None without a force."""
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def features(self) -> tuple[Feature, ...]:

@@ -110,7 +110,7 @@ class _Minimum:
         self.lower = self.reached = float(at_samples[k, self.agent])
 
     def update(self, bound: _CurveMinimum, t: FloatArray, interval: Any, agent: Any) -> None:
-        """Update the minimum with some agents' intervals."""
+        """Lower the least clearance so far where some agents' intervals between samples may go below it."""
         self.lower = min(self.lower, bound.lower)
         if bound.value < self.reached:
             k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])
@@ -157,7 +157,7 @@ def bounds_over_hull(
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the control points of both halves of every curve (De Casteljau)."""
+    """Return the control points of both halves of every curve (de Casteljau)."""
     levels = [curves]
     for _ in range(5):
         levels.append(0.5 * (levels[-1][:, :-1] + levels[-1][:, 1:]))
