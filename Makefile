@@ -25,6 +25,7 @@ check: .venv/.dev  ## format, lint, types, import direction, names in compiled c
 	$(BIN)/mypy
 	$(BIN)/python tools/import_lint.py
 	$(BIN)/python tools/rebinding_lint.py
+	$(BIN)/python tools/name_lint.py
 	$(BIN)/python -m tools.coverage_page --check
 	$(BIN)/python -m tools.errata_page --check
 

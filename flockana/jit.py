@@ -79,31 +79,31 @@ class Kernel:
                     return self._compiled(*arguments)
                 except TypeError:  # of another type, or frozen
                     pass
-            given = self._thawed(arguments)
+            plain = self._thawed(arguments)
             if self._compiled is not None:
                 with suppress(TypeError):
-                    return self._compiled(*given)
-            self._compile(given)
-            return self._compiled(*given)  # type: ignore[misc]
+                    return self._compiled(*plain)
+            self._compile(plain)
+            return self._compiled(*plain)  # type: ignore[misc]
         except SystemError as error:  # of an alarm while numba made a tuple of arrays
             raise origin_of(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
         """Return the arguments with writable views of read-only arrays, and note that this kernel gets such arrays."""
-        code, given = self.function.__code__, list(arguments)
+        code, plain = self.function.__code__, list(arguments)
         for k, each in enumerate(arguments):
             if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
-                given[k], self._thaws = thawed(each), True
-        return given
+                plain[k], self._thaws = thawed(each), True
+        return plain
 
     def _compile(self, arguments: list[Any]) -> None:
-        numba, made = load_numba(), self.dispatcher
-        if hasattr(made, "compile"):  # else NUMBA_DISABLE_JIT is set
+        numba, dispatcher = load_numba(), self.dispatcher
+        if hasattr(dispatcher, "compile"):  # else NUMBA_DISABLE_JIT is set
             types = tuple(map(numba.typeof, arguments))
             with compiling(_mark(self.function, types) if self.kept else None, self.function.__name__):
-                _opened(made).compile(types)
-            _ensure_plain(self.function.__name__, made.overloads[types].signature.return_type)
-        self._compiled = made
+                _opened(dispatcher).compile(types)
+            _ensure_plain(self.function.__name__, dispatcher.overloads[types].signature.return_type)
+        self._compiled = dispatcher
 
     def __reduce__(self) -> Any:
         """Pickle a module's own function by its name."""
@@ -207,8 +207,8 @@ class _Memory:
 
     def __init__(self, array: Any) -> None:
         self.array = array  # kept alive by the view's base
-        known = array.__array_interface__
-        self.__array_interface__ = {**known, "data": (known["data"][0], False)}
+        layout = array.__array_interface__
+        self.__array_interface__ = {**layout, "data": (layout["data"][0], False)}
 
 
 @cache
@@ -259,8 +259,8 @@ def is_modules_own(known: Any) -> bool:
 
 
 def _named(known: Any) -> bool:
-    found = getattr(sys.modules.get(known.__module__), known.__qualname__, None)
-    return found is not None and getattr(found, "function", found) is getattr(known, "function", known)
+    original = getattr(sys.modules.get(known.__module__), known.__qualname__, None)
+    return original is not None and getattr(original, "function", original) is getattr(known, "function", known)
 
 
 def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..., Any]) -> Any:
@@ -293,8 +293,8 @@ def _folder(function: Callable[..., Any]) -> Path | None:
 def _mark(function: Callable[..., Any], types: Any) -> Path | None:
     """Return the path of the file that says that some process has compiled a function for these types."""
     config, folder = load_numba().config, _folder(function)
-    known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
-    return None if folder is None else folder / f"{sha256([repr(known)])[:16]}.known"
+    identity = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
+    return None if folder is None else folder / f"{sha256([repr(identity)])[:16]}.known"
 
 
 @contextmanager
@@ -368,8 +368,8 @@ def kernels_folder() -> Path | None:
 def _private(folder: Path) -> Path:
     """Return the folder if this user alone can write to it, as its code is executed; raise OSError otherwise."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    found = folder.lstat()
-    if hasattr(os, "getuid") and (folder.is_symlink() or found.st_uid != os.getuid() or found.st_mode & 0o077):
+    status = folder.lstat()
+    if hasattr(os, "getuid") and (folder.is_symlink() or status.st_uid != os.getuid() or status.st_mode & 0o077):
         raise PermissionError(f"{folder} is not this user's alone")
     with tempfile.TemporaryFile(dir=folder):
         return folder
@@ -392,11 +392,11 @@ def sources_folder(base: Path, digest: str) -> Path:
 @cache
 def sources_digest(file: str) -> str:
     """Return a digest of a file and of all files of the package that it imports, directly or not."""
-    known, found = set[Path](), {Path(file)}
-    while found:
-        known |= found
-        found = {other for path in found for other in _imported(path)} - known
-    return sha256([_FORM, *(path.read_bytes() for path in sorted(known - {Path(__file__)}))])[:16]
+    seen_files, files = set[Path](), {Path(file)}
+    while files:
+        seen_files |= files
+        files = {other for path in files for other in _imported(path)} - seen_files
+    return sha256([_FORM, *(path.read_bytes() for path in sorted(seen_files - {Path(__file__)}))])[:16]
 
 
 @cache

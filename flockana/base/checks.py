@@ -162,8 +162,8 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
     """Return a finite float64 series, of the given length if there is one."""
     series = ensure_numbers(name, value, "a series of numbers")
     if series.ndim != 1 or (length is not None and len(series) != length):
-        wanted = "a series" if length is None else f"a series of {length} numbers"
-        raise ArgumentError(f"{name} has shape {series.shape}: expected {wanted}")
+        expectation = "a series" if length is None else f"a series of {length} numbers"
+        raise ArgumentError(f"{name} has shape {series.shape}: expected {expectation}")
     if not np.isfinite(series).all():
         raise ArgumentError(f"{name} = {' '.join(str(series).split())}: expected finite numbers")
     return series

@@ -23,8 +23,8 @@ class Fact:
 def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     """Return the status of several facts together: unmet if one is unmet, else assumed if one is assumed, else met."""
     facts = list(facts)
-    met: FactStatus = "met"
-    worst = min((met, *(fact.status for fact in facts)), key=_ORDER.index)
+    status: FactStatus = "met"
+    worst = min((status, *(fact.status for fact in facts)), key=_ORDER.index)
     deciding = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)

@@ -27,8 +27,8 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
     """Return the file that a path leads to through links; raise if it is something that must not be replaced."""
     # A device or a pipe is left alone, and so is a link: what it points to is written.
-    given = ensure_path(path, action="write", remedy=remedy)
-    target, reason = Path(os.path.realpath(given)), ""
+    path_given = ensure_path(path, action="write", remedy=remedy)
+    target, reason = Path(os.path.realpath(path_given)), ""
     try:
         if target.is_symlink():
             reason = "its links lead in a circle"
@@ -37,7 +37,7 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
     except OSError as error:
         reason = error.strerror or str(error)
     if reason:
-        raise FileError(f"cannot write {str(given)!r}: {reason}; {remedy}")
+        raise FileError(f"cannot write {str(path_given)!r}: {reason}; {remedy}")
     return target
 
 

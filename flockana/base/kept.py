@@ -38,5 +38,5 @@ def _folder() -> Path:
 def _installation() -> str:
     """Return a digest of the names, sizes and times of the package's files."""
     files = ((path, path.stat()) for path in sorted(ROOT.rglob("*.*")) if path.suffix != ".pyc")
-    known = [sys.version, *((str(path), stat.st_size, stat.st_mtime_ns) for path, stat in files)]
-    return sha256([repr(known)])[:16]
+    fingerprint = [sys.version, *((str(path), stat.st_size, stat.st_mtime_ns) for path, stat in files)]
+    return sha256([repr(fingerprint)])[:16]

@@ -56,16 +56,16 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
 
     @functools.wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-        given: dict[str, Any] = called.bind(*args, **kwargs).arguments
+        values: dict[str, Any] = called.bind(*args, **kwargs).arguments
         for name, kind in kinds.items():
-            if name in given and kind in _ARRAYS:
-                ensure_numbers(name, given[name], "an array of real numbers")
-            elif name in given and kind in _SYMBOLIC:
-                _ensure_symbolic(name, given[name])
-            elif name in given:
-                ensure_kind(name, given[name], _PROTOCOLS.get(kind, kind), _EXAMPLES[kind])
-                if items[name] in _EXAMPLES and isinstance(given[name], Sequence):  # an iterator can be read only once
-                    for k, item in enumerate(given[name]):
+            if name in values and kind in _ARRAYS:
+                ensure_numbers(name, values[name], "an array of real numbers")
+            elif name in values and kind in _SYMBOLIC:
+                _ensure_symbolic(name, values[name])
+            elif name in values:
+                ensure_kind(name, values[name], _PROTOCOLS.get(kind, kind), _EXAMPLES[kind])
+                if items[name] in _EXAMPLES and isinstance(values[name], Sequence):  # an iterator can be read only once
+                    for k, item in enumerate(values[name]):
                         ensure_kind(f"{name}[{k}]", item, items[name], _EXAMPLES[items[name]])
         return function(*args, **kwargs)
 

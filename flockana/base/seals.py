@@ -87,8 +87,8 @@ def is_sealed(evidence: Any) -> bool:
 
 def replace_sealed(evidence: _Evidence, **changes: Any) -> _Evidence:
     """Return a dataclass with some fields replaced, sealed again if it was sealed before."""
-    made = replace(evidence, **changes)  # type: ignore[type-var]
-    return sealed(made) if is_sealed(evidence) else made
+    copy = replace(evidence, **changes)  # type: ignore[type-var]
+    return sealed(copy) if is_sealed(evidence) else copy
 
 
 def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
@@ -166,6 +166,6 @@ def _numbers(value: Any) -> npt.NDArray[Any] | None:
 
 def _public(value: Any) -> dict[str, Any]:
     """Return an object's attributes without private ones and cached results."""
-    own = getattr(value, "__dict__", {})
-    kept = {key for key in own if isinstance(getattr(type(value), key, None), cached_property)}
-    return {key: item for key, item in own.items() if key[:1] != "_" and key not in kept}
+    attributes = getattr(value, "__dict__", {})
+    cached = {key for key in attributes if isinstance(getattr(type(value), key, None), cached_property)}
+    return {key: item for key, item in attributes.items() if key[:1] != "_" and key not in cached}

@@ -44,8 +44,8 @@ def to_data(value: Any) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
         kind, values = getattr(value, "spelling", None) or (type(value), _parameters(value))
         data = {name: to_data(part) for name, part in values.items()}
-        known = parameter_classes().get(kind.__qualname__) if kind.__module__.startswith("flockana.") else kind
-        if known is None or (isinstance(kind, type) and known is not kind):
+        known_class = parameter_classes().get(kind.__qualname__) if kind.__module__.startswith("flockana.") else kind
+        if known_class is None or (isinstance(kind, type) and known_class is not kind):
             raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
         return {"type": public_name(kind), **data}
     if isinstance(value, np.ndarray):

@@ -57,9 +57,9 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
 
 
 def _rescaled(item: Any, length: float, time: float) -> Any:
-    own: Callable[[float, float], Any] | None = getattr(item, "in_units", None)  # for what no table of powers can say
-    if own is not None:
-        return own(length, time)
+    how: Callable[[float, float], Any] | None = getattr(item, "in_units", None)  # for what no table of powers can say
+    if how is not None:
+        return how(length, time)
     if isinstance(item, tuple):
         return tuple(_rescaled(each, length, time) for each in item)
     if not is_dataclass(item) or isinstance(item, type):

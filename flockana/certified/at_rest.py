@@ -35,29 +35,29 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     if not regular(u, x, radius):
         raise SolverError("the equilibrium's rotations may be dependent: its agents are nearly on one line")
     equations, slope = system(u, x)
-    found = enclose_zero(equations, slope, [*centre, *_multipliers(u)], radius)
-    if found is None:
+    solution = enclose_zero(equations, slope, [*centre, *_multipliers(u)], radius)
+    if solution is None:
         fault = "it is degenerate (a soft mode beyond the rigid motions), or find_equilibrium ended too early"
         raise SolverError(f"Krawczyk's test found no isolated equilibrium there: {fault}")
-    return x, found[: u.n * u.m]
+    return x, solution[: u.n * u.m]
 
 
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
     """Return the equations of an equilibrium in (x, μ, ν) about a computed x̄, and their derivative."""
     centre, size = [arb(y) for y in x], len(x)
     motions, shifts = u.rotation_tangents(centre), u.translations()
-    held = motions + shifts
+    fixed = motions + shifts
     offsets = [dot(motion, centre) for motion in motions] + [arb(0)] * u.m
 
     def equations(unknown: Balls) -> list[arb]:
         place, factors = unknown[:size], unknown[size:]
-        columns = zip(u.gradient(place), *held, strict=True)
+        columns = zip(u.gradient(place), *fixed, strict=True)
         force = [f + dot(factors, motions) for f, *motions in columns]
-        return force + [dot(motion, place) - offset for motion, offset in zip(held, offsets, strict=True)]
+        return force + [dot(motion, place) - offset for motion, offset in zip(fixed, offsets, strict=True)]
 
     def slope(unknown: Balls) -> arb_mat:
-        rows = [[*row, *(motion[k] for motion in held)] for k, row in enumerate(u.hessian(unknown[:size]).tolist())]
-        return arb_mat(rows + [[*motion, *[arb(0)] * len(held)] for motion in held])
+        rows = [[*row, *(motion[k] for motion in fixed)] for k, row in enumerate(u.hessian(unknown[:size]).tolist())]
+        return arb_mat(rows + [[*motion, *[arb(0)] * len(fixed)] for motion in fixed])
 
     return equations, slope
 
@@ -126,14 +126,14 @@ def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
         return [[arb(1)]]
     left, _, right = np.linalg.svd(x.T @ rest)
     left[:, -1] *= np.linalg.det(left @ right)
-    found = left @ right
+    rotation = left @ right
     if m == 2:
-        c, s = arb(float(found[0, 0])), arb(float(found[1, 0]))
+        c, s = arb(float(rotation[0, 0])), arb(float(rotation[1, 0]))
         size = norm([c, s])
         return [[c / size, -s / size], [s / size, c / size]]
     from scipy.spatial.transform import Rotation
 
-    a, b, c, w = (arb(float(y)) for y in Rotation.from_matrix(found).as_quat())
+    a, b, c, w = (arb(float(y)) for y in Rotation.from_matrix(rotation).as_quat())
     rows = [
         [w * w + a * a - b * b - c * c, 2 * (a * b - c * w), 2 * (a * c + b * w)],
         [2 * (a * b + c * w), w * w - a * a + b * b - c * c, 2 * (b * c - a * w)],

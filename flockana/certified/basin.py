@@ -192,13 +192,13 @@ def certify(equilibrium: Any, *, law: Any = None) -> Basin:
     >>> triangle.share > 0.045, triangle.connected, triangle.distance > 6
     (True, True, True)
     """
-    known = isinstance(equilibrium, Equilibrium)
-    if known:
+    is_equilibrium = isinstance(equilibrium, Equilibrium)
+    if is_equilibrium:
         ensure_unedited_equilibrium("equilibrium", equilibrium)
-    law = equilibrium.law if law is None and known else law
+    law = equilibrium.law if law is None and is_equilibrium else law
     if law is None:
         raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
-    q = ensure_points("equilibrium", equilibrium.q if known else equilibrium)
+    q = ensure_points("equilibrium", equilibrium.q if is_equilibrium else equilibrium)
     u = Structure.of(law, *q.shape)
     _ensure_flock(law, q)
     with ctx.workdps(DIGITS):
@@ -207,9 +207,9 @@ def certify(equilibrium: Any, *, law: Any = None) -> Basin:
         radius = _largest(around)
         for _ in range(_RETRIES):
             shells = prove(around, around.proposed(radius))
-            found = shells and _assemble_basin(around, law, computed, shells)
-            if found:
-                return found
+            basin = shells and _assemble_basin(around, law, computed, shells)
+            if basin:
+                return basin
             radius *= _RETREAT
     raise SolverError(f"no basin of {q.shape[0]} agents could be proved down to ρ = {radius / law.alpha.d:.3g} d")
 
@@ -249,13 +249,13 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
     u, reach = around.u, ROOT_TWO * shells.radius
     lengths = {pair: length for pair, (_, length) in around.gaps.items()}
     second, degree = damping(u, lengths, reach)
-    least, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
+    lowest_curvature, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
     curvature, surplus = (round_down(value, _STATED) for value in (shells.curvature, shells.surplus))
     apart = min((length - ball(reach)).lower() for length in lengths.values())
-    if not (least > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
+    if not (lowest_curvature > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
         return None
-    bounds = Bounds(curvature, surplus, least, most)
-    if not (found := decay(bounds)).rate > 0:
+    bounds = Bounds(curvature, surplus, lowest_curvature, most)
+    if not (decay_bounds := decay(bounds)).rate > 0:
         return None
     basin = Basin(
         law=law,
@@ -263,11 +263,11 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
         radius=fraction(shells.radius),
         level=fraction(round_down(shells.level, _STATED)),
         curvature=fraction(curvature),
-        damping=fraction(least),
-        rate=fraction(found.rate),
-        overshoot=fraction(found.overshoot),
+        damping=fraction(lowest_curvature),
+        rate=fraction(decay_bounds.rate),
+        overshoot=fraction(decay_bounds.overshoot),
         distance=fraction(round_down(apart, _STATED)),
         connected=second > 0,
-        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second, degree, bounds, found),
+        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second, degree, bounds, decay_bounds),
     )
     return sealed(basin)

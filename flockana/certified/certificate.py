@@ -41,7 +41,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
     basin.ensure_unedited()
     proof = basin.proof
-    u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
+    u, shells, bounds, decay_bounds = proof.structure, proof.shells, proof.bounds, proof.decay
     parameters = {name: decimal(value) for name, value in vars(u.par).items()}
     gains = {name: decimal(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
     bonds = [
@@ -62,7 +62,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         "second_eigenvalue": decimal(proof.second),
         "degree": decimal(proof.degree),
         "surplus": decimal(bounds.surplus),
-        "lyapunov": {name: decimal(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
+        "lyapunov": {name: decimal(getattr(decay_bounds, name)) for name in ("eps", "theta", "kappa", "tau")},
         **{name: decimal(getattr(basin, name)) for name in STATED},
     }
     return with_digest(data)
@@ -183,8 +183,8 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
     half = flow.n * flow.m
     if Piece.SWITCH not in pieces:
         return [[c.mid() for c in row] for row in flow.taylor(t, state, _ORDER, pieces)[:half]]
-    own = flow.pieces(state)
-    u, jerk = flow.input(t, state, own), flow.acceleration(t, state, own)[half:]
+    piece_numbers = flow.pieces(state)
+    u, jerk = flow.input(t, state, piece_numbers), flow.acceleration(t, state, piece_numbers)[half:]
     return [[c.mid() for c in (state[k], state[half + k], u[k] / 2, jerk[k] / 6)] for k in range(half)]
 
 
@@ -197,15 +197,15 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
         error = run.jumped(state, path, error)
         stated = small((2 * error).max(arb("1e-28")))
         for _ in range(_TRIES):
-            found, box = run.grown(arb(t), h, path, error, number(stated))
-            if found < number(stated) < 2 * found + arb(2) ** -90:
+            enclosure, box = run.grown(arb(t), h, path, error, number(stated))
+            if enclosure < number(stated) < 2 * enclosure + arb(2) ** -90:
                 break
-            stated = small((arb("1.3") * found).max(arb("1e-28")))
+            stated = small((arb("1.3") * enclosure).max(arb("1e-28")))
         else:
             raise ArgumentError(f"no error bound is verified at t = {t:g}: expected another weight or tube")
         errors.append(stated)
         boxes.append(box)
-        state, error = run.at(path, h), found
+        state, error = run.at(path, h), enclosure
     return {"errors": errors} | run.stated(boxes, start)
 
 

@@ -89,11 +89,11 @@ def _check_bounds(
     step = radius / len(k)
     slopes = [step * total for total in accumulate(k)]  # G' at the shells' ends
     level = step * (sum(slopes, Fraction(0)) - slopes[-1] / 2)
-    least = min(s / (step * i) for i, s in enumerate(slopes, start=1))
+    lowest_ratio = min(s / (step * i) for i, s in enumerate(slopes, start=1))
     sums = accumulate(y * (2 * j + 1) for j, y in enumerate(k))
     moments = [total / (2 * i**2) for i, total in enumerate(sums, start=1)]
     ensure(round_down_float(data["level"], level), "the level is not that of the shells")
-    ensure(round_down_float(data["curvature"], least), "the least curvature")
+    ensure(round_down_float(data["curvature"], lowest_ratio), "the least curvature")
     ensure(round_down_float(data["surplus"], min(moments)), "the surplus is not that of the shells")
     curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
     ensure(curvature > 0 and level > 0, "the potential does not rise")
@@ -109,8 +109,8 @@ def _check_bounds(
     near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}
     degrees = [sum((w for pair, w in near.items() if i in pair), arb(0)).upper() for i in range(net.n)]
     ensure(round_down_float(str(-degree), -max(degrees)), "the largest degree is not that of the net")
-    least, most = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
-    ensure(least > 0, "nothing damps")
+    lowest_ratio, most = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
+    ensure(lowest_ratio > 0, "nothing damps")
     yield "relative velocities are damped, the net's part from its second eigenvalue at its longest lengths"
     eps, theta, kappa, tau = (Fraction(data["lyapunov"][name]) for name in ("eps", "theta", "kappa", "tau"))
     ensure(0 < eps <= 2 * kappa and 0 <= theta <= 1 and tau > 0 and eps**2 < curvature, "no Lyapunov function")
@@ -118,7 +118,7 @@ def _check_bounds(
     rate = min(
         eps * theta,
         eps * (theta * curvature + 2 * mean - kappa * most) / (curvature + eps * tau),
-        2 * ((1 - eps / (2 * kappa)) * least - eps) / (1 + eps / tau),
+        2 * ((1 - eps / (2 * kappa)) * lowest_ratio - eps) / (1 + eps / tau),
     )
     ensure(rate > 0 and round_down_float(data["rate"], rate / 2, OF_RATE), "the rate is not that of F")
     share = ball(eps) / ball(curvature).sqrt()
@@ -176,17 +176,17 @@ class Net:
         """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0."""
         # The turns are those of the positions, to which they are orthogonal.
         turns = self.rotation_tangents(self.centre)
-        held = turns + self.translations()
+        motion_rows = turns + self.translations()
         start = [y for row in self.centre for y in row]
         moving = self.rotation_tangents([[y + arb(0, self.box) for y in row] for row in self.centre])
         products = [[dot(a, b) for b in turns] for a in moving]
         ensure(not turns or bool(arb_mat(products).det() != 0), "the rotations are not independent")
-        size = len(start) + len(held)
-        shift = self.krawczyk(start, [self.box] * size, held)
+        size = len(start) + len(motion_rows)
+        shift = self.krawczyk(start, [self.box] * size, motion_rows)
         ensure(all(abs(y) < self.box for y in shift), "Krawczyk's test fails: no isolated equilibrium in the box")
         near = [y + change for y, change in zip(start, shift, strict=False)]
-        middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(held)
-        shift = self.krawczyk(middles, radii, held)  # once more, about what was found: the zero stays inside
+        middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(motion_rows)
+        shift = self.krawczyk(middles, radii, motion_rows)  # once more, about what was found: the zero stays inside
         return self.rows([y + change for y, change in zip(middles, shift, strict=False)])
 
     def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
@@ -196,8 +196,8 @@ class Net:
         factor = proposed_inverse(wide)
         value = self.force(self.rows(centre)) + [dot(motion, centre) for motion in held]
         one = arb_mat([[int(i == j) for j in range(size + len(held))] for i in range(size + len(held))])
-        moved = (one - factor * wide) * arb_mat([[arb(0, r)] for r in radii]) - factor * arb_mat([[y] for y in value])
-        return moved.entries()
+        image = (one - factor * wide) * arb_mat([[arb(0, r)] for r in radii]) - factor * arb_mat([[y] for y in value])
+        return image.entries()
 
     def rows(self, flat: Sequence[arb]) -> list[list[arb]]:
         """Return a vector of coordinates as a list of agents."""
@@ -237,10 +237,10 @@ class Net:
         """Return the matrix of the form c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩ over pairs with their blocks B."""
         m, size = self.m, self.n * self.m
         total = [[ball(self.c1_gamma) * int(i == j) for j in range(size)] for i in range(size)]
-        for (i, j), own in blocks.items():
+        for (i, j), block in blocks.items():
             for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
                 for a, b in product(range(m), repeat=2):
-                    total[m * p + a][m * q + b] += sign * own[a][b]
+                    total[m * p + a][m * q + b] += sign * block[a][b]
         return total
 
     def radial(

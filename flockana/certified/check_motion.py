@@ -75,8 +75,8 @@ class Motion:
     def pieces(self, q: Vector) -> list[int | None]:
         """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if it may be on two."""
         norms = (sigma_of_square(norm2(gap), self.par.eps) for _, _, gap in self.gaps(q))
-        found = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
-        return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
+        piece_numbers = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
+        return piece_numbers + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
     def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
         """Return the accelerations u along Taylor series of q and p."""
@@ -85,7 +85,7 @@ class Motion:
         leader = [arb_series([q + p * t, p]) for q, p in zip(self.start, self.velocity, strict=True)]
         away = [x[k] - leader[k % m] for k in range(size)]
         if self.bounded:
-            away = [a / (1 + norm2(own)).sqrt() for own in self.agents(away) for a in own]
+            away = [a / (1 + norm2(components)).sqrt() for components in self.agents(away) for a in components]
         u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.declared[k % m]) for k, a in enumerate(away)]
         for (i, sphere), piece in zip(self.near(), pieces[self.n * (self.n - 1) // 2 :], strict=True):
             if piece != 2:

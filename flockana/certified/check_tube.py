@@ -107,10 +107,10 @@ class Run(Motion):
             fits = len(path) == size and all(len(row) == len(path[0]) in range(4, 65) for row in path)
             ensure(fits, "a path of another size")
             error, bound, where = self.jumped(state, path, error), number(stated), f"t = {float(t):.6g}"
-            found, box = self.grown(ball(t), h, path, error, bound)
-            ensure(bool(found < bound), f"{where}: the error may exceed what is stated")
-            ensure(bool(bound < 2 * found + arb(2) ** -90), f"{where}: the error stated is not the one proved")
-            state, error = self.at(path, h), found
+            enclosure, box = self.grown(ball(t), h, path, error, bound)
+            ensure(bool(enclosure < bound), f"{where}: the error may exceed what is stated")
+            ensure(bool(bound < 2 * enclosure + arb(2) ** -90), f"{where}: the error stated is not the one proved")
+            state, error = self.at(path, h), enclosure
             boxes.append(box)
         yield f"the run is within the errors stated of the path, through {len(times) - 1} steps"
         stated = self.stated(boxes, [ball(x) for x in x0])

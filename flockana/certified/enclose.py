@@ -110,17 +110,17 @@ def enclose(
         march = _March(flow_of(law, *q0.shape), law.alpha.d, order, **limits)
         widths = [arb(r) for r in around for _ in range(q0.size)]
         start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], widths)
-        times, sets, taken, status, message = _collected(march, start, span, steps, progress)
-    stats = {"order": order, **limits, "radius": around, "steps": len(taken)}
+        times, sets, taken_steps, status, message = _collected(march, start, span, steps, progress)
+    stats = {"order": order, **limits, "radius": around, "steps": len(taken_steps)}
     stats["seconds"] = time.perf_counter() - started
-    return sealed(Tube(law, q0, p0, times, sets, taken, status, message, stats))
+    return sealed(Tube(law, q0, p0, times, sets, taken_steps, status, message, stats))
 
 
 def _collected(
     march: _March, start: StateSet, span: tuple[float, float], most: int, progress: bool
 ) -> tuple[tuple[float, ...], tuple[StateSet, ...], tuple[Step, ...], str, str]:
     """Return times, sets and steps up to the end, Ctrl-C or a step that cannot be proved, and a status and message."""
-    times, sets, taken = [span[0]], [start], list[Step]()
+    times, sets, taken_steps = [span[0]], [start], list[Step]()
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
@@ -131,15 +131,15 @@ def _collected(
                         break
                     times.append(t)
                     sets.append(step.after)
-                    taken.append(step)
-                    advance(t - span[0], f"t = {t:.4g}, {len(taken)} steps")
+                    taken_steps.append(step)
+                    advance(t - span[0], f"t = {t:.4g}, {len(taken_steps)} steps")
                     if t == span[1]:
                         status, message = "complete", ""
-                    if len(taken) == most:
+                    if len(taken_steps) == most:
                         break
         except KeyboardInterrupt:
             status, message = "interrupted", f"interrupted: it ends at t = {times[-1]:g}"
-    return tuple(times), tuple(sets), tuple(taken), status, message
+    return tuple(times), tuple(sets), tuple(taken_steps), status, message
 
 
 @dataclass(frozen=True)
@@ -154,9 +154,9 @@ class _March:
 
     def steps(self, start: StateSet, span: tuple[float, float]) -> Iterator[tuple[float, Step | str]]:
         """Yield each step with its end; a text instead of a step that cannot be proved."""
-        flow, t, current, wanted = self.flow, span[0], start, 0.1 / self.flow.pace
+        flow, t, current, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
         while t < span[1]:
-            end, step, crosses = self._step(t, current, min(wanted, span[1] - t), span[1])
+            end, step, crosses = self._step(t, current, min(target_step, span[1] - t), span[1])
             if step is None:
                 yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current)}"
                 return
@@ -166,7 +166,7 @@ class _March:
                 return
             if not crosses:
                 growth = _factor(step.blur / _BLUR, variation_order(self.order))
-                wanted = (end - t) * max(min(_factor(self._excess(step), self.order), growth, _GROW), 0.3)
+                target_step = (end - t) * max(min(_factor(self._excess(step), self.order), growth, _GROW), 0.3)
             t, current = end, step.after
             yield t, step
 

@@ -117,8 +117,8 @@ def _largest_clique(alpha: Any, m: int) -> int | None:
     packed = floor(float(((1 + 2 * ratio * ball(fmpq(m, 2 * (m + 1))).sqrt()) ** m).upper()) * (1 + 2.0**-40))
     if m == 1:
         return min(packed, ceil(float(ratio.upper()) * (1 + 2.0**-40)))
-    known = [points - 1 for points, least in _least_ratios(m).items() if ratio < least]
-    return min([packed, *known])
+    reachable = [points - 1 for points, least_ratio in _least_ratios(m).items() if ratio < least_ratio]
+    return min([packed, *reachable])
 
 
 def _least_ratios(m: int) -> dict[int, arb]:

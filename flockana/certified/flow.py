@@ -107,8 +107,8 @@ class Flow:
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
         """Return (number of the term, agent, piece) for all agents on which terms of single agents act."""
-        own = enumerate(pieces[self.n * (self.n - 1) // 2 :])
-        return ((*divmod(k, self.n), piece) for k, piece in own if piece is not Piece.OUT)
+        agent_pieces = enumerate(pieces[self.n * (self.n - 1) // 2 :])
+        return ((*divmod(k, self.n), piece) for k, piece in agent_pieces if piece is not Piece.OUT)
 
     def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
         """Return Taylor coefficients 0 to `order` of the solutions from a box, at a ball of times."""

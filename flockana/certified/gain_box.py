@@ -94,9 +94,9 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     rest = find_equilibrium(law, q)
     if not (rest.success and rest.residual <= RESIDUAL):
         return GainBox("inconclusive")
-    moved = _proved(law, np.asarray(rest.q), spread)
-    if isfinite(moved):
-        return GainBox("verified", moved=moved)
+    proof = _proved(law, np.asarray(rest.q), spread)
+    if isfinite(proof):
+        return GainBox("verified", moved=proof)
     for share in product((1.0 - spread, 1.0 + spread), repeat=3):
         gains = dict(zip(GAINS, _corner(law, *share, 1.0 - spread), strict=True))
         other = replace(law, gains=replace(law.gains, **gains))
@@ -113,15 +113,15 @@ def _corner(law: Algorithm2, *shares: float) -> list[Any]:
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
     """Return by what share a link may change in the box for which stability is proved; NaN if it is not proved."""
     unit: float = getattr(law.alpha, "unit", 1.0)
-    own, nothing = in_lengths_of_unit(law), float("nan")
-    gains, (n, m) = own.gains, q.shape
+    rescaled, nothing = in_lengths_of_unit(law), float("nan")
+    gains, (n, m) = rescaled.gains, q.shape
     pull, drag = (np.broadcast_to(x, q.shape)[:, 0].tolist() for x in (gains.pull, gains.drag))
     if not (gains.c1_alpha > 0.0 and gains.c2_alpha >= 0.0 and min(pull) > 0.0 and min(drag) > 0.0):
         return nothing
     y = (q - (0.0 if law.target is None else law.target.position(0.0))) / unit
     low, high = (ball(1 - side * fmpq(*spread.as_integer_ratio())) for side in (1, -1))
     kappa = [(ball(x) * low / high / gains.c1_alpha).union(ball(x) * high / low / gains.c1_alpha) for x in pull]
-    structure = Structure(AlphaParameters.of(own.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
+    structure = Structure(AlphaParameters.of(rescaled.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
     box = _enclose(structure, y, kappa)
     if box is None or not _is_stiff(structure, box, min((x.lower() for x in kappa), key=float)):
         return nothing
@@ -153,7 +153,7 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
             w * a + sum((turns[i, j] * x[size + m + j] for j in range(k)), arb(0))
             for i, (w, a) in enumerate(zip(weights, at, strict=True))
         ]
-        forces = [f + own for f, own in zip(structure.gradient(x[:size]), outer, strict=True)]
+        forces = [f + own_force for f, own_force in zip(structure.gradient(x[:size]), outer, strict=True)]
         forces[:m] = [sum(outer[a::m], arb(0)) for a in range(m)]  # of all agents, to which pairs add nothing
         means = [sum((x[m * i + a] for i in range(n)), arb(0)) for a in range(m)]
         fixed = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
@@ -176,17 +176,17 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
                 whole[size + m + j][size + a] += float(turns[i, j])
         return arb_mat(whole)
 
-    found = _grow_box(equations, slope, [arb(x) for x in start])
-    if found is None:
+    solution = _grow_box(equations, slope, [arb(x) for x in start])
+    if solution is None:
         return None
-    at = places(found)  # the forces are orthogonal to the turns at the equilibrium: what holds the turn is then 0
+    at = places(solution)  # the forces are orthogonal to the turns at the equilibrium: what holds the turn is then 0
     tangents = structure.rotation_tangents(at)
     products = arb_mat(
         [[sum((float(turns[i, j]) * t[i] for i in range(size)), arb(0)) for j in range(k)] for t in tangents]
     )
     if k and not _has_full_rank(products):
         return None
-    return found[:size]
+    return solution[:size]
 
 
 def _grow_box(equations: Any, slope: Any, centre: list[arb]) -> list[arb] | None:

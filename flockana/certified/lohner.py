@@ -73,14 +73,14 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
         return None
     path = flow.taylor(t, box, order - 1, pieces)
     reach = [_at(coefficients, span) for coefficients in path]
-    found = _enclosed(flow, t + span, h, reach, order, pieces)
-    if found is None:
+    enclosure = _enclosed(flow, t + span, h, reach, order, pieces)
+    if enclosure is None:
         return None
-    during, remainder = found
+    during, remainder = enclosure
     variation, tail_of_it = _variation(flow, t, h, path, during, pieces, variation_order(order))
     point = flow.taylor(t, before.centre, order - 1, pieces)
-    moved = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
-    after = _moved(before, moved, variation, flow.pace)
+    image = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
+    after = _moved(before, image, variation, flow.pace)
     if not all(x.is_finite() for x in after.hull):
         return None
     tail = [hull(arb(0), x) for x in remainder]
@@ -97,13 +97,13 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
         return None
     remainder = [h * h / 2 * x for x in flow.acceleration(t + span, during, flow.pieces(during))]
     rate = flow.rate(t, before.centre, flow.pieces(before.centre))
-    moved = [x + h * v + rest for x, v, rest in zip(before.centre, rate, remainder, strict=True)]
+    image = [x + h * v + rest for x, v, rest in zip(before.centre, rate, remainder, strict=True)]
     slope = identity(len(box)) + flow.jacobian(t, box, flow.pieces(box)) * h
-    after = _moved(before, moved, slope, flow.pace)
+    after = _moved(before, image, slope, flow.pace)
     if not all(x.is_finite() for x in after.hull):
         return None
-    seen = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
-    return Step(after, during, *seen, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
+    weighed = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
+    return Step(after, during, *weighed, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
 
 
 def _enclosed(
@@ -147,8 +147,8 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
     """Return the margin by which a candidate box grows: an eighth of its radius, and never 0."""
     half = len(box) // 2
     far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
-    least = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
-    return [arb((x.rad() / 8 + own).upper()) + arb(2) ** -500 for x, own in zip(box, least, strict=True)]
+    margins = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
+    return [arb((x.rad() / 8 + margin).upper()) + arb(2) ** -500 for x, margin in zip(box, margins, strict=True)]
 
 
 def _variation(

@@ -86,10 +86,10 @@ def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:
     """Return the largest exact rate α that the inequalities allow; 0 if there is none above 0."""
-    curvature, least, most = bounds.curvature, bounds.least, bounds.most
+    curvature, lowest, most = bounds.curvature, bounds.least, bounds.most
     mixed = theta * bounds.surplus + (1 - theta) * curvature
     places = eps * (theta * curvature / 2 + mixed - kappa * most / 2) / (curvature / 2 + eps * tau / 2)
-    speeds = ((1 - eps / (2 * kappa)) * least - eps) / (fmpq(1, 2) + eps / (2 * tau))
+    speeds = ((1 - eps / (2 * kappa)) * lowest - eps) / (fmpq(1, 2) + eps / (2 * tau))
     if not 0 <= theta <= 1 or eps * eps >= curvature:
         return fmpq(0)  # where ε > 2κ, `speeds` is below 0
     return max(fmpq(0), min(eps * theta, places, speeds))
@@ -114,16 +114,16 @@ def decay(bounds: Bounds) -> Decay:
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return θ, κ and τ that suit ε and α best; κ and τ are not positive where α is too large."""
-    curvature, surplus, least, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
+    curvature, surplus, lowest, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     room = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
-    tau = 2.0 * room / ((least * most) ** 0.5 + alpha)
-    return theta, tau * (least / most) ** 0.5, tau
+    tau = 2.0 * room / ((lowest * most) ** 0.5 + alpha)
+    return theta, tau * (lowest / most) ** 0.5, tau
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
     """Return what is left of the inequality for the speeds: negative if it does not hold."""
     _, kappa, tau = _others(bounds, eps, alpha)
-    least, sound = float(bounds.least), tau > 0.0
-    cost = 1.0 + 0.5 * least / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)
-    return np.where(sound, least - 0.5 * alpha - eps * cost, -1.0)
+    lowest, sound = float(bounds.least), tau > 0.0
+    cost = 1.0 + 0.5 * lowest / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)
+    return np.where(sound, lowest - 0.5 * alpha - eps * cost, -1.0)

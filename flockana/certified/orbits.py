@@ -79,15 +79,15 @@ def _pass(
     widest = np.repeat([law.scales.length, law.scales.speed], half) * _THIN
     state = [arb(float(x)) for x in np.concatenate([each.ravel() for each in start])]
     rows = np.full((len(wanted), 2, 2, n, m), np.nan)
-    done, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
+    finished, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
     while True:
         mid, off = (np.array([float(part(x)) for x in state]) for part in (arb.mid, arb.rad))
         if not (off <= widest).all():
             break
-        if k == wanted[done]:
-            rows[done] = np.stack([mid, off + _ROUND * np.abs(mid)]).reshape(2, 2, n, m)
-            done += 1
-            if done == len(wanted):
+        if k == wanted[finished]:
+            rows[finished] = np.stack([mid, off + _ROUND * np.abs(mid)]).reshape(2, 2, n, m)
+            finished += 1
+            if finished == len(wanted):
                 break
         state, near = _step(flow, law, t + k * h, h, state)
         left -= cost * (near + evaluations)
@@ -95,7 +95,7 @@ def _pass(
             break
         k += 1
     parts = (rows[:, 0, 0], rows[:, 0, 1], rows[:, 1, 0], rows[:, 1, 1])
-    return BallOrbit(*parts, done, 1.0 - max(left, 0.0) / begin, ctx.prec), left
+    return BallOrbit(*parts, finished, 1.0 - max(left, 0.0) / begin, ctx.prec), left
 
 
 def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
@@ -115,8 +115,8 @@ def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[l
 
 def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[list[arb]]) -> list[arb]:
     """Return the stage's state y + h Σ_j w_j K_j."""
-    used = [(h * arb(w), slope) for w, slope in zip(weights, slopes, strict=False) if w]
-    return [sum((w * slope[k] for w, slope in used), x) for k, x in enumerate(state)]
+    slopes_used = [(h * arb(w), slope) for w, slope in zip(weights, slopes, strict=False) if w]
+    return [sum((w * slope[k] for w, slope in slopes_used), x) for k, x in enumerate(state)]
 
 
 def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:

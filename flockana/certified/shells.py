@@ -86,8 +86,8 @@ class LengthCells:
     def _cell_holds(self, level: int, k: int, limit: arb, along: arb, across: arb) -> bool:
         x, stiff, pull = self.at(level, k)
         rest, length = self.rest, self.rest + x
-        least = (stiff - along).lower()  # by its ends: a product of balls about 0 would be far too wide
-        d0 = least * square(x.abs_lower() if least >= 0 else x.abs_upper())
+        lower_end = (stiff - along).lower()  # by its ends: a product of balls about 0 would be far too wide
+        d0 = lower_end * square(x.abs_lower() if lower_end >= 0 else x.abs_upper())
         d1 = 2 * x * (stiff * rest + along * length) + 2 * (pull * square(rest) - across * square(length))
         d2 = (stiff - pull) * square(rest) - (along - across) * square(length)
         most = ((limit - square(x)).nonnegative_part() / (2 * length * rest)).upper()
@@ -182,8 +182,8 @@ class BondTable:
         """Return a lower bound of ⟨w, M w⟩/‖w‖² over all w orthogonal to the rigid motions."""
         total = self.matrix(bonds, along, across)
         shift = 2 * max(sum(map(abs, row), arb(0)).upper() for row in (total - self.lifts).tolist())
-        found = least_eigenvalue(total + identity(total.nrows()) * shift)
-        return arb("-inf") if found is None else (found - shift).lower()
+        eigenvalue = least_eigenvalue(total + identity(total.nrows()) * shift)
+        return arb("-inf") if eigenvalue is None else (eigenvalue - shift).lower()
 
     def proposed(self, radius: float) -> ProposedBounds:
         """Return bounds for a radius, proposed in floating point with the best slack in each shell."""
@@ -198,15 +198,15 @@ class BondTable:
         for i in range(SHELLS):
             eta = reach * (i + 1) / SHELLS
             inside = np.abs(x) <= eta * (1.0 + 1e-12)
-            near = [(rest, *(curve[inside] for curve in own)) for rest, own in zip(lengths, curves, strict=True)]
+            near = [(rest, *(curve[inside] for curve in line)) for rest, line in zip(lengths, curves, strict=True)]
             curvatures[i] = -np.inf
             for slack in _SLACKS:
                 a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
                 b = [proposed_across(y, r, x[inside], k, t, eta) for y, (r, k, t) in zip(a, near, strict=True)]
                 matrix = fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1)
-                least = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
-                if least > curvatures[i]:
-                    curvatures[i], along[i], across[i] = least, a, b
+                lowest = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
+                if lowest > curvatures[i]:
+                    curvatures[i], along[i], across[i] = lowest, a, b
         return ProposedBounds(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -225,12 +225,12 @@ class BondTable:
         for k, bond in enumerate(bonds):
             for i, j in bond.pairs:
                 gap = np.array([float(y) for y in self.gaps[i, j][0]])
-                moved = basis.reshape(-1, size // m, m)[:, j] - basis.reshape(-1, size // m, m)[:, i]
-                along = moved @ (gap / np.linalg.norm(gap))
+                edge_rows = basis.reshape(-1, size // m, m)[:, j] - basis.reshape(-1, size // m, m)[:, i]
+                along = edge_rows @ (gap / np.linalg.norm(gap))
                 parts[0, k] += np.outer(along, along)
-                parts[1, k] += moved @ moved.T - np.outer(along, along)
-        own = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
-        return parts[0], parts[1], own * np.eye(len(basis))
+                parts[1, k] += edge_rows @ edge_rows.T - np.outer(along, along)
+        gain = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
+        return parts[0], parts[1], gain * np.eye(len(basis))
 
 
 @dataclass(frozen=True)
@@ -267,11 +267,11 @@ class Shells:
     @property
     def surplus(self) -> fmpq:
         """Surplus min (t G' − G)/t², a lower bound of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
-        step, total, least = self.radius / SHELLS, fmpq(0), []
+        step, total, lowest = self.radius / SHELLS, fmpq(0), []
         for i, k in enumerate(self.curvatures):
             total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
-            least.append(total / (step * (i + 1)) ** 2)
-        return min(least)
+            lowest.append(total / (step * (i + 1)) ** 2)
+        return min(lowest)
 
 
 def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
@@ -289,7 +289,7 @@ def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
     for i, (a, b) in enumerate(zip(along, across, strict=True), start=1):
         if not all(cell.holds(i, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
             return None
-        if not (least := around.curvature(bonds, a, b)).is_finite():
+        if not (lowest := around.curvature(bonds, a, b)).is_finite():
             return None
-        curvatures.append(round_down(least, _DIGITS))
+        curvatures.append(round_down(lowest, _DIGITS))
     return Shells(radius, tuple(bonds), along, across, tuple(curvatures))

@@ -103,8 +103,8 @@ class Structure:
 
     def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
         """Return the matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
-        m, size, own = self.m, self.n * self.m, ball(self.c1_gamma)
-        total = [[own if i == j else arb(0) for j in range(size)] for i in range(size)]
+        m, size, gain = self.m, self.n * self.m, ball(self.c1_gamma)
+        total = [[gain if i == j else arb(0) for j in range(size)] for i in range(size)]
         for i, j, block in blocks:
             for a, b in product(range(m), repeat=2):
                 for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):

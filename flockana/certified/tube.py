@@ -90,8 +90,8 @@ class Tube:
     stats: dict[str, Any]
 
     def __repr__(self) -> str:
-        known = f"{self.n} agents, m = {self.m}, {self.law.title}, {len(self.taken)} steps"
-        return f"<Tube of {known}, t = {float(self.t[0]):g} to {float(self.t[-1]):g}, {self.status}>"
+        facts = f"{self.n} agents, m = {self.m}, {self.law.title}, {len(self.taken)} steps"
+        return f"<Tube of {facts}, t = {float(self.t[0]):g} to {float(self.t[-1]):g}, {self.status}>"
 
     def ensure_unedited(self) -> None:
         """Raise unless the tube is unchanged since `enclose` returned it."""
@@ -201,8 +201,8 @@ class Tube:
         each = [
             ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
-            for obstacle, own in enumerate(row)
-            for agent, clearance in enumerate(own)
+            for obstacle, own_clearance in enumerate(row)
+            for agent, clearance in enumerate(own_clearance)
         ]
         return min(each, key=lambda one: one.lower, default=ObstacleApproach(inf, 0, 0, self.t[0]))
 

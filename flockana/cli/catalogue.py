@@ -30,8 +30,8 @@ def scenarios_command(
     """List the catalogue of published simulations, by source."""
     from flockana.report.catalogues import scenario_entries, scenario_table, select
 
-    found = select(scenario_entries(), words or (), source=source, status=status or "")
-    _show(found, scenario_table, "scenarios", long=long, as_json=as_json)
+    entries = select(scenario_entries(), words or (), source=source, status=status or "")
+    _show(entries, scenario_table, "scenarios", long=long, as_json=as_json)
 
 
 @one_thread_for_matrices()
@@ -49,8 +49,8 @@ def theorems_command(
         return
     from flockana.report.catalogues import select, theorem_entries, theorem_table
 
-    found = select(theorem_entries(), words or (), source=source, status=status or "")
-    _show(found, theorem_table, "theorems", long=long, as_json=as_json)
+    entries = select(theorem_entries(), words or (), source=source, status=status or "")
+    _show(entries, theorem_table, "theorems", long=long, as_json=as_json)
 
 
 def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) -> None:

@@ -26,14 +26,14 @@ def check_command(
     from flockana.certified.check import RejectedError, check_certificate
 
     try:
-        found = check_certificate(file)
+        result = check_certificate(file)
     except RejectedError as error:
         print_error(f"{file} is rejected: {error}")
         return UNEXPECTED
     if as_json:
-        show_json(asdict(found))
+        show_json(asdict(result))
         return OK
-    head = f"{file}: a certificate of kind {found.kind} that holds\n\n{found.statement}\n"
-    typer.echo("\n  ".join([f"{head}\nVerified:", *found.steps]))
-    typer.echo("\n  ".join(["Not checked by machine:", *found.prose]))
+    head = f"{file}: a certificate of kind {result.kind} that holds\n\n{result.statement}\n"
+    typer.echo("\n  ".join([f"{head}\nVerified:", *result.steps]))
+    typer.echo("\n  ".join(["Not checked by machine:", *result.prose]))
     return OK

@@ -18,11 +18,11 @@ class Command(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the arguments with typer's rules, after empty paths are refused."""
-        given, *_ = self.make_parser(ctx).parse_args(args=list(args))
+        arguments, *_ = self.make_parser(ctx).parse_args(args=list(args))
         try:
             left = super().parse_args(ctx, args)
         except Exception as error:  # typer's own kinds, or click's, depending on its version
-            value = given.get(str(getattr(getattr(error, "param", None), "name", "")))
+            value = arguments.get(str(getattr(getattr(error, "param", None), "name", "")))
             format_message: Any = getattr(error, "format_message", None)
             if not isinstance(value, str) or format_message is None or repr(value) in format_message():
                 raise
@@ -32,7 +32,7 @@ class Command(TyperCommand):
         for param in self.params:
             kind = hints.get(str(param.name))
             is_path = kind is Path or Path in get_args(kind)
-            if is_path and given.get(str(param.name)) == "":  # as from an unset variable
+            if is_path and arguments.get(str(param.name)) == "":  # as from an unset variable
                 name = param.opts[0] if param.param_type_name == "option" else param.metavar
                 here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
                 raise FileError(f"{name} '': the name is empty; choose another name{here}")

@@ -65,10 +65,10 @@ def ensemble_command(
     if plot is not None and len(axes) > 2:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
     checked = [read_theorem(name) for name in theorem or ()] or None
-    wanted: dict[str, Any] = {"theorems": checked, "parameters": parameters, "jobs": jobs, "store": store}
+    request: dict[str, Any] = {"theorems": checked, "parameters": parameters, "jobs": jobs, "store": store}
     try:
         case = read_own(scenario) if is_own(scenario) else scenario
-        runs = ensemble(case, range(first, first + seeds), **wanted, retry=retry, progress=True)
+        runs = ensemble(case, range(first, first + seeds), **request, retry=retry, progress=True)
     except KeyboardInterrupt as stopped:
         typer.echo(stopped, err=True)
         return INTERRUPTED
@@ -100,8 +100,8 @@ def read_options(texts: list[str]) -> dict[str, Any]:
             raise ArgumentError(f"--set {text}: expected OPTION=VALUE or OPTION=VALUE,VALUE,…, such as n=20,40")
         if name in options:
             raise ArgumentError(f"--set {text}: {name} is set already; give all its values at once")
-        chosen = [_value(word) for word in words]
-        options[name] = chosen if len(chosen) > 1 else chosen[0]
+        words_read = [_value(word) for word in words]
+        options[name] = words_read if len(words_read) > 1 else words_read[0]
     return options
 
 

@@ -59,10 +59,10 @@ def falsify_command(
     from flockana.plots.falsify import falsification
 
     if replay is not None:
-        own = read_theorem(str(theorem)) if is_own(theorem) else None
-        if (theorem if own is None else None, on, claim, save_to, plot) != (None,) * 5:
+        own_claim = read_theorem(str(theorem)) if is_own(theorem) else None
+        if (theorem if own_claim is None else None, on, claim, save_to, plot) != (None,) * 5:
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
-        return _replay(replay, own, as_json=as_json)
+        return _replay(replay, own_claim, as_json=as_json)
     if theorem is None or on is None:
         raise ArgumentError("expected THEOREM --on CASE, such as os-3 --on three-agents-1d, or --replay FILE")
     ensure_file(save_to, (".json",))
@@ -165,8 +165,8 @@ def _show(search: Falsification) -> None:
     if search.failures:
         runs += f", {search.failures} failed ({search.message})"
     if search.found:
-        known = "known to be false" if known_false(search.theorem, search.claim) else "NOT known to be false"
-        text = f"found: {search.claim} is broken, and it is {known}; {runs}"
+        knowledge = "known to be false" if known_false(search.theorem, search.claim) else "NOT known to be false"
+        text = f"found: {search.claim} is broken, and it is {knowledge}; {runs}"
     elif search.unmet:
         text = f"nothing to refute: no run meets {', '.join(search.unmet)}; vary what they depend on; {runs}"
     else:

@@ -59,14 +59,14 @@ def read_motion(
         return _of_scenario(source, start or "end", seed or 0, potential)
     ensure_source(source, scenarios())
     _refuse(source, "is no scenario", seed=seed, start=start)
-    given = read_source(source, d=d, r=r, time=time)
-    if given.law is not None:
+    motion = read_source(source, d=d, r=r, time=time)
+    if motion.law is not None:
         _refuse(source, "has a law of its own", algorithm=algorithm, d=d, r=r)
-        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q, given.p
-    alpha = AlphaInteraction(d=given.d, r=given.r)
+        return _with_fixed_target(_ensured(motion.law, motion.q.shape[1], potential), motion.t), motion.q, motion.p
+    alpha = AlphaInteraction(d=motion.d, r=motion.r)
     if algorithm == 2:
-        return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q, None
-    return Algorithm1(alpha), given.q, None
+        return Algorithm2(alpha, target=StaticTarget(motion.q.mean(axis=0))), motion.q, None
+    return Algorithm1(alpha), motion.q, None
 
 
 def announce_time(n: int, *, as_given: bool | None = None) -> None:

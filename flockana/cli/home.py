@@ -18,17 +18,17 @@ def prepare_home() -> None:
     if "MPLCONFIGDIR" in os.environ or not sys.platform.startswith("linux"):
         return
     home = Path(os.path.expanduser("~"))
-    own = os.environ.get("XDG_CONFIG_HOME") or home / ".config", os.environ.get("XDG_CACHE_HOME") or home / ".cache"
-    if all(_writable(Path(folder) / "matplotlib") for folder in own):
+    folders = os.environ.get("XDG_CONFIG_HOME") or home / ".config", os.environ.get("XDG_CACHE_HOME") or home / ".cache"
+    if all(_writable(Path(folder) / "matplotlib") for folder in folders):
         return
     folder = Path(tempfile.gettempdir()) / f"flockana-matplotlib-{os.getuid()}"
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
+        status = folder.lstat()
     except OSError:
         return
     # settings are read from there: nobody else may write them
-    if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
+    if stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and not status.st_mode & 0o077:
         os.environ["MPLCONFIGDIR"] = str(folder)
 
 

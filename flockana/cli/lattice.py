@@ -53,14 +53,14 @@ def lattice_command(
     from flockana.theorems import verify
 
     ensure_file(plot)
-    given = read_source(source, d=d, r=r, time=time)
-    pairs = links(given.q, given.r)
+    start = read_source(source, d=d, r=r, time=time)
+    pairs = links(start.q, start.r)
     tolerances = _tolerances(tol)
-    verdict = verify("os-5", q=given.q, d=given.d, r=given.r, subject=given.name, tolerances=tolerances)
-    facts = lattice_facts(given, pairs, verdict)
+    verdict = verify("os-5", q=start.q, d=start.d, r=start.r, subject=start.name, tolerances=tolerances)
+    facts = lattice_facts(start, pairs, verdict)
     more, hint = {"verdict": verdict.to_dict()}, _hint(facts, tolerances)
-    show_facts(facts | more, as_json, given.name, _rows(facts), details(verdict), *hint)
-    write_picture(lambda ax: _draw(ax, given, pairs), plot, m=given.q.shape[1])
+    show_facts(facts | more, as_json, start.name, _rows(facts), details(verdict), *hint)
+    write_picture(lambda ax: _draw(ax, start, pairs), plot, m=start.q.shape[1])
     show_files(as_json, picture=plot)
     return OK
 

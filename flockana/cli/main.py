@@ -71,8 +71,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_home()
     try:
         with restore_interrupts(), relaxed_gc():
-            given = list(sys.argv[1:] if arguments is None else arguments)
-            code = _app(_asked(given))(args=given, prog_name=_NAME, standalone_mode=False)
+            words = list(sys.argv[1:] if arguments is None else arguments)
+            code = _app(_asked(words))(args=words, prog_name=_NAME, standalone_mode=False)
             if arguments is None:
                 freeze_gc()
         finish_output()

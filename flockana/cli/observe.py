@@ -97,23 +97,23 @@ def observe_command(
         if len(ends) != 2:
             raise ArgumentError(f"--window {window}: expected two times, such as 0,2.5")
         rec = rec.window(*ends)
-    chosen = _law(law, formula, d, r)
-    if fit and chosen is None:
+    chosen_law = _law(law, formula, d, r)
+    if fit and chosen_law is None:
         raise ArgumentError("--fit: expected --law or --formula, whose gains are fitted")
-    scale, reach = _scales(chosen, d, r)
+    scale, reach = _scales(chosen_law, d, r)
     whole, notes = _complete(rec)
-    seen = rec.metrics(d=scale, r=reach)
-    results = _results(whole, chosen, fit, scale, reach)
+    metrics = rec.metrics(d=scale, r=reach)
+    results = _results(whole, chosen_law, fit, scale, reach)
     if as_json:
-        show_json(_plain(rec, seen, results))
+        show_json(_plain(rec, metrics, results))
     else:
-        _print(rec, measure_rows(seen), results, notes)
+        _print(rec, measure_rows(metrics), results, notes)
     if page is not None:
-        shown = None if whole is None else whole.trajectory(chosen, d=scale, r=reach)
-        write_atomic(page, recording_page(rec, seen, trajectory=shown, notes=notes, **results))
+        reference = None if whole is None else whole.trajectory(chosen_law, d=scale, r=reach)
+        write_atomic(page, recording_page(rec, metrics, trajectory=reference, notes=notes, **results))
         show_files(as_json, page=page)
     follows = [v.hypotheses[0].status for v in results["verdicts"] if v.hypotheses]
-    return UNEXPECTED if chosen is not None and "unmet" in follows[:1] else OK
+    return UNEXPECTED if chosen_law is not None and "unmet" in follows[:1] else OK
 
 
 def _with_options(text: str) -> str:
@@ -203,10 +203,10 @@ def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> 
         return {"verdicts": []}
     if law is None:
         return {"verdicts": verify(None, rec, d=d, r=r) if len(rec.t) > 1 else []}
-    found: dict[str, Any] = {"comparison": compare(rec, law)}
+    results: dict[str, Any] = {"comparison": compare(rec, law)}
     if fit:
-        found["fitted"] = fitted(rec, law)
-    return found | {"verdicts": verify(None, rec, law=law)}
+        results["fitted"] = fitted(rec, law)
+    return results | {"verdicts": verify(None, rec, law=law)}
 
 
 def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, Any], notes: list[str]) -> None:

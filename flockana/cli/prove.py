@@ -43,23 +43,23 @@ def prove_command(
     from flockana.report.build import ensure_directory
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
-    known = proof.names()
+    all_names = proof.names()
     for name in wanted or ():
-        ensure_known("proof", name, known)
-    chosen = tuple(dict.fromkeys(wanted or known))
+        ensure_known("proof", name, all_names)
+    chosen_names = tuple(dict.fromkeys(wanted or all_names))
     ensure_directory(folder)
     started = time.perf_counter()
     outcomes: list[Any] = []
-    with progress_bar(len(chosen)) as advance:
+    with progress_bar(len(chosen_names)) as advance:
         for outcome in run.check(
-            chosen,
+            chosen_names,
             jobs=jobs or cores(),
             time_limit=time_limit,
             watch=lambda under_way: advance(len(outcomes), ", ".join(under_way)),
         ):
             certificates.write(outcome, folder)
             outcomes.append(outcome)
-    outcomes.sort(key=lambda outcome: chosen.index(outcome.id))
+    outcomes.sort(key=lambda outcome: chosen_names.index(outcome.id))
     certificates.write_index(outcomes, folder)
     if as_json:
         names = ("id", "title", "statement", "rigour", "status", "seconds")

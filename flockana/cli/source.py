@@ -188,11 +188,11 @@ def _positions_by_header(
     layout = layout_of(header, str(path))
     if layout.time is not None or "q" not in layout.long:
         raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; observe reads recordings")
-    kept = [header.index(name) for name in layout.long["q"]]
+    columns = [header.index(name) for name in layout.long["q"]]
     for k, row in lines:
         if len(row) != len(header):
             raise FileError(f"{path}, line {k}: {len(row)} values, expected {len(header)} as in the header")
-    return [(k, [row[i] for i in kept]) for k, row in lines]
+    return [(k, [row[i] for i in columns]) for k, row in lines]
 
 
 def _is_number(text: str) -> bool:

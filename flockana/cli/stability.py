@@ -257,8 +257,8 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
     space = "3d" if linear.q.shape[1] == 3 else None
     follows = _follows(law)
     target = None if law.target is None else law.target.position(linear.t)
-    known = linear.modes if linear.q.size <= DENSE else slow
-    inner = [mode for mode in known if not mode.name.startswith("translation")] or list(known)
+    modes = linear.modes if linear.q.size <= DENSE else slow
+    inner = [mode for mode in modes if not mode.name.startswith("translation")] or list(modes)
     halves = figure.subfigures(1, 2)
     left = halves[0].subfigures(2, 1) if follows else [halves[0]]
     poles = (

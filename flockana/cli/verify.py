@@ -210,7 +210,7 @@ def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool)
     run, path = read_case(on, seed), Path(on)
     assert checked is not None  # before
     name = checked if isinstance(checked, str) else ""
-    own = {checked.id: checked} if isinstance(checked, Theorem) else {}
+    claims = {checked.id: checked} if isinstance(checked, Theorem) else {}
     if not isinstance(run, Trajectory):
         if name in scenarios():
             raise ArgumentError(f"{name} --on {on}: expected a theorem to check on it, or a saved run of {name}")
@@ -222,7 +222,7 @@ def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool)
         return scenario_page(item, run, item.verify(run), figures=figures)
     span = (float(run.t[0]), float(run.t[-1]))
     item = Scenario(path.name, "A saved run", f"Read from {path.name}.", run.law, run.q[0], run.p[0], span)
-    return scenario_page(item, run, (verify(checked, run, subject=path.name),), figures=figures, own=own)
+    return scenario_page(item, run, (verify(checked, run, subject=path.name),), figures=figures, own=claims)
 
 
 def _print_verdicts(

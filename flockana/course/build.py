@@ -134,13 +134,13 @@ def exercises(source: Path) -> Iterator[Exercise]:
             parts += [{}] * (tag == "exercise")
             parts[-1] = parts[-1] | {tag: cell.source}
     for part in parts:
-        found = _POSED.search(part["exercise"])
-        if found is None or found[4] not in KINDS:
+        match = _POSED.search(part["exercise"])
+        if match is None or match[4] not in KINDS:
             raise ArgumentError(
                 f"{source.name}: an exercise begins {part['exercise'][:60]!r}; expected '**1.** ★★ (2 points, kind) "
                 f"...', kind one of {', '.join(KINDS)}"
             )
-        number, stars, points, kind = int(found[1]), len(found[2]), int(found[3]), found[4]
+        number, stars, points, kind = int(match[1]), len(match[2]), int(match[3]), match[4]
         if ("check" in part) is (kind in WRITTEN):
             raise ArgumentError(
                 f"{source.name}: exercise {number} is of kind {kind}; expected a check unless it is one of "
@@ -161,11 +161,11 @@ def asked(check: str) -> tuple[str, str]:
     *before, last = ast.parse(check).body
     match last:
         case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:
-            given = {option.arg: option.value for option in options}
+            texts = {option.arg: option.value for option in options}
         case _:
             raise ArgumentError(f"a check reads {check!r}: expected one call grade(name, right, ...)")
     try:
-        return name, str(ast.literal_eval(given["form"])) if "form" in given else form_of(ast.literal_eval(right))
+        return name, str(ast.literal_eval(texts["form"])) if "form" in texts else form_of(ast.literal_eval(right))
     except ValueError as error:
         raise ArgumentError(f"the check of {name} computes what is right: give a constant, or form=") from error
 
@@ -186,8 +186,8 @@ def form_check(check: str) -> str:
 
 def write(folder: Path, version: str = "student", *, address: str = "", student: str = "") -> list[Path]:
     """Write a version of all lectures with everything that they import or show; with solutions, the lecturer's too."""
-    made = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
-    books = {f"{name}.ipynb": notebook_bytes(book) for name, book in made.items()}
+    notebooks = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
+    books = {f"{name}.ipynb": notebook_bytes(book) for name, book in notebooks.items()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
     if version == "solutions":
         pages |= lecturer_pages()
@@ -203,9 +203,9 @@ def companions() -> dict[str, bytes]:
     """Return the files that lectures import, by name."""
     law, shipped = lectures() / "own_law", lectures() / "proofs"
     proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
-    found = {path: f"own_law/{path.relative_to(law).as_posix()}" for path in sorted(law.rglob("*")) if path.is_file()}
-    found |= {proofs / name: f"proofs/{name}" for name in ("__init__.py", "proof.py")}
-    return {name: path.read_bytes() for path, name in found.items() if "__pycache__" not in path.parts}
+    paths = {path: f"own_law/{path.relative_to(law).as_posix()}" for path in sorted(law.rglob("*")) if path.is_file()}
+    paths |= {proofs / name: f"proofs/{name}" for name in ("__init__.py", "proof.py")}
+    return {name: path.read_bytes() for path, name in paths.items() if "__pycache__" not in path.parts}
 
 
 def copy_companions(folder: Path) -> None:

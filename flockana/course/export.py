@@ -27,7 +27,7 @@ def master(source: Path, grader: str, *, student: str = "") -> Any:
     """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
-    book, asked = build.notebook(source, "solutions", student=student), iter(build.exercises(source))
+    book, questions = build.notebook(source, "solutions", student=student), iter(build.exercises(source))
     cells: list[Any] = [new_raw_cell(_assignment(source))] if grader == "otter" else []
     parts: dict[str, Any] = {}
     for cell in book.cells:
@@ -38,7 +38,7 @@ def master(source: Path, grader: str, *, student: str = "") -> Any:
             cells.append(cell)
         if kind == "check" or (kind == "solution" and cell.cell_type == "markdown"):
             check = cell.source if kind == "check" else ""
-            cells += posed(next(asked), parts["exercise"], parts["solution"].source, check)
+            cells += posed(next(questions), parts["exercise"], parts["solution"].source, check)
     for number, cell in enumerate(cells):
         cell["id"] = f"{number_of(source)}-{number:03d}"
     book.cells = cells
@@ -61,8 +61,8 @@ def write_for(folder: Path, grader: str, *, student: str = "") -> list[Path]:
 
 def _tests(check: str, exercise: build.Exercise) -> tuple[str, str]:
     """Return the visible and the hidden test of an exercise."""
-    seen = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
-    return seen, f'assert {check.rstrip()}.status == "right"'
+    visible = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
+    return visible, f'assert {check.rstrip()}.status == "right"'
 
 
 def _assignment(source: Path) -> str:
@@ -86,9 +86,9 @@ def _otter(exercise: build.Exercise, text: Any, solution: str, check: str) -> It
         yield new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
     yield new_raw_cell("# END SOLUTION")
     if not by_hand:
-        seen, hidden = _tests(check, exercise)
+        visible, hidden = _tests(check, exercise)
         yield new_raw_cell("# BEGIN TESTS")
-        yield new_code_cell(_scored(0, hidden=False) + seen)
+        yield new_code_cell(_scored(0, hidden=False) + visible)
         yield new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden)
         yield new_raw_cell("# END TESTS")
     yield new_raw_cell("# END QUESTION")
@@ -107,8 +107,8 @@ def _nbgrader(exercise: build.Exercise, text: Any, solution: str, check: str) ->
     else:
         answer = new_code_cell(f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
         yield _marked(answer, exercise, grade=False, solution=True)
-        seen, hidden = _tests(check, exercise)
-        tests = new_code_cell(f"{seen}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
+        visible, hidden = _tests(check, exercise)
+        tests = new_code_cell(f"{visible}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
         yield _marked(tests, exercise, grade=True, solution=False)
 
 

@@ -276,8 +276,8 @@ def interval_tails(k: int, runs: int, interval: tuple[float, float], *, axes: An
         mass = binom.pmf(counts, runs, p)
         ax.bar(counts, mass, color="none", edgecolor=colour, width=0.8)
         ax.bar(counts[tail], mass[tail], color=colour, edgecolor=INK, hatch="//", width=0.8)
-        said = f"filled: {k} {words}, {mass[tail].sum():.1%}"
-        ax.text(0.03, 0.9, said, transform=ax.transAxes, fontsize=8, color=INK)
+        caption = f"filled: {k} {words}, {mass[tail].sum():.1%}"
+        ax.text(0.03, 0.9, caption, transform=ax.transAxes, fontsize=8, color=INK)
         ax.set_xlim(max(-1, k - 0.3 * runs), min(runs, k + 0.3 * runs) + 1)
         ax.xaxis.get_major_locator().set_params(integer=True)
         write_title(ax, f"success with probability {p:.3f}")

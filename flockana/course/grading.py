@@ -111,21 +111,21 @@ def shows(axes: Any, sets: Any) -> bool:
     >>> shows([ax], [[[1.0, 3.0]]]), shows([ax], [[[1.0, 2.0]]]), shows([ax], [[[1.0, 3.0]], [[0.0, 2.0]]])
     (True, False, False)
     """
-    drawn = np.array([[_draws(ax, points) for ax in axes] for points in sets])
-    own = maximum_bipartite_matching(csr_matrix(drawn), perm_type="column")
-    return bool((own >= 0).all())
+    matches = np.array([[_draws(ax, points) for ax in axes] for points in sets])
+    matching = maximum_bipartite_matching(csr_matrix(matches), perm_type="column")
+    return bool((matching >= 0).all())
 
 
 def _draws(ax: Any, points: Any) -> bool:
     if not (ax.get_xlabel() and ax.get_ylabel()):
         return False
-    drawn = [np.asarray(line.get_xydata(), float) for line in ax.lines]
+    curves = [np.asarray(line.get_xydata(), float) for line in ax.lines]
     for each in ax.collections:
-        drawn += [np.asarray(each.get_offsets(), float), *(path.vertices for path in each.get_paths())]
-    found = np.vstack([np.empty((0, 2)), *(np.ma.filled(each, np.nan).reshape(-1, 2) for each in drawn)])
-    wanted = np.asarray(points, float).reshape(-1, 2)
-    near = 1e-6 * max(1.0, float(np.abs(wanted).max()))
-    return all(np.any(np.abs(found - each).max(axis=1) <= near) for each in wanted)
+        curves += [np.asarray(each.get_offsets(), float), *(path.vertices for path in each.get_paths())]
+    all_points = np.vstack([np.empty((0, 2)), *(np.ma.filled(each, np.nan).reshape(-1, 2) for each in curves)])
+    wanted_points = np.asarray(points, float).reshape(-1, 2)
+    near = 1e-6 * max(1.0, float(np.abs(wanted_points).max()))
+    return all(np.any(np.abs(all_points - each).max(axis=1) <= near) for each in wanted_points)
 
 
 def is_own(*things: Any) -> bool:
@@ -184,8 +184,8 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
     """Return whether each of the answers matches another one of the right ones."""
     for b in rights:
-        found = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
-        if found is None:
+        index = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
+        if index is None:
             return False
-        del answers[found]
+        del answers[index]
     return not answers

@@ -28,9 +28,9 @@ def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
     >>> replace_numbers("0.8 or 10.8 of 1.6", [["0.8", "0.6"], ["1.6", "1.2"]], 1)
     '0.6 or 10.8 of 1.2'
     """
-    own = {row[0]: row[column] for row in rows}
-    longest_first = "|".join(re.escape(each) for each in sorted(own, key=len, reverse=True))
-    return re.sub(rf"(?<![\w.])(?:{longest_first})(?!\d|\.\d)", lambda found: own[found[0]], text)
+    own_column = {row[0]: row[column] for row in rows}
+    longest_first = "|".join(re.escape(each) for each in sorted(own_column, key=len, reverse=True))
+    return re.sub(rf"(?<![\w.])(?:{longest_first})(?!\d|\.\d)", lambda found: own_column[found[0]], text)
 
 
 def draw_column(student: str, exercise: str, columns: int) -> int:

@@ -51,9 +51,9 @@ def course_map(folder: Path) -> list[Lecture]:
     files = {number_of(path): path for path in sorted(folder.glob("[0-9A][0-9]*_*.py"))}
     if set(table) != set(files):
         raise ArgumentError(f"lectures.toml lists {sorted(table)}; the folder holds {sorted(files)}")
-    found: list[Lecture] = []
+    lectures: list[Lecture] = []
     for number, entry in table.items():
-        early = [each for each in entry["after"] if each not in {lecture.number for lecture in found}]
+        early = [each for each in entry["after"] if each not in {lecture.number for lecture in lectures}]
         if early:
             raise ArgumentError(f"lecture {number} builds on {early}: expected earlier entries of lectures.toml")
         references = tuple(as_text(cite(key)) for key in entry["references"])
@@ -62,8 +62,8 @@ def course_map(folder: Path) -> list[Lecture]:
             raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
         after, further = tuple(entry["after"]), tuple(entry["further"])
         depth, theorems = tuple(entry.get("depth", ())), entry.get("theorems", {})
-        found.append(Lecture(number, title[1], after, entry["minutes"], references, further, depth, theorems))
-    return found
+        lectures.append(Lecture(number, title[1], after, entry["minutes"], references, further, depth, theorems))
+    return lectures
 
 
 def entry_of(source: Path) -> Lecture:

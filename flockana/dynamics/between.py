@@ -149,7 +149,7 @@ class Recorder:
         first = self._samples[0].t[0]
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]
-        exact, before, kept, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False
+        exact, before, retained, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False
         for one, after in zip(knots[1:], [*knots[2:], None], strict=True):
             if not one.wanted:
                 leave = not leave
@@ -157,9 +157,9 @@ class Recorder:
                     slacks = (self._slack.get(before.t, exact), self._slack.pop(one.t, exact))
                     self._slack[before.t] = _detours(before, one, after, *slacks)
                     continue
-                kept.append(one)
+                retained.append(one)
             before = one
-        t, q, p, u = (np.array([getattr(one, name) for one in kept]) for name in ("t", "q", "p", "u"))
+        t, q, p, u = (np.array([getattr(one, name) for one in retained]) for name in ("t", "q", "p", "u"))
         self._steps, self._thinned = [Samples(t, q, p, u, {}, wanted=False)], True
         self._held = 3 * self._steps[0].q.size
 

@@ -48,12 +48,12 @@ class Engine(Integrator):
         self._system, self._sampled = form.system(self.frame.view, n, m), 0
         self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * n * m))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
-        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau]
+        constants: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau]
         size = self.block.y.shape[1]
-        self._room = Room(np.empty((int(max(given[4])) + 1, size)), np.empty(size))
+        self._room = Room(np.empty((int(max(constants[4])) + 1, size)), np.empty(size))
         rtol, floor, longest = plan.control
-        given += [float(rtol), tuple(map(float, floor)), float(longest)]
-        self._method = Method(*given)
+        constants += [float(rtol), tuple(map(float, floor)), float(longest)]
+        self._method = Method(*constants)
 
     def advance(self) -> int:  # noqa: D102
         checks = self.checks
@@ -65,7 +65,7 @@ class Engine(Integrator):
         lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
         with self._pace as steps, several_threads(self._threads) as several:
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
-            made = Advanced(
+            ahead = Advanced(
                 *advance(
                     self._system_for(several),
                     self._method,
@@ -78,22 +78,25 @@ class Engine(Integrator):
                     judged,
                 )
             )
-        self._unsorted -= made.steps
-        self._h, self._sampled = made.h, made.samples if made.steps else 0
-        self.evaluations, self.notes["redone"] = self.evaluations + made.evaluations, self.notes["redone"] + made.redone
-        t = float(self.block.t[made.steps])
-        if made.status == FULL and not made.steps:
-            self._samples = self._room_for(made.samples)
-        elif made.status == UNLISTED and (pairs := with_room(self.pairs)) is not None:
+        self._unsorted -= ahead.steps
+        self._h, self._sampled = ahead.h, ahead.samples if ahead.steps else 0
+        self.evaluations, self.notes["redone"] = (
+            self.evaluations + ahead.evaluations,
+            self.notes["redone"] + ahead.redone,
+        )
+        t = float(self.block.t[ahead.steps])
+        if ahead.status == FULL and not ahead.steps:
+            self._samples = self._room_for(ahead.samples)
+        elif ahead.status == UNLISTED and (pairs := with_room(self.pairs)) is not None:
             self.pairs = pairs
-        elif made.status == UNLISTED:
+        elif ahead.status == UNLISTED:
             self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_BLOCKS}'"
-        elif made.status == SINGULAR and not checks.make_room():
+        elif ahead.status == SINGULAR and not checks.make_room():
             self.failure = at_a_pole(t)
-        elif made.status in (TOO_SMALL, NOT_FINITE):
-            why = _SMALL if made.status == TOO_SMALL else "the state is no longer finite"
-            self.failure = self.plan.describe_failure(t + made.h, why)
-        return int(made.steps)
+        elif ahead.status in (TOO_SMALL, NOT_FINITE):
+            why = _SMALL if ahead.status == TOO_SMALL else "the state is no longer finite"
+            self.failure = self.plan.describe_failure(t + ahead.h, why)
+        return int(ahead.steps)
 
     def list_pairs(self) -> bool:
         """List the pairs of the start; return whether they fit into memory."""

@@ -86,9 +86,9 @@ class Encounters:
         """Return the share of a step that may be accepted, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
-        around, given = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
+        around, no_share = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
         crowd, near = False, no_pairs(n, m)
-        while (share := float(self.compiled(crowd=crowd)(0.0, ends, around, *given, near))) <= TOO_MANY:
+        while (share := float(self.compiled(crowd=crowd)(0.0, ends, around, *no_share, near))) <= TOO_MANY:
             crowd, near = share == TOO_MANY, with_room(near) or near
         return share
 
@@ -96,17 +96,17 @@ class Encounters:
         """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
         bodies, poles, pairs = self.bodies is not None, self.poles.size > 0, self.radii.size > 0
         flags = {"BODIES": bodies, "PAIRS": pairs or poles, "POLES": poles, "CROWD": crowd}
-        found: Kernel = bound("flockana.kernels.shares", **flags).share_of_step
-        return found
+        kernel: Kernel = bound("flockana.kernels.shares", **flags).share_of_step
+        return kernel
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
         """Return the numbers by which compiled code checks encounters, with agents in the given order."""
         few = self.among is not None
         first, second = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
         edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
-        least, largest = (edges.min(), edges.max()) if edges.size else (0.0, 0.0)
+        shortest, largest = (edges.min(), edges.max()) if edges.size else (0.0, 0.0)
         return Around(
-            self.radii[order], float(self.far), (float(least), float(largest)), thawed(self.poles), toward,
+            self.radii[order], float(self.far), (float(shortest), float(largest)), thawed(self.poles), toward,
             np.ascontiguousarray(first), np.ascontiguousarray(second), few, *self._guard,
             (float(self.shell), float(self.skirt)), as_callback(lister(large=len(order) >= LARGE)),
         )  # fmt: skip

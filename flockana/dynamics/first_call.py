@@ -24,10 +24,10 @@ def first_call(law: Law | DiscreteLaw | VelocityLaw, t0: float, q0: FloatArray, 
         _check_finite(name, start, at)
         return start
     memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
-    given: Any = law.step(t0, q0.copy(), p0.copy(), memory)
-    if not isinstance(given, tuple) or len(given) != 4 or not isinstance(given[3], Mapping):
-        raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (q, p, u, memory)")
-    for part, value in zip("qpu", given, strict=False):
+    answer: Any = law.step(t0, q0.copy(), p0.copy(), memory)
+    if not isinstance(answer, tuple) or len(answer) != 4 or not isinstance(answer[3], Mapping):
+        raise ArgumentError(f"{name} gives {format_value(answer)} {at}: expected (q, p, u, memory)")
+    for part, value in zip("qpu", answer, strict=False):
         ensure_returned_array(f"{name} gives {part}", value, q0.shape, at)
     public = {key: np.array(value) for key, value in law.start(q0, p0).items() if key not in law.private}
     return Start(t0, q0, p0, np.zeros_like(q0), memory=public)
@@ -36,8 +36,8 @@ def first_call(law: Law | DiscreteLaw | VelocityLaw, t0: float, q0: FloatArray, 
 def _check_finite(name: str, start: Start, at: str) -> None:
     """Raise unless accelerations are finite, and so is the energy's rate if there is an energy."""
     u, energy = start.u, start.energy
-    if not (known := np.isfinite(u).all(axis=1)).all():
-        i = int(np.argmin(known))
+    if not (is_finite := np.isfinite(u).all(axis=1)).all():
+        i = int(np.argmin(is_finite))
         raise ArgumentError(f"{name} gives u[{i}] = {u[i]} {at}: expected finite accelerations there")
     if np.ndim(energy) != 0 or np.asarray(energy).dtype.kind not in "fiu":
         raise ArgumentError(

@@ -142,8 +142,8 @@ class Interpreter(Integrator):
         """Return the state vector at a time within the last step."""
         if self._course is None:
             self._course = self._solver.dense_output()
-        found: FloatArray = self._course(t)
-        return found
+        values: FloatArray = self._course(t)
+        return values
 
 
 class VelocityInterpreter(Interpreter):

@@ -46,8 +46,8 @@ class MapStepper(Stepper):
         self.pace = Pace(min(_BEGIN, 20_000 // size), min(law.steps_at_once, _NUMBERS // (3 * size)))
         self.encounters: Encounters | None = None
         if isinstance(law, FixedSteps) and wrappers_within(law.law) and not law.noisy:
-            known = Encounters.of(law.law, len(start.q))
-            self.encounters = known if known.any else None
+            encounters = Encounters.of(law.law, len(start.q))
+            self.encounters = encounters if encounters.any else None
             past = [State(*row[:3]) for row in self.memory.get("past", ())]
             if first_order(law) is not None:
                 past = [State(x, v, np.zeros_like(v)) for _, x, v in past]
@@ -61,18 +61,18 @@ class MapStepper(Stepper):
     def advance(self) -> int:
         """Make some steps; those from the first on that is not finite are not accepted."""
         t0, dt, first, last = self.t_span[0], self.law.dt, self.done, min(self.done + self.pace.steps, self.steps)
-        own = np.arange(1, last - first + 1)
+        rows = np.arange(1, last - first + 1)
         if self.wanted is not None:
-            own = self.wanted[slice(*np.searchsorted(self.wanted, [first + 1, last + 1]))] - first
+            rows = self.wanted[slice(*np.searchsorted(self.wanted, [first + 1, last + 1]))] - first
         times = t0 + np.arange(float(first), float(last)) * dt  # so a step hangs on its own time, and on no block's
         with self.pace:
-            made, states = self._visit(times, own)
-        good, (qs, ps, us, self._series) = made.size, states
+            stretch, states = self._visit(times, rows)
+        good, (qs, ps, us, self._series) = stretch.size, states
         if not finite(qs, ps):
             good = int(np.argmin(np.isfinite(qs).all(axis=(1, 2)) & np.isfinite(ps).all(axis=(1, 2))))
             self.failure = f"the map left the finite numbers at t = {t0 + (first + good + 1) * dt:g}"
-        t = np.minimum(t0 + (made + first) * dt, self.t_span[1])  # which the last step may pass by its rounding
-        self._made, self._kept = Samples(t, qs, ps, us, {}), np.searchsorted(made, own)
+        t = np.minimum(t0 + (stretch + first) * dt, self.t_span[1])  # which the last step may pass by its rounding
+        self._made, self._kept = Samples(t, qs, ps, us, {}), np.searchsorted(stretch, rows)
         self._kept = self._kept[self._kept < good]
         if self.encounters is not None:
             q, p = self.q, self.p
@@ -80,7 +80,7 @@ class MapStepper(Stepper):
                 # the input of a step is its mean: that of both of its ends, to the order that paths are looked at
                 self._ensure_resolved(State(q, p, after[2]), State(*after), at - dt)
                 q, p, _ = after
-        count = int(made[good - 1]) if good else 0
+        count = int(stretch[good - 1]) if good else 0
         self.evaluations += count
         return count
 

@@ -110,10 +110,10 @@ class MeasuredRun(ResultCache):
     def _metrics(self) -> xarray.Dataset:
         import xarray
 
-        shown = [self.measure(name) for name in self._metric_names]
+        series = [self.measure(name) for name in self._metric_names]
         data = {
             it.name: xarray.Variable("time", self.metric(it.name), {"long_name": it.text, "units": it.unit})
-            for it in shown
+            for it in series
         }
         return xarray.Dataset(data, coords={"time": self.t})
 
@@ -151,8 +151,8 @@ class MeasuredRun(ResultCache):
             if of_any is not None and of_any.over_time is not None and of_any.defined(self.law):
                 values = of_any.over_time(self._flock)
             elif name in self._own:  # the law is asked last, which may cost more
-                given = Series(*self._own[name]).values
-                values = np.fromiter(given() if callable(given) else given, float, len(self.t))
+                own_values = Series(*self._own[name]).values
+                values = np.fromiter(own_values() if callable(own_values) else own_values, float, len(self.t))
             else:
                 raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values
@@ -202,8 +202,8 @@ class MeasuredRun(ResultCache):
     def _closest(self) -> ClosestApproach:
         if not self.resolved and len(self.t) > 1 < self.n:
             k = slice(at := int(np.argmin(self.metric("min_distance"))), at + 1)
-            seen = closest_approach(self.t[k], self.q[k], self.p[k], self.u[k])
-            return replace(seen, lower=0.0, lower_by_interval=np.zeros(len(self.t) - 1))
+            nearest = closest_approach(self.t[k], self.q[k], self.p[k], self.u[k])
+            return replace(nearest, lower=0.0, lower_by_interval=np.zeros(len(self.t) - 1))
         approach = closest_approach(*self.path)
         return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
@@ -253,5 +253,5 @@ class MeasuredRun(ResultCache):
             return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
         one = (slice(k, k + 1) for k in range(len(self.t)))
         each = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in one)
-        seen = min(each, key=lambda found: found.reached)
-        return replace(seen, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))
+        approach = min(each, key=lambda found: found.reached)
+        return replace(approach, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))

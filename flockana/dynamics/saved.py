@@ -48,8 +48,8 @@ def to_xarray(run: Any) -> xarray.Dataset:
     data: dict[str, Any] = {"q": (dims, run.q), "p": (dims, run.p), "u": (dims, run.u)}
     data |= {f"extra_{k}": (("time", *(f"{k}_{a}" for a in range(v.ndim - 1))), v) for k, v in run.extra.items()}
     if run.between is not None:
-        kept = vars(run.between)
-        data |= {f"between_{k}": (_BETWEEN[k], kept[k]) for k in _BETWEEN if kept[k] is not None}
+        parts = vars(run.between)
+        data |= {f"between_{k}": (_BETWEEN[k], parts[k]) for k in _BETWEEN if parts[k] is not None}
     coords = {"time": run.t, "agent": np.arange(run.n), "axis": list("xyz"[: run.m])}
     attrs = {
         "format": FORMAT,
@@ -82,8 +82,8 @@ def _ensure_intact(run: Any, attributes: Mapping[str, Any], source: Path) -> Any
             f"{source} is damaged: it has no seal, which every file of a run is written with; run the simulation again"
         )
     modules = _format_1_modules() if int(attributes["format_version"]) == 1 else {}
-    seal, found = read_json(attributes["seal"]), _file_seal(run, attributes["made_by"], modules)
-    differing = sorted(name for name in {*seal, *found} if seal.get(name) != found.get(name))
+    seal, seal_of_file = read_json(attributes["seal"]), _file_seal(run, attributes["made_by"], modules)
+    differing = sorted(name for name in {*seal, *seal_of_file} if seal.get(name) != seal_of_file.get(name))
     if differing:
         raise FileError(
             f"{source} is damaged: {', '.join(differing)} not as saved, by the checksums; run the simulation again"

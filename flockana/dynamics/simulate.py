@@ -152,14 +152,14 @@ def simulate(
         name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan._replace(threads=threads))
     started, tally = time.perf_counter(), Tally()
     with limited_threads(threads):
-        kept, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
+        samples, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
     counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
-    if not kept:  # ended before the first time to keep
-        kept = [start.sample]
+    if not samples:  # ended before the first time to keep
+        samples = [start.sample]
         if watch is not None:
             watch(_copy(start.sample))
-    t, q, p, u, extra = _stacked(kept)
+    t, q, p, u, extra = _stacked(samples)
     return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
 
 
@@ -276,23 +276,25 @@ def _collect(
     watch: Callable[[Sample], object] | None,
 ) -> tuple[list[Samples], Between | None]:
     """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
-    kept, recorder, reached = list[Samples](), Recorder(), t_span[0]
+    blocks, recorder, t_reached = list[Samples](), Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with restore_interrupts():
                 for some in samples if watch is None else _one_by_one(samples):
                     recorder.add(some)  # first: `watch` may end the run here
                     if some.wanted:
-                        kept.append(some)
+                        blocks.append(some)
                         if watch is not None:
                             watch(_copy(some))
                     if progress:
-                        reached = max(reached, float(some.t[-1]))
-                        advance(reached - t_span[0], f"t = {reached:.4g}")
+                        t_reached = max(t_reached, float(some.t[-1]))
+                        advance(t_reached - t_span[0], f"t = {t_reached:.4g}")
         except KeyboardInterrupt:
-            until = f"the last sample is at t = {kept[-1].t[-1]:g}" if kept else "no sample was reached but the start"
+            until = (
+                f"the last sample is at t = {blocks[-1].t[-1]:g}" if blocks else "no sample was reached but the start"
+            )
             tally.status, tally.message = "interrupted", f"interrupted: {until}"
-    return kept, recorder.between()
+    return blocks, recorder.between()
 
 
 def _one_by_one(samples: Iterator[Samples]) -> Iterator[Samples]:

@@ -94,13 +94,13 @@ class Integrator(Stepper):
             yield steps
             return
         due = self._samples_of(*self.between())
-        chosen, apart = _among(steps.t, self.plan.keep), ~_among(due.t, steps.t)  # where a step ended it is the sample
-        if not chosen.all():
-            rows = np.flatnonzero(~chosen)
+        picks, apart = _among(steps.t, self.plan.keep), ~_among(due.t, steps.t)  # where a step ended it is the sample
+        if not picks.all():
+            rows = np.flatnonzero(~picks)
             contiguous = rows[-1] - rows[0] < rows.size  # then a view
             yield steps.at(slice(rows[0], rows[-1] + 1) if contiguous else rows)._replace(extra={}, wanted=False)
-        if chosen.any() or apart.any():
-            both = Samples.joined([steps.at(chosen), due.at(apart)])
+        if picks.any() or apart.any():
+            both = Samples.joined([steps.at(picks), due.at(apart)])
             yield both.at(np.argsort(both.t))
 
     def describe_failure(self, steps: int, count: int) -> str:
@@ -117,14 +117,14 @@ class Integrator(Stepper):
         if steps < before + _MANY:
             return ""
         mean, self._counted_from = (at - since) / (steps - before), (at, steps)
-        own = np.inf if self.law.scales is None else self.law.scales.time
-        most = _LONG if self.in_python and mean < _SLUGGISH * own else _ENDLESS
+        law_time = np.inf if self.law.scales is None else self.law.scales.time
+        most = _LONG if self.in_python and mean < _SLUGGISH * law_time else _ENDLESS
         if ahead.size and ahead[-1] - at > most * mean:
             return (
                 f"it would take {(ahead[-1] - at) / mean:.1e} more steps to t = {ahead[-1]:g}: the last {_MANY} are "
                 f"{mean:.2g} long on average; expected a shorter span or slower gains"
             )
-        if np.isinf(own) or mean >= _SHORT * own:
+        if np.isinf(law_time) or mean >= _SHORT * law_time:
             return ""
         text = f"steps collapse at t = {at:g}: the last {_MANY} are {mean:.2g} long on average"
         return text if 0.0 in self.law.poles else text + self._name_nearest(count)

@@ -54,8 +54,8 @@ def map_in_batches(
                 pending[sent] = batch
                 if sent.done():  # this process works itself: what is done is given before more is begun
                     break
-            done, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
-            for future in done:
+            finished, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
+            for future in finished:
                 batch = pending.pop(future)
                 try:
                     results = future.result()

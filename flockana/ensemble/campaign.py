@@ -130,44 +130,44 @@ def ensemble(
     grid = Grid(*_split(parameters), ensure_seeds(seeds))
     if (runs := prod(grid.shape)) > MOST:
         raise ArgumentError(f"{runs} runs: expected at most {MOST}, seeds times values of options; {_REMEDY}")
-    chosen = _ensure_metrics(metrics)
-    names = Counter((*RESERVED, *grid.axes, *grid.fixed, *map(metric_name, chosen)))
+    chosen_metrics = _ensure_metrics(metrics)
+    names = Counter((*RESERVED, *grid.axes, *grid.fixed, *map(metric_name, chosen_metrics)))
     for name in (name for name, count in names.items() if count > 1):
         raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
     ensure_kind("tolerances", tolerances, (Tolerances, NoneType), "flockana.Tolerances(...)")
-    given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
-    flock = given if isinstance(given, Flock) else None
+    chosen = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
+    flock = chosen if isinstance(chosen, Flock) else None
     if flock is None:
-        name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
+        name, checked = _ensure_scenario(chosen, grid), _ensure_theorems(theorems)
     else:
         name, checked = flock.name, _ensure_flock(flock, grid, theorems)
-    own = tuple(each for each in checked or () if isinstance(each, Theorem))
+    own_theorems = tuple(each for each in checked or () if isinstance(each, Theorem))
     ids = None if checked is None else tuple(each.id if isinstance(each, Theorem) else each for each in checked)
-    request = Request(name, ids, chosen, tolerances or Tolerances(), flock=flock, own=own)
+    request = Request(name, ids, chosen_metrics, tolerances or Tolerances(), flock=flock, own=own_theorems)
     all_jobs = grid.jobs()
     with ExitStack() as stack:
-        kept = None if store is None else stack.enter_context(Store(store))
-        keys = _keys(request, all_jobs, strict=kept is not None)
-        records = {} if kept is None else kept.read(keys.values())
+        open_store = None if store is None else stack.enter_context(Store(store))
+        keys = _keys(request, all_jobs, strict=open_store is not None)
+        records = {} if open_store is None else open_store.read(keys.values())
         if retry:
             records = {key: record for key, record in records.items() if record.status == COMPLETE}
         missing = [job for job in all_jobs if keys[job] not in records]
         if missing:
             advance = stack.enter_context(progress_bar(len(missing), enabled=progress, steady=True))
             text = f"runs, {len(all_jobs) - len(missing)} stored before" if len(missing) < len(all_jobs) else "runs"
-            done = 0
+            count_done = 0
             if executor is None:
                 jobs = min(jobs or cores(), len(missing))
                 jobs = 1 if jobs > 1 and not can_start_processes(request) else jobs
             try:
                 with worker_pool(executor, jobs=jobs) as workers:
-                    for made in make_runs(request, missing, workers):
-                        new = {keys[record.job]: record for record in made}
-                        if kept is not None:
-                            kept.add(name, new)
+                    for batch in make_runs(request, missing, workers):
+                        new = {keys[record.job]: record for record in batch}
+                        if open_store is not None:
+                            open_store.add(name, new)
                         records |= new
-                        done += len(new)
-                        advance(done, text)
+                        count_done += len(new)
+                        advance(count_done, text)
             except KeyboardInterrupt:
                 how = (
                     "a store would keep them"
@@ -182,18 +182,18 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
     """Return seeds as a tuple of whole numbers >= 0, each of them once."""
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ArgumentError(f"seeds = {seeds!r}: expected several whole numbers, such as range(200)")
-    given: dict[int, None] = {}
+    unique: dict[int, None] = {}
     for seed in islice(seeds, MOST + 1):  # there may be no end of them
         if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
             raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
-        if seed in given:
+        if seed in unique:
             raise ArgumentError(f"seed {seed} comes twice: expected different seeds")
-        given[int(seed)] = None
-    if not given:
+        unique[int(seed)] = None
+    if not unique:
         raise ArgumentError("seeds: empty; expected at least one, such as range(200)")
-    if len(given) > MOST:
+    if len(unique) > MOST:
         raise ArgumentError(f"seeds: there are more than {MOST}; expected at most so many, {_REMEDY}")
-    return tuple(given)
+    return tuple(unique)
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
@@ -202,11 +202,11 @@ def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]
     fixed: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
         raise ArgumentError(f"parameters = {parameters!r}: expected a dictionary, such as {{'n': [20, 40]}}")
-    for name, given in (parameters or {}).items():
-        if isinstance(given, str) or not isinstance(given, Iterable):
-            fixed[name] = _scalar(name, given)
+    for name, options in (parameters or {}).items():
+        if isinstance(options, str) or not isinstance(options, Iterable):
+            fixed[name] = _scalar(name, options)
             continue
-        values = [_scalar(name, value) for value in islice(given, MOST + 1)]
+        values = [_scalar(name, value) for value in islice(options, MOST + 1)]
         if len(values) > MOST:
             raise ArgumentError(f"{name}: there are more than {MOST} values; expected at most so many, {_REMEDY}")
         if not values or len(set(values)) < len(values) or len({isinstance(v, str) for v in values}) > 1:
@@ -235,15 +235,15 @@ def _ensure_theorems(given: Any) -> tuple[str | Theorem, ...] | None:
         return None
     if isinstance(given, str | Theorem) or not isinstance(given, Iterable):
         raise ArgumentError(f"theorems = {given!r}: expected several, such as ['os-1', '{SOURCE}', claim(...)]")
-    chosen, known = {(each.id if isinstance(each, Theorem) else each): each for each in _named(given)}, theorems()
-    for name, each in chosen.items():
+    items, catalogue = {(each.id if isinstance(each, Theorem) else each): each for each in _named(given)}, theorems()
+    for name, each in items.items():
         if not isinstance(each, Theorem):
-            ensure_known("theorem", name, (SOURCE, *known))
-        elif name == SOURCE or (name in known and each is not theorem(name)):
+            ensure_known("theorem", name, (SOURCE, *catalogue))
+        elif name == SOURCE or (name in catalogue and each is not theorem(name)):
             raise ArgumentError(f"theorems: your claim {name!r} has the name of one in the catalogue; rename it")
         if name != SOURCE and theorem(each).kind != "trajectory":
             raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
-    return tuple(name if name in known else each for name, each in chosen.items())
+    return tuple(name if name in catalogue else each for name, each in items.items())
 
 
 def _named(given: Iterable[Any]) -> Iterator[Any]:
@@ -286,8 +286,8 @@ def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str | Theore
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
     """Return the key of each run; the source of user functions is part of it."""
     shared = request.to_dict(strict=strict)
-    own = {name for name in (request.scenario, *request.metrics) if ":" in name}
-    shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
+    own_names = {name for name in (request.scenario, *request.metrics) if ":" in name}
+    shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own_names)}
     margins = {f"claim {each.id}": getattr(each.check, "margin", each.check) for each in request.own}
     starts = {} if request.flock is None else {key: getattr(request.flock, key) for key in ("q0", "p0")}
     for key, function in (margins | {key: start for key, start in starts.items() if callable(start)}).items():

@@ -77,8 +77,8 @@ def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarr
     }
     for name in request.metrics:
         values = [record.metrics.get(name, np.nan) for record in records]
-        own = None if ":" in name else measures()[name]
-        described = {"long_name": metric_name(name)} if own is None else {"long_name": own.summary, "units": own.unit}
+        it = None if ":" in name else measures()[name]
+        described = {"long_name": metric_name(name)} if it is None else {"long_name": it.summary, "units": it.unit}
         variables[metric_name(name)] = over_runs(values, np.float64, **described)
     coords: dict[str, Any] = {name: list(values) for name, values in grid.axes.items()} | dict(grid.fixed)
     coords["seed"] = list(grid.seeds)

@@ -46,14 +46,14 @@ def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
     exact: list[str | bytes] = [repr((sys.version, _libraries(), Path(__file__).read_bytes()))]
     for name, source in sorted(sources.items()):
         exact += [f"\0{name}\0{len(source)}\0", source]
-    kept = folder / f"mathematics.{sha256(exact)[:32]}.txt"
+    cache_file = folder / f"mathematics.{sha256(exact)[:32]}.txt"
     with suppress(OSError, UnicodeDecodeError):
-        if _DIGEST.fullmatch(digest := kept.read_text(encoding="ascii")):
+        if _DIGEST.fullmatch(digest := cache_file.read_text(encoding="ascii")):
             return digest
     digest = digest_of_sources(sources)
     if not sys.dont_write_bytecode and folder.is_dir():
         with suppress(FileError):
-            write_atomic(kept, digest)
+            write_atomic(cache_file, digest)
     return digest
 
 

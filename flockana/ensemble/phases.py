@@ -38,7 +38,7 @@ def phases(
     kinds = [distance < ensure_nonnegative("contact", contact), components > 1.0, settled]
     names = ("collapse", "fragmentation", "flocking")
     codes = np.select([kind.values for kind in kinds], [PHASES.index(name) for name in names], PHASES.index("other"))
-    known = np.isfinite(distance.values) & np.isfinite(components.values)
+    is_finite = np.isfinite(distance.values) & np.isfinite(components.values)
     attributes = {"long_name": "phase at the end", "flag_values": list(range(len(PHASES)))}
     attributes["flag_meanings"] = " ".join(PHASES)
-    return distance.copy(data=np.where(known, codes, -1).astype(np.int8)).assign_attrs(attributes).rename("phase")
+    return distance.copy(data=np.where(is_finite, codes, -1).astype(np.int8)).assign_attrs(attributes).rename("phase")

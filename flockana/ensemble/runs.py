@@ -16,10 +16,10 @@ SENDABLE = "to be sent to a worker, functions of starts and claims are written w
 def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Iterator[tuple[Record, ...]]:
     """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
-        for done in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
+        for batch in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
             yield tuple(
                 Record(job, DIED, "the worker process that made this run ended") if record is None else record
-                for job, record in done
+                for job, record in batch
             )
     except FlockanaError:
         raise

@@ -110,10 +110,10 @@ class Store(AbstractContextManager["Store"]):
 
     def read(self, keys: Iterable[str]) -> dict[str, Record]:
         """Return the stored runs among the keys."""
-        wanted, records = list(keys), {}
+        keys_left, records = list(keys), {}
         with self._explained():
-            for first in range(0, len(wanted), _AT_ONCE):
-                part = wanted[first : first + _AT_ONCE]
+            for first in range(0, len(keys_left), _AT_ONCE):
+                part = keys_left[first : first + _AT_ONCE]
                 marks = ", ".join("?" * len(part))
                 rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", part)
                 for key, text in rows:

@@ -138,10 +138,10 @@ def build(request: Request, job: Job) -> Scenario:
     name = request.scenario
     if ":" not in name:
         return scenario(name, job.seed, **dict(job.options))
-    made = resolve_name(name)(job.seed, **dict(job.options))
-    if not isinstance(made, Scenario):
-        raise ArgumentError(f"{name} returned {type(made).__name__}: expected a Scenario")
-    return made
+    flock = resolve_name(name)(job.seed, **dict(job.options))
+    if not isinstance(flock, Scenario):
+        raise ArgumentError(f"{name} returned {type(flock).__name__}: expected a Scenario")
+    return flock
 
 
 def _judge_run(request: Request, job: Job, item: Scenario, run: Trajectory) -> Record:
@@ -162,9 +162,9 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     tolerances = request.tolerances
     if request.theorems is None:
         return item.verify(run, tolerances=tolerances)
-    own = {each.id: each for each in request.own}
-    chosen = [name for name in request.theorems if name != SOURCE]
-    verdicts = [item.verdict(own.get(name, name), run, tolerances=tolerances) for name in chosen]
+    own_theorems = {each.id: each for each in request.own}
+    names = [name for name in request.theorems if name != SOURCE]
+    verdicts = [item.verdict(own_theorems.get(name, name), run, tolerances=tolerances) for name in names]
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)

@@ -75,11 +75,11 @@ class Copies(ShortRepr, Forced):
     @property
     def feature(self) -> float | None:
         """Time in which a spring or the coupling bends the motion; None under a function."""
-        known = super().feature
+        inner_feature = super().feature
         return (
             None
-            if known is None
-            else min(known, Spring((0.0,), self.position_coupling, self.velocity_coupling).feature)
+            if inner_feature is None
+            else min(inner_feature, Spring((0.0,), self.position_coupling, self.velocity_coupling).feature)
         )
 
     def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:

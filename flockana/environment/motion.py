@@ -47,7 +47,7 @@ class Motion:
 
         ends = np.array([len(pieces), len(pieces) + 1]) * (self._piece if ahead else -self._piece)
         start = pieces[-1](ends[0]) if pieces else self._start
-        done = solve_ivp(
+        solution = solve_ivp(
             lambda _, y: self._rate(y),
             tuple(ends.tolist()),
             start,
@@ -56,12 +56,12 @@ class Motion:
             rtol=_RTOL,
             atol=1e-13 * self._units,
         )
-        if not (done.success and np.isfinite(done.y).all()):
+        if not (solution.success and np.isfinite(solution.y).all()):
             raise SolverError(
-                f"the γ-agent's own motion cannot be integrated beyond t = {done.t[-1]:.6g} ({done.message}): expected "
-                "a force f_r(q_r, p_r) that keeps it finite"
+                f"the γ-agent's own motion cannot be integrated beyond t = {solution.t[-1]:.6g} ({solution.message}): "
+                "expected a force f_r(q_r, p_r) that keeps it finite"
             )
-        return done.sol
+        return solution.sol
 
 
 class Forced(ABC):

@@ -102,10 +102,10 @@ class SimplePolygon:
 
     def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
         ways = shapely.linestrings(np.stack([start, end], axis=1))
-        least = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
+        distances = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
         deepest = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
         met = shapely.intersects(self._shape, ways) | (first < 0.0) | (last < 0.0)
-        return np.where(met, np.minimum(least, deepest), least)
+        return np.where(met, np.minimum(distances, deepest), distances)
 
     def enclosing_circle(self) -> Sphere:
         """Return the smallest enclosing disc, the buffer zone of the conventional method."""

@@ -108,8 +108,8 @@ def largest_clique(ratio: float, m: int) -> int | None:
     if not isfinite(ratio):
         return None
     packed = floor((1.0 + 2.0 * ratio * sqrt(m / (2.0 * (m + 1.0)))) ** m)
-    known = [points - 1 for points, least in _LEAST_RATIO.get(m, {}).items() if ratio <= least]
-    return min([packed, ceil(ratio)] if m == 1 else [packed, *known])
+    reachable = [points - 1 for points, least_ratio in _LEAST_RATIO.get(m, {}).items() if ratio <= least_ratio]
+    return min([packed, ceil(ratio)] if m == 1 else [packed, *reachable])
 
 
 def turan_pairs(n: int, clique: int) -> int:

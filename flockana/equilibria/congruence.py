@@ -35,9 +35,9 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
     x, y = first - first.mean(axis=0), second - second.mean(axis=0)
     frame = _frame(x)
     distances, tree = cdist(y, y), KDTree(y)
-    wanted, norms = cdist(x[frame], x[frame]), np.linalg.norm(x[frame], axis=1)
+    target, norms = cdist(x[frame], x[frame]), np.linalg.norm(x[frame], axis=1)
     candidates = [np.flatnonzero(np.abs(np.linalg.norm(y, axis=1) - norm) <= 2.0 * tol) for norm in norms]
-    return any(_maps(x, y, frame, image, tree, tol) for image in _images(candidates, distances, wanted, 4.0 * tol))
+    return any(_maps(x, y, frame, image, tree, tol) for image in _images(candidates, distances, target, 4.0 * tol))
 
 
 def _frame(x: FloatArray) -> list[int]:

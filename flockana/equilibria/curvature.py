@@ -128,9 +128,9 @@ class Landscape:
             return False
         if not self.values.size:
             return True
-        least = float(self.values[0])
-        reach = 2.0 * float(np.sqrt((energy + self.force**2 / least) / least)) + self.distance
-        return self._keeps(reach, least)
+        lowest = float(self.values[0])
+        reach = 2.0 * float(np.sqrt((energy + self.force**2 / lowest) / lowest)) + self.distance
+        return self._keeps(reach, lowest)
 
     def _keeps_all(self, least: float) -> bool:
         """Return whether no eigenvalue of at least this size changes by half on the way to the critical point."""

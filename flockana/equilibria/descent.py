@@ -53,9 +53,9 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
     """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006)."""
-    own, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
+    time_unit, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
     enough = tol * potential.force_scale
-    step, mixing, downhill, v = _STEP * own, 0.1, 0, np.zeros_like(q)
+    step, mixing, downhill, v = _STEP * time_unit, 0.1, 0, np.zeros_like(q)
     for _ in range(steps):
         force = potential.force(q)
         if _largest(force) <= enough:
@@ -64,7 +64,7 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
             v = (1.0 - mixing) * v + mixing * sqrt(float(np.vdot(v, v) / np.vdot(force, force))) * force
             downhill += 1
             if downhill > 5:
-                step, mixing = min(1.1 * step, _LONGEST * own), 0.99 * mixing
+                step, mixing = min(1.1 * step, _LONGEST * time_unit), 0.99 * mixing
         else:
             v, step, mixing, downhill = np.zeros_like(q), 0.5 * step, 0.1, 0
         v = v + step * force
@@ -80,20 +80,20 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
 def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
     """Return whether neighbours moved against each other by more than their distance."""
     i, j = links(start, potential.pair.range).T
-    moved = end - start
-    return bool(np.any(np.linalg.norm(moved[j] - moved[i], axis=1) > _PARTED * potential.pair.length))
+    way = end - start
+    return bool(np.any(np.linalg.norm(way[j] - way[i], axis=1) > _PARTED * potential.pair.length))
 
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
     """Simulate Langevin's equation while the temperature falls to zero."""
     length, scale = potential.pair.length, potential.force_scale
     step = _QUIET / sqrt(float(abs(potential.stiffness(q)).sum(axis=1).max()) or scale / length)
-    kept, rng, v = 1.0 - _DRAG, np.random.default_rng(0), np.zeros_like(q)
+    share_kept, rng, v = 1.0 - _DRAG, np.random.default_rng(0), np.zeros_like(q)
     for k in range(_COOLING):
         heat = warm * scale * length * (1.0 - k / _COOLING)
         noise = rng.standard_normal(q.shape)
-        v = kept * v + step * potential.force(q)
-        v += sqrt(heat * (1.0 - kept**2)) * (noise if potential.pinned else moving_frame(noise))
+        v = share_kept * v + step * potential.force(q)
+        v += sqrt(heat * (1.0 - share_kept**2)) * (noise if potential.pinned else moving_frame(noise))
         ahead = q + step * v
         if inside_obstacle(potential.law, ahead):
             v = -v
@@ -113,8 +113,8 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
         hessian = potential.stiffness(q)
         if not np.isfinite(hessian.data).all():  # a force with a vertical tangent
             break
-        least = _LEAST * float(abs(hessian).sum(axis=1).max() or scale / length)
-        step = Elimination(hessian, q, least=least).solve(force.ravel()).reshape(q.shape)
+        threshold = _LEAST * float(abs(hessian).sum(axis=1).max() or scale / length)
+        step = Elimination(hessian, q, least=threshold).solve(force.ravel()).reshape(q.shape)
         for _ in range(_TRIES):
             step = step * min(1.0, trust / _largest(step))
             ahead, after = q + step, potential.force(q + step)

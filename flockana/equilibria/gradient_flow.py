@@ -73,8 +73,8 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, horizon: float = 1e4
             force = potential.residual(here)
             if force <= level:
                 polished = polish(potential, here)
-                if (least := potential.residual(polished)) <= _TOL:
-                    return GradientLimit(polished, least, float(solver.t), True)
+                if (residual := potential.residual(polished)) <= _TOL:
+                    return GradientLimit(polished, residual, float(solver.t), True)
                 level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
         here = solver.y.reshape(shape)
         return GradientLimit(here, potential.residual(here), float(solver.t), False)

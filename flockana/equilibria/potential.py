@@ -54,8 +54,8 @@ class Potential:
     @property
     def force_scale(self) -> float:
         """Unit of force: that of the law, or else of its pair law."""
-        own = self.law.scales
-        return self.gain * self.pair.strength if own is None else own.force
+        unit_force = self.law.scales
+        return self.gain * self.pair.strength if unit_force is None else unit_force.force
 
     @property
     def pairs(self) -> PairTerm:
@@ -145,5 +145,5 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: f
             axes.append(np.asarray(obstacle.par[m:]))
         else:
             return []
-    moved = np.array([[generator @ axis for axis in axes] for generator in skew]).reshape(len(skew), -1)
-    return [np.tensordot(kept, skew, axes=1) for kept in null_space(moved.T, rcond=_CONCENTRIC).T]
+    images = np.array([[generator @ axis for axis in axes] for generator in skew]).reshape(len(skew), -1)
+    return [np.tensordot(combination, skew, axes=1) for combination in null_space(images.T, rcond=_CONCENTRIC).T]

@@ -112,8 +112,8 @@ class Program:
         )  # kept alive: CasADi holds no reference
         self._watch, (slope, hessian) = _Watch(self.size, gauge), self.derivatives(x)
         value, multiplier, ignored = self._value(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
-        held = ca.reshape(c, self.size, gauge).T @ x
-        self._program: Any = {"x": x, "p": c, "f": value, "g": held}
+        fixed_motions = ca.reshape(c, self.size, gauge).T @ x
+        self._program: Any = {"x": x, "p": c, "f": value, "g": fixed_motions}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
             "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored], [multiplier * hessian]),
@@ -133,11 +133,11 @@ class Program:
         """Minimise from q0 and return (positions, whether IPOPT succeeded, IPOPT's status)."""
         start = q0.ravel() / self.d
         basis = self.potential.symmetries(q0) if basis is None else basis
-        held = basis.T @ start
+        fixed_motions = basis.T @ start
         box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
         with defer_sigint() as self._watch.came:
             solver = self._solver(max_iter)
-            solution = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
+            solution = solver(x0=start, p=basis.T.ravel(), lbg=fixed_motions, ubg=fixed_motions, **box)
             stats, x = solver.stats(), np.array(solution["x"])
         return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
 

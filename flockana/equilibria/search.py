@@ -51,12 +51,12 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
 
     starts = []
     for _ in range(count):
-        taken: set[tuple[int, ...]] = {(0,) * m}
-        while len(taken) < n:
-            free = sorted({place for site in taken for place in beside(site)} - taken)
+        cells: set[tuple[int, ...]] = {(0,) * m}
+        while len(cells) < n:
+            free = sorted({place for site in cells for place in beside(site)} - cells)
             tried = [free[k] for k in rng.integers(len(free), size=3)]
-            taken.add(max(tried, key=lambda site: sum(place in taken for place in beside(site))))
-        sites = np.array(sorted(taken), dtype=float) @ basis
+            cells.add(max(tried, key=lambda site: sum(place in cells for place in beside(site))))
+        sites = np.array(sorted(cells), dtype=float) @ basis
         starts.append(d * (sites + noise * rng.standard_normal((n, m))))
     return starts
 

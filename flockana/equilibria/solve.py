@@ -202,7 +202,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         )
     modes = spectrum(potential, q)
     q.setflags(write=False)
-    found = Equilibrium(
+    equilibrium = Equilibrium(
         law=potential.law,
         q=q,
         energy=potential.energy(q),
@@ -216,7 +216,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         success=success,
         message=message,
     )
-    return sealed(found)
+    return sealed(equilibrium)
 
 
 def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
@@ -289,10 +289,10 @@ def polish(potential: Potential, q: FloatArray) -> FloatArray:
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 
-    best, least = q, potential.residual(q)
+    best, best_residual = q, potential.residual(q)
     here = q
     for _ in range(_POLISH):
-        if least <= 1e-14:
+        if best_residual <= 1e-14:
             break
         rigid, hessian = csc_array(potential.symmetries(here)), csc_array(potential.stiffness(here))
         shift = 1e-9 * float(abs(hessian).max() or 1.0)
@@ -303,7 +303,7 @@ def polish(potential: Potential, q: FloatArray) -> FloatArray:
         if not np.isfinite(step).all() or np.abs(here - q).max() > _REACH * potential.pair.length:
             break
         residual = potential.residual(here)
-        if residual >= least:
+        if residual >= best_residual:
             break
-        best, least = here, residual
+        best, best_residual = here, residual
     return np.array(best)

@@ -97,5 +97,5 @@ def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | 
     """Return the structural potential about a configuration; None where its Hessian is too large."""
     if q.size > DENSE_LIMIT:
         return None
-    own = law.scales
-    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=own.length, unit=own.force)
+    scales = law.scales
+    return Landscape(law.stiffness, q, rigid_motions(q), force=force, length=scales.length, unit=scales.force)

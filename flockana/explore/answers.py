@@ -84,15 +84,15 @@ def _idle(law: Any) -> tuple[str, ...]:
 def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
     for name in sorted(parts.theorems, key=lambda name: name in _LONG):  # what takes seconds comes last
         try:
-            found = verify(name, run, tolerances=parts.tolerances)
-            verdict = found.to_dict() | {"marks": marks_of(run, [found]), "bylines": dict(BYLINES)}
+            answer = verify(name, run, tolerances=parts.tolerances)
+            verdict = answer.to_dict() | {"marks": marks_of(run, [answer]), "bylines": dict(BYLINES)}
         except FlockanaError as error:  # such as an erratum about another number of agents
             verdict = {"theorem": name, "status": "not checked", "error": str(error), "hypotheses": [], "claims": []}
         yield "verdict", {**verdict, "statement": theorem(name).statement}
     if parts.source is not None:
-        for found in parts.source.reported(run):
+        for answer in parts.source.reported(run):
             statement = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in parts.source.reports)
-            yield "verdict", found.to_dict() | {"marks": marks_of(run, [found]), "statement": statement}
+            yield "verdict", answer.to_dict() | {"marks": marks_of(run, [answer]), "statement": statement}
     yield "poles", poles(run)
     if _collapses_by_ratio(parts.law):
         yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)

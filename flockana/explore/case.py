@@ -58,10 +58,10 @@ class Case:
         """Return the case described by a message of the page."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
-        moved = asked.get("moved") or {}
-        if not isinstance(moved, Mapping) or not all(str(key).isdecimal() for key in moved):
-            raise ArgumentError(f"moved = {str(moved)[:80]}: expected places by the agents' numbers")
-        return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moved[k] for k in moved}})
+        moves = asked.get("moved") or {}
+        if not isinstance(moves, Mapping) or not all(str(key).isdecimal() for key in moves):
+            raise ArgumentError(f"moved = {str(moves)[:80]}: expected places by the agents' numbers")
+        return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moves[k] for k in moves}})
 
     def start(self) -> Start:
         """Return the start without changes."""
@@ -79,10 +79,10 @@ class Case:
         law, q0 = changed(start.law, tree), start.q0.copy()
         if tree:
             lines.append(f"law = {expression('law', start.law, tree)}")
-        for agent, given in sorted(self.moved.items()):
+        for agent, place in sorted(self.moved.items()):
             if agent >= len(q0):
                 raise ArgumentError(f"moved agent {agent}: expected one of 0 … {len(q0) - 1}")
-            q0[agent] = ensure_vector(f"agent {agent}", given, q0.shape[1])
+            q0[agent] = ensure_vector(f"agent {agent}", place, q0.shape[1])
             lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
         span, options = start.t_span, dict(start.options)
         if self.duration is not None:
@@ -113,9 +113,9 @@ def program(parts: Start) -> str:
     text = "\n".join(parts.lines)
     imports = ["from dataclasses import replace"] if "replace(" in text else []
     imports += ["import numpy as np"] if "np." in text else []
-    kept = f", tolerances={parts.tolerances_text}" if parts.tolerances_text else ""
+    tols = f", tolerances={parts.tolerances_text}" if parts.tolerances_text else ""
     run = ["run = saved"] if parts.recorded is not None else ["run = fl.simulate(law, q0, p0, t_span, **options)"]
-    checks = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{kept}))"] if parts.theorems else []
+    checks = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{tols}))"] if parts.theorems else []
     checks += ["print(*item.reported(run))"] if parts.source is not None else []
     head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
     return "\n".join([*head, text, *run, *checks]) + "\n"

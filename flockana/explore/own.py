@@ -52,17 +52,17 @@ def explore(
         from flockana.explore.server import Server, kept_token, serve
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install tornado") from error
-    given = chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
+    flock = chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
     ensure_seed(seed)
     ensure_flag("browser", browser)
     if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= _LAST_PORT:
         raise ArgumentError(f"port = {format_value(port)}: expected a whole number from 0 (any) to {_LAST_PORT}")
     folder = tempfile.TemporaryDirectory(prefix="flockana-")
-    first = {"kind": "scenario", "name": given}
-    if isinstance(given, str):
-        ensure_known("scenario", given, scenarios())
+    first = {"kind": "scenario", "name": flock}
+    if isinstance(flock, str):
+        ensure_known("scenario", flock, scenarios())
     else:
-        first = save_case(as_scenario(given, seed), folder.name)
+        first = save_case(as_scenario(flock, seed), folder.name)
 
     def opened(address: str) -> None:
         print(f"the flock is explored at {address}")  # noqa: T201  # a page without an address cannot be opened

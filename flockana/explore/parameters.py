@@ -66,16 +66,16 @@ def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
     >>> tree_of(Algorithm1(), {"gains.c1_alpha": 3, "alpha.d": 6})
     {'gains': {'c1_alpha': 3.0}, 'alpha': {'d': 6.0}}
     """
-    known = {number.path: number.value for number in numbers(law)} if changes else {}
+    values = {number.path: number.value for number in numbers(law)} if changes else {}
     tree: Tree = {}
-    for path, given in changes.items():
-        if path not in known:
-            raise UnknownNameError("parameter", path, known)
+    for path, value in changes.items():
+        if path not in values:
+            raise UnknownNameError("parameter", path, values)
         *branch, leaf = path.split(".")
         at = tree
         for name in branch:
             at = at.setdefault(name, {})
-        at[leaf] = _convert(path, known[path], given)
+        at[leaf] = _convert(path, values[path], value)
     return tree
 
 
@@ -122,5 +122,5 @@ def expression(name: str, item: Any, tree: Tree) -> str:
     if isinstance(item, tuple):
         parts = (expression(f"{name}[{k}]", each, tree.get(str(k), {})) for k, each in enumerate(item))
         return f"({', '.join(parts)},)"
-    given = (f"{key}={expression(f'{name}.{key}', getattr(item, key), each)}" for key, each in tree.items())
-    return f"replace({name}, {', '.join(given)})"
+    arguments = (f"{key}={expression(f'{name}.{key}', getattr(item, key), each)}" for key, each in tree.items())
+    return f"replace({name}, {', '.join(arguments)})"

@@ -79,9 +79,9 @@ class Server:
     def take(self) -> Process:
         """Return a process, ready if possible, and start another for the next page."""
         spare, self.spare = self.spare, None
-        taken = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
+        process = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
-        return taken
+        return process
 
     def prepare(self) -> None:
         """Start a process in reserve."""
@@ -103,8 +103,8 @@ class Server:
     def admits(self, handler: RequestHandler) -> bool:
         """Return whether a request has the token and addresses this machine by its own name."""
         host = handler.request.host.rpartition(":")[0]
-        given = handler.get_query_argument("token", "")
-        return host in (HOST, "localhost") and hmac.compare_digest(given.encode(), self.token.encode())
+        token = handler.get_query_argument("token", "")
+        return host in (HOST, "localhost") and hmac.compare_digest(token.encode(), self.token.encode())
 
 
 class _Guarded(RequestHandler):
@@ -161,19 +161,19 @@ class _Tab(_Guarded, WebSocketHandler):
     def _take(self) -> Process:
         if self.process is not None:
             self.process.end()
-        taken, self.analysing = self.server.take(), False
-        self.process, taken.deliver = taken, self.deliver
-        return taken
+        process, self.analysing = self.server.take(), False
+        self.process, process.deliver = process, self.deliver
+        return process
 
     def on_message(self, message: str | bytes) -> None:
         """Send a question to the process."""
         try:
-            asked = json.loads(message)
-            number, case = int(asked["number"]), self.server.admitted(asked["case"])
+            request = json.loads(message)
+            number, case = int(request["number"]), self.server.admitted(request["case"])
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             self._say({"number": -1, "kind": "error", "text": f"no question: {error}"})
             return
-        if asked.get("cancel"):
+        if request.get("cancel"):
             self._take()
             self._say({"number": number, "kind": "cancelled"})
             return
@@ -239,10 +239,10 @@ def kept_token() -> str:
         flags = os.O_CREAT | os.O_EXCL | os.O_WRONLY
         with suppress(FileExistsError), os.fdopen(os.open(path, flags, 0o600), "w") as new:
             new.write(secrets.token_urlsafe(32))
-        kept = path.read_text(encoding="ascii").strip()
+        token = path.read_text(encoding="ascii").strip()
     except (OSError, ValueError):
-        kept = ""
-    return kept if len(kept) >= _LENGTH else secrets.token_urlsafe(32)
+        token = ""
+    return token if len(token) >= _LENGTH else secrets.token_urlsafe(32)
 
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:

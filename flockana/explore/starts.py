@@ -130,16 +130,16 @@ def from_scenario(name: str, *, seed: int = 0) -> Start:
 def from_file(path: str) -> Start:
     """Return the case of a saved run (.nc), or a counterexample (.json)."""
     if Path(path).suffix == ".json":
-        found = Counterexample.load(path)
+        case = Counterexample.load(path)
         lines: tuple[str, ...] = (
             "from flockana.falsify.counterexample import Counterexample",
             f"found = Counterexample.load({str(path)!r})",
             "law, q0, p0 = found.law, found.q0.copy(), found.p0.copy()",
             "t_span, options = found.t_span, dict(found.options)",
         )
-        title = f"A counterexample to {found.theorem}, {found.claim}; from {found.scenario}"
-        start = (title, found.law, found.q0, found.p0, found.t_span, lines, found.options, (found.theorem,))
-        return Start(*start, found.tolerances, "found.tolerances")
+        title = f"A counterexample to {case.theorem}, {case.claim}; from {case.scenario}"
+        start = (title, case.law, case.q0, case.p0, case.t_span, lines, case.options, (case.theorem,))
+        return Start(*start, case.tolerances, "found.tolerances")
     run = Trajectory.load(path)
     fixed = run.stats.get("method") == "discrete"
     options = {key: run.stats[key] for key in _OPTIONS if not fixed and run.stats.get(key) is not None}

@@ -52,13 +52,13 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
         if len(samples) <= 2:  # until here the law was compiled, or loaded
             started, due = now, now + pause
             return
-        done, gone = sample.t - samples[1].t, now - started
-        whole = gone * span / done if done > 0.0 else float("inf")
-        if gone > limit or (gone > _TRIED and _FAR * limit < whole < float("inf")):
+        progress_made, seconds_gone = sample.t - samples[1].t, now - started
+        whole = seconds_gone * span / progress_made if progress_made > 0.0 else float("inf")
+        if seconds_gone > limit or (seconds_gone > _TRIED and _FAR * limit < whole < float("inf")):
             failure = TooLargeError(
                 f"this run takes about {whole / 60.0:.2g} minutes here ({len(parts.q0)} agents, {span:.4g} time units, "
-                f"{done:.3g} of them took {gone:.2g} s): expected at most {limit:g} s; shorten it, take fewer agents "
-                "or softer gains, or run the lines of Python below"
+                f"{progress_made:.3g} of them took {seconds_gone:.2g} s): expected at most {limit:g} s; "
+                "shorten it, take fewer agents or softer gains, or run the lines of Python below"
             )
             raise KeyboardInterrupt
         if now >= due:

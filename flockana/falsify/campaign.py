@@ -153,7 +153,7 @@ def falsify(
     case, best = begin if record.point is None else space.case(record.point), record.best
     name = best.claim or claim or ""
     margins, statuses = record.columns(name)
-    found = Falsification(
+    result = Falsification(
         theorem=item.id,
         claim=name,
         case=case,
@@ -168,7 +168,7 @@ def falsify(
         message=record.message,
         unmet=tuple(record.unmet or {}),
     )
-    return sealed(found)
+    return sealed(result)
 
 
 def _warn_of_unmet(what: str, unmet: Mapping[str, str], hopeless: bool) -> None:

@@ -160,11 +160,11 @@ class Counterexample(ShortRepr):
             law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
             state = ensure_state(data["q0"], data["p0"])
             start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
-            found = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
+            counterexample = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
             without_digest(data, keys=_KEYS)
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
-        return sealed(found)
+        return sealed(counterexample)
 
 
 def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> Verdict:

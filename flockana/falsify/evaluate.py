@@ -73,8 +73,8 @@ class Problem:
             return Evaluation(FAILED, message=run.message)
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
-        chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]
-        grades = {claim.name: self._grade(run, verdict, claim) for claim in chosen}
+        claims = [claim for claim in verdict.claims if self.claim in (None, claim.name)]
+        grades = {claim.name: self._grade(run, verdict, claim) for claim in claims}
         worst = min(grades, key=grades.__getitem__)
         return Evaluation(grades[worst], worst, verdict)
 

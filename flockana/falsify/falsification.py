@@ -84,8 +84,8 @@ class Falsification:
         return self.case.p0
 
     def _worst(self, name: str, none: Any) -> Any:
-        found = None if self.verdict is None else getattr(self.verdict.claim(self.claim), name)
-        return none if found is None else found
+        value = None if self.verdict is None else getattr(self.verdict.claim(self.claim), name)
+        return none if value is None else value
 
     @property
     def margin(self) -> float:
@@ -178,8 +178,8 @@ class Falsification:
         assert self.verdict is not None
         case, tolerances = self.case, self.verdict.tolerances
         start = case.law, case.q0, case.p0, case.t_span, case.options
-        found = Counterexample(self.theorem, self.claim, self.scenario, *start, tolerances, self.margin, self.error)
-        return sealed(found)
+        saved = Counterexample(self.theorem, self.claim, self.scenario, *start, tolerances, self.margin, self.error)
+        return sealed(saved)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON, for `replay`.

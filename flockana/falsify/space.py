@@ -50,8 +50,8 @@ class Space:
         """Point nearest to the scenario's own start, shape (D,)."""
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
-        own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
-        shares = [_share(value, *ends) for value, ends in zip(own, self.parameters.values(), strict=True)]
+        values = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
+        shares = [_share(value, *ends) for value, ends in zip(values, self.parameters.values(), strict=True)]
         return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
 
     def case(self, point: FloatArray) -> Scenario:
@@ -112,17 +112,17 @@ def search_space(
     >>> search_space(scenario("hexagon"), vary=["p"], parameters={"gains.c1_alpha": (1.0, 100.0)}).dimension
     15
     """
-    chosen = (vary,) if isinstance(vary, str) else tuple(vary) if isinstance(vary, Iterable) else (repr(vary),)
-    if not set(chosen) <= set(STATE) or len(set(chosen)) < len(chosen):
+    names = (vary,) if isinstance(vary, str) else tuple(vary) if isinstance(vary, Iterable) else (repr(vary),)
+    if not set(names) <= set(STATE) or len(set(names)) < len(names):
         raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
     if first_order(scenario.law) is not None:  # velocities are those of the places
-        chosen = tuple(name for name in chosen if name != "p")
+        names = tuple(name for name in names if name != "p")
     ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}
-    if not chosen and not ranges:
+    if not names and not ranges:
         raise ArgumentError("nothing is varied: expected vary=('q', 'p') or parameters={'gains.c1_alpha': (1, 50)}")
     box = {"q": _region(region, scenario.q0), "p": _speeds(speed, scenario.p0)}
-    low, high = (np.concatenate([np.empty(0), *(box[name][k].ravel() for name in chosen)]) for k in (0, 1))
-    return Space(scenario, chosen, low, high, ranges)
+    low, high = (np.concatenate([np.empty(0), *(box[name][k].ravel() for name in names)]) for k in (0, 1))
+    return Space(scenario, names, low, high, ranges)
 
 
 def _share(value: float, low: float, high: float) -> float:

@@ -149,13 +149,13 @@ class FormulaInteraction(PairInteraction):
         the force jumps from -143.4 to 0 at the range, s = 2.5
         """
         rest, zeros = self.resting_distance, self._parts.zeros
-        moved = () if rest in (None, self.d) else (f"two agents rest at s = {rest:.6g}, not at length = {self.d:g}",)
+        remark = () if rest in (None, self.d) else (f"two agents rest at s = {rest:.6g}, not at length = {self.d:g}",)
         signs = (
             f"the force changes sign again at s = {s:.6g}: beyond, agents {'attract' if up else 'repel'} each other"
             for s, up in zeros
             if (s, up) != (rest, True)
         )
-        return (*moved, *signs, *self._parts.ends)
+        return (*remark, *signs, *self._parts.ends)
 
     @property
     def resting_distance(self) -> float | None:
@@ -224,11 +224,11 @@ class FormulaInteraction(PairInteraction):
         ArgumentError
             If the formula has no such parameter.
         """
-        known = dict(self.parameters)
-        unknown = sorted({*parameters} - {*known})
+        names = dict(self.parameters)
+        unknown = sorted({*parameters} - {*names})
         if unknown:
-            raise ArgumentError(f"{unknown[0]!r} is no parameter of the formula: expected {', '.join(known) or 'none'}")
-        return replace(self, parameters=tuple((known | parameters).items()))
+            raise ArgumentError(f"{unknown[0]!r} is no parameter of the formula: expected {', '.join(names) or 'none'}")
+        return replace(self, parameters=tuple((names | parameters).items()))
 
     def in_units(self, length: float, time: float) -> FormulaInteraction:
         """Return the law in other units (`flockana.rescale`).

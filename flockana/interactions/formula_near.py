@@ -75,10 +75,10 @@ def _cancels(cut: PiecewiseFormula, piece: Any, end: float, scale: float) -> boo
         for share in (0.0, *(0.25**j for j in range(2, 60))):
             true = float(exact(max(end * share, end * _CLOSER)))
             try:
-                found = float(plain(end * share, *cut.numbers.values()))
+                limit = float(plain(end * share, *cut.numbers.values()))
             except (ZeroDivisionError, ValueError, OverflowError, TypeError):
                 return True
-            if not abs(found - true) <= _LOST * max(abs(true), size):
+            if not abs(limit - true) <= _LOST * max(abs(true), size):
                 return True
     return False
 
@@ -91,8 +91,8 @@ def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
     with mpmath.workdps(_SOLVED):
         nodes = [mpmath.mpf(x) for x in 0.5 * (1.0 + chebyshev.chebpts1(TERMS))]
         powers_of = mpmath.matrix([[x**k for k in range(TERMS)] for x in nodes])
-        found = mpmath.lu_solve(powers_of, mpmath.matrix([function(bound * x) for x in nodes]))
-        powers = np.array([float(x) for x in found])
+        coefficients = mpmath.lu_solve(powers_of, mpmath.matrix([function(bound * x) for x in nodes]))
+        powers = np.array([float(x) for x in coefficients])
     looks = np.linspace(0.0, 1.0, 23)[1:]
     exact = np.array([float(function(bound * x)) for x in looks])
     error = float(np.abs(np.polynomial.polynomial.polyval(looks, powers) - exact).max())

@@ -70,9 +70,9 @@ class FormulaParts:
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Return whether another formula's law is this one in other units, compared on a grid."""
         mine, theirs = self.looks * np.array([[force], [1.0]]), other.looks
-        least = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
+        threshold = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
         gap = np.abs(mine - theirs)
-        return bool(np.all((gap <= least + tolerance * np.abs(mine)) | (np.isnan(mine) & np.isnan(theirs))))
+        return bool(np.all((gap <= threshold + tolerance * np.abs(mine)) | (np.isnan(mine) & np.isnan(theirs))))
 
 
 @lru_cache(maxsize=_KEPT)
@@ -89,11 +89,11 @@ def formula_parts(
     eps = dict(parameters).get("eps", nan) if formula.distance == pf.Z else 0.0
     if formula.distance == pf.Z and not eps > 0.0:
         raise ArgumentError(f"parameters['eps'] = {eps:g}: expected a number > 0, the ε of the σ-norm")
-    own = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
-    numbers = {sp.Symbol(name, positive=True): value for name, value in own.items()}
+    lengths = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
+    numbers = {sp.Symbol(name, positive=True): value for name, value in lengths.items()}
     numbers |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
     numbers.setdefault(pf.EPS, eps)
-    cut = pf.PiecewiseFormula(formula, numbers, own["r_z"] if eps else r)
+    cut = pf.PiecewiseFormula(formula, numbers, lengths["r_z"] if eps else r)
     view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
@@ -251,8 +251,8 @@ def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
     """Return right ends of intervals on which a function is a polynomial up to rounding."""
-    found = values(0.5 * (left + right) + 0.5 * (right - left) * series_nodes())
-    refused, series = not np.isfinite(found).all(), np.abs(series_of(np.nan_to_num(found)))
+    samples = values(0.5 * (left + right) + 0.5 * (right - left) * series_nodes())
+    refused, series = not np.isfinite(samples).all(), np.abs(series_of(np.nan_to_num(samples)))
     tail = series[-2:].max() / max(series.max(), scale)
     if refused or (depth >= _HALVINGS and tail > _ROUGH):
         raise ArgumentError("the force cannot be integrated within the range: expected the potential, by its formula")
@@ -277,10 +277,10 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
     in_norm = cut.formula.distance == pf.Z
     head = _HEAD + near.coefficients.size
     pieces, first = cut.pieces, head + len(cut.marks) - 2
-    taken = Constants([pf.SQUARE, pf.Z, pf.ROOT], first)
+    shared = Constants([pf.SQUARE, pf.Z, pf.ROOT], first)
 
     def each(name: str) -> list[Any]:
-        return [taken.extract_constants(getattr(piece, name)) for piece in pieces]
+        return [shared.extract_constants(getattr(piece, name)) for piece in pieces]
 
     rows = [[each("weight"), each("adjacency")], [each("slope")], [each("adjacency_slope")]]
     if not forces:
@@ -291,9 +291,9 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
     marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
 
     def source_text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
-        used = {symbol for row in wanted for value in row for symbol in value.free_symbols}
-        names = (f"c{k}" for k in range(first, first + len(taken.values)))
-        constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in used)]
+        symbols = {symbol for row in wanted for value in row for symbol in value.free_symbols}
+        names = (f"c{k}" for k in range(first, first + len(shared.values)))
+        constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in symbols)]
         return function_text("NAME", arguments, [*before, *marks, *constants], wanted, after)
 
     weight, slope, energy = "v0", "v0", "v0"
@@ -315,7 +315,7 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
         source_text("s2, par", rows[2], "v0"),
         function_text("NAME", "s2, par", norm, [], "z, root") if in_norm else None,
     )
-    return texts, taken.values
+    return texts, shared.values
 
 
 def _horner(otherwise: str, order: int) -> str:

@@ -40,8 +40,8 @@ class Corner(NamedTuple):
 
     def __str__(self) -> str:
         what = f"the {self.part}" if self.kind == "jump" else f"the slope of the {self.part}"
-        known = self.below == self.below and self.above == self.above  # a law may tell where alone
-        sides = f", from {self.below:.6g} to {self.above:.6g}" if known else ""
+        is_known = self.below == self.below and self.above == self.above  # a law may tell where alone
+        sides = f", from {self.below:.6g} to {self.above:.6g}" if is_known else ""
         return f"{what} jumps at s = {self.distance:.6g}{sides}"
 
 
@@ -106,12 +106,12 @@ class DistanceFunction(ShortRepr, ABC):
     @property
     def facts(self) -> PairFacts:
         """Facts over all distances, by name: met for those in `proofs`, unmet for those in `faults`."""
-        known = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
-        known |= {name: Fact("met", text) for name, text in self.proofs.items()}
+        answers = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
+        answers |= {name: Fact("met", text) for name, text in self.proofs.items()}
         if self.faults:
-            known["smooth"] = Fact("unmet", "; ".join(self.faults))
+            answers["smooth"] = Fact("unmet", "; ".join(self.faults))
         unknown = (-inf, inf)
-        return PairFacts(known["smooth"], known["weight"], known["inside"], unknown, unknown, unknown)
+        return PairFacts(answers["smooth"], answers["weight"], answers["inside"], unknown, unknown, unknown)
 
     @property
     def seams(self) -> tuple[float, ...]:
@@ -226,8 +226,8 @@ class DistanceFunction(ShortRepr, ABC):
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
     """Return whether values on the two sides of a distance differ by more than rounding; unknown ones do not."""
-    least = max(_CHANGED * max(abs(below), abs(above)), _SMALL * np.abs(usual[np.isfinite(usual)]).max(initial=0.0))
-    return not abs(below - above) <= least and not (np.isnan(below) and np.isnan(above))
+    threshold = max(_CHANGED * max(abs(below), abs(above)), _SMALL * np.abs(usual[np.isfinite(usual)]).max(initial=0.0))
+    return not abs(below - above) <= threshold and not (np.isnan(below) and np.isnan(above))
 
 
 def shaped(values: FloatArray, s: Any) -> Any:
@@ -290,8 +290,8 @@ class Within(DistanceFunction):
 
     @property
     def feature(self) -> float | None:  # noqa: D102
-        known = self.function.feature
-        return None if known is None else min(known, self.range)
+        inner = self.function.feature
+        return None if inner is None else min(inner, self.range)
 
     def energy(self, s: Any) -> Any:  # noqa: D102
         return self.function.energy(np.minimum(s, self.range))

@@ -270,15 +270,15 @@ class PairInteraction(DistanceFunction):
         from scipy.sparse import csr_array
 
         n, m = q.shape
-        found = []
+        matrices = []
         for i, j in pair_blocks(q, self.range) if pairs is None else pairs:
             delta = q[j] - q[i]
             if not self.coincidence:
                 _ensure_apart(i, j, delta)
-            found.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
-        if not found:
+            matrices.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
+        if not matrices:
             return csr_array((n * m, n * m))
-        i, j, blocks = (np.concatenate(each) for each in zip(*found, strict=True))
+        i, j, blocks = (np.concatenate(each) for each in zip(*matrices, strict=True))
         return pair_matrix(i, j, blocks, n)
 
 
@@ -287,24 +287,24 @@ def pair_matrix(i: Any, j: Any, blocks: FloatArray, n: int) -> csr_array:
     from scipy.sparse import bsr_array
 
     m = blocks.shape[-1]
-    own = np.zeros((n, m, m))
+    own_blocks = np.zeros((n, m, m))
     for end in (i, j):
-        np.add.at(own, end, blocks)
-    met = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
-    rows, columns = np.concatenate([i, j, met]), np.concatenate([j, i, met])
+        np.add.at(own_blocks, end, blocks)
+    touched = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
+    rows, columns = np.concatenate([i, j, touched]), np.concatenate([j, i, touched])
     order = np.lexsort((columns, rows))
     starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
-    values = np.concatenate([-blocks, -blocks, own[met]])[order]
+    values = np.concatenate([-blocks, -blocks, own_blocks[touched]])[order]
     return bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
 
 
 def _ensure_apart(i: Any, j: Any, delta: FloatArray) -> None:
     """Raise where two agents coincide and their force has no limit, nor a derivative."""
-    met = np.flatnonzero(np.einsum("kc,kc->k", delta, delta) == 0.0)
-    if met.size:
+    coincident = np.flatnonzero(np.einsum("kc,kc->k", delta, delta) == 0.0)
+    if coincident.size:
         raise ArgumentError(
-            f"agents {i[met[0]]} and {j[met[0]]} are {np.linalg.norm(delta[met[0]]):g} apart: the pair law has no "
-            "derivative there; expected distinct positions"
+            f"agents {i[coincident[0]]} and {j[coincident[0]]} are {np.linalg.norm(delta[coincident[0]]):g} apart: "
+            "the pair law has no derivative there; expected distinct positions"
         )
 
 

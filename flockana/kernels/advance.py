@@ -29,11 +29,11 @@ def _record(y, f, order, frame, out):
     """Write positions, velocities and accelerations in the agents' own order; return the work."""
     n, m = order.size, frame.shape[1]
     for i in range(n):
-        own = np.int64(order[i])
+        agent = np.int64(order[i])
         for c in range(m):
-            out[0, own, c] = y[i * m + c] + frame[0, c]
-            out[1, own, c] = y[n * m + i * m + c] + frame[1, c]
-            out[2, own, c] = f[n * m + i * m + c]
+            out[0, agent, c] = y[i * m + c] + frame[0, c]
+            out[1, agent, c] = y[n * m + i * m + c] + frame[1, c]
+            out[2, agent, c] = f[n * m + i * m + c]
     return y[2 * n * m] if y.size > 2 * n * m else np.nan
 
 
@@ -69,18 +69,21 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
     """
     (pairs, near), (due, states, work) = lists, samples
     energetic, evaluations, redone, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
-    agents, made = system.order.size, np.int64(0)  # typed: of a literal, all that is called would be compiled once more
-    while made + 1 < block.t.size and stop < stops.size and evaluations * (agents + pairs.counts[COUNT]) < AT_ONCE:
-        now = march(block, made, h, (stops[stop], stops[-1]), system, method, room, pairs)
-        status, evaluations, at = now.status, evaluations + now.evaluations, block.t[made + 1]
+    agents, steps = (
+        system.order.size,
+        np.int64(0),
+    )  # typed: of a literal, all that is called would be compiled once more
+    while steps + 1 < block.t.size and stop < stops.size and evaluations * (agents + pairs.counts[COUNT]) < AT_ONCE:
+        now = march(block, steps, h, (stops[stop], stops[-1]), system, method, room, pairs)
+        status, evaluations, at = now.status, evaluations + now.evaluations, block.t[steps + 1]
         if status != RUNNING:
             h = h if status == UNLISTED else now.h
             break
         if energetic and judged.ledger[IN_VAIN] < PATIENCE:
-            for row in range(made, made + 2):
-                if row > made or np.isnan(block.energy[row]):
+            for row in range(steps, steps + 2):
+                if row > steps or np.isnan(block.energy[row]):
                     block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
-        shorter, singular = checked(block, made, judged, system.seen_from, pairs, near)
+        shorter, singular = checked(block, steps, judged, system.seen_from, pairs, near)
         if singular:
             h, status = now.h, SINGULAR
             break
@@ -90,21 +93,21 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
         before = sampled
         while sampled < due.size and due[sampled] < at:
             sampled += 1
-        known = sampled
-        while known < due.size and due[known] == at:
-            known += 1  # the step itself is the sample
-        if known > len(states):
-            h, status, sampled = now.h, FULL, (before if made else known)
+        is_known = sampled
+        while is_known < due.size and due[is_known] == at:
+            is_known += 1  # the step itself is the sample
+        if is_known > len(states):
+            h, status, sampled = now.h, FULL, (before if steps else is_known)
             break
-        work[sampled:known] = np.nan
+        work[sampled:is_known] = np.nan
         if sampled > before:
-            step, inside = step_of(block, made, room), due[before:sampled]
+            step, inside = step_of(block, steps, room), due[before:sampled]
             _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
             evaluations += len(method.rows) - method.stages - 1 + sampled - before
             if pairs.counts[COUNT] < 0:
                 h, status, sampled = now.h, UNLISTED, before
                 break
-        sampled = known
+        sampled = is_known
         stop += at == stops[stop]
-        h, made = now.later, made + 1
-    return made, status, h, evaluations, redone, sampled
+        h, steps = now.later, steps + 1
+    return steps, status, h, evaluations, redone, sampled

@@ -43,5 +43,5 @@ def as_tuple(count: int) -> Kernel:
     text = (
         f"from flockana.jit import register_jitable\n\n\n@register_jitable\ndef unpacked(par):\n    return ({values})\n"
     )
-    found: Kernel = made(text, "parameters").unpacked
-    return found
+    kernel: Kernel = made(text, "parameters").unpacked
+    return kernel

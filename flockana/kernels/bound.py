@@ -48,23 +48,23 @@ def bound(template: str, **bindings: Any) -> ModuleType:
 
 def made(text: str, name: str, **functions: Kernel) -> ModuleType:
     """Return a module with the given source text, in which the given functions are known by their names."""
-    named = {own: known for own, known in functions.items() if is_modules_own(known)}
-    sources = sorted({_source(known) for known in named.values()})
-    imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))
+    named = {mine: it for mine, it in functions.items() if is_modules_own(it)}
+    sources = sorted({_source(it) for it in named.values()})
+    imports = (f"from {it.__module__} import {it.__name__} as {mine}" for mine, it in sorted(named.items()))
     future = "from __future__ import annotations\n"
     text = "\n".join([future, *imports, "", text.replace(future, "")])
     parts = (text, *(sources_digest(file) for file in sources if file), _of_text(text))
     digest = sha256(["\n".join(parts)])[:16]
     whole = f"flockana_{name}_{digest}"
-    own = {key: known for key, known in functions.items() if key not in named}
+    mine = {key: it for key, it in functions.items() if key not in named}
     with _ONE:
-        if not own and whole in sys.modules:
+        if not mine and whole in sys.modules:
             return sys.modules[whole]
-        module = None if own else _from_file(text, whole, digest)
+        module = None if mine else _from_file(text, whole, digest)
         if module is None:
-            whole = f"{whole}_{next(_COUNT)}" if own else whole  # another closure of the same text is another module
+            whole = f"{whole}_{next(_COUNT)}" if mine else whole  # another closure of the same text is another module
             module = ModuleType(whole)
-            vars(module).update(own)
+            vars(module).update(mine)
             sys.modules[whole] = module
             exec(compile(text, f"<{whole}>", "exec"), vars(module))
         return module

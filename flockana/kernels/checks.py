@@ -94,9 +94,9 @@ def checked(block, k, judged, view, kept, near):
         work = block.y[k + 1, -1] - block.y[k, -1]
         share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)
     singular, share = share < 0.0, abs(share)
-    shorter, least = share * h, ROUNDINGS * spacing(max(abs(t), abs(at)))
+    shorter, shortest = share * h, ROUNDINGS * spacing(max(abs(t), abs(at)))
     if rules.fixed:  # down to what no shorter step ends before: half of one rounding may round up to the whole
-        shorter, least = max(shorter, h / GROWTH), 0.0
-    if share == 1.0 or shorter <= least or not t < t + shorter < at:
+        shorter, shortest = max(shorter, h / GROWTH), 0.0
+    if share == 1.0 or shorter <= shortest or not t < t + shorter < at:
         return 0.0, singular
     return shorter, False

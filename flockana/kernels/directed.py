@@ -39,7 +39,7 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
     (width, slow2) of `sight`.
     """
     (first, second), (c1, c2), (width, slow2) = pairs, gains, view
-    n, own = reach.size, par.copy()
+    n, own_par = reach.size, par.copy()
     sigma = np.empty(n)
     for i in range(n):
         sigma[i] = sigma_norm(reach[i] * reach[i], par[EPS])
@@ -47,12 +47,12 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
         for way in range(2):
             i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
             s2 = square_between(q, i, j)
-            seen = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
-            if seen == 0.0:
+            sight_weight = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
+            if sight_weight == 0.0:
                 continue
-            own[R_ALPHA] = sigma[i]
-            stress, adjacency = pair_alpha(s2, own)
-            pull, drag = c1 * stress * seen, c2 * adjacency * seen
+            own_par[R_ALPHA] = sigma[i]
+            stress, adjacency = pair_alpha(s2, own_par)
+            pull, drag = c1 * stress * sight_weight, c2 * adjacency * sight_weight
             for c in range(q.shape[1]):
                 u[i, c] += pull * (q[j, c] - q[i, c]) + drag * (p[j, c] - p[i, c])
 

@@ -195,16 +195,16 @@ def farthest_ways(ends, common):
     for i in range(n):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
-            gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
+            past, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
             bend0, bend1 = z * u0[i, c], z * u1[i, c]
-            _, w1, w2, w3, w4, w5 = polygon(0.0, gone, out, back, bend0, bend1)
+            _, w1, w2, w3, w4, w5 = polygon(0.0, past, out, back, bend0, bend1)
             d1 += (w1 - (mean[1, c] + slope[1, c] * along)) ** 2
             d2 += (w2 - (mean[2, c] + slope[2, c] * along)) ** 2
             d3 += (w3 - (mean[3, c] + slope[3, c] * along)) ** 2
             d4 += (w4 - (mean[4, c] + slope[4, c] * along)) ** 2
             d5 += (w5 - (mean[5, c] + slope[5, c] * along)) ** 2
-            off2 += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
-            off3 += (0.3 * gone - back - 0.5 * out + bend1) ** 2
+            off2 += (out + 0.5 * back + bend0 - 0.3 * past) ** 2
+            off3 += (0.3 * past - back - 0.5 * out + bend1) ** 2
         way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
     blur = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
     return np.sqrt(way2) + blur, blur
@@ -246,15 +246,15 @@ def share_of_listed(ends, common, between, around, first, second, share):
     """
     (h, q0, p0, u0, q1, p1, u1), radii, (mean, blur) = ends, around.radii, common
     room, low2, high2, count = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2, 0
-    m, outer, chosen = q0.shape[1], around.edges[1] + 2.0 * blur, np.empty(first.size + 1, np.uint32)
+    m, outer, picks = q0.shape[1], around.edges[1] + 2.0 * blur, np.empty(first.size + 1, np.uint32)
     for k in range(first.size):
         i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
         for c in range(m):
             s2 += (q0[j, c] - q0[i, c]) ** 2
-        chosen[count] = k
+        picks[count] = k
         count += (s2 >= low2) & (s2 < high2)
     for k in range(count):
-        i, j = np.uint64(first[chosen[k]]), np.uint64(second[chosen[k]])
+        i, j = np.uint64(first[picks[k]]), np.uint64(second[picks[k]])
         if not _stays_beyond(ends, i, j, outer):
             for a in range(2):
                 one, curve = i if a == 0 else j, room.points[a]

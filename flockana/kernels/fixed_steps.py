@@ -33,10 +33,10 @@ def _combine(y, h, weights, count, rates, out):
 
 @inlined
 def _finite(y):
-    known = True
+    is_known = True
     for i in range(y.size - 1):
-        known = known and np.isfinite(y[i])
-    return known
+        is_known = is_known and np.isfinite(y[i])
+    return is_known
 
 
 @kernel

@@ -30,8 +30,8 @@ def generated(text: str, name: str) -> Kernel:
     >>> generated("def NAME(x):\\n    return cosine(x)*x", "f")(0.0)
     0.0
     """
-    found: Kernel = getattr(made(_IMPORTS + text.replace("NAME", name) + "\n", name), name)
-    return found
+    kernel: Kernel = getattr(made(_IMPORTS + text.replace("NAME", name) + "\n", name), name)
+    return kernel
 
 
 @lru_cache(maxsize=_KEPT)

@@ -31,7 +31,7 @@ def _closed_up(q, width, most):
 
     Gaps are empty ones of a row of `most` bins, which are as fine as cells once the widest gaps are closed.
     """
-    x, full, gone = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
+    x, full, gap_before = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
     for k in range(q.shape[1]):
         wide = np.inf
         while wide > width:
@@ -42,11 +42,11 @@ def _closed_up(q, width, most):
             full[:] = False
             for i in range(len(x)):
                 full[_place(x[i, k], low, wide, most - 1.0)] = True
-            gone[0] = 0.0
+            gap_before[0] = 0.0
             for b in range(1, full.size):
-                gone[b] = gone[b - 1] + (0.0 if full[b] else wide)
+                gap_before[b] = gap_before[b - 1] + (0.0 if full[b] else wide)
             for i in range(len(x)):
-                x[i, k] -= gone[_place(x[i, k], low, wide, most - 1.0)]
+                x[i, k] -= gap_before[_place(x[i, k], low, wide, most - 1.0)]
     return x
 
 

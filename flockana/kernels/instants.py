@@ -15,21 +15,21 @@ def least_distances(q):
     Each agent keeps the least square to those after it, so that the inner loop is compiled to SIMD.
     """
     count, n, m = q.shape
-    distances, x, least = np.empty(count), np.zeros((3, n)), np.empty(n)
+    distances, x, nearest = np.empty(count), np.zeros((3, n)), np.empty(n)
     for k in range(count):
         for i in range(n):
             for c in range(m):
                 x[c, i] = q[k, i, c]
         for i in range(n):
-            least[i] = inf
+            nearest[i] = inf
         for i in range(1, n):
             x0, x1, x2 = x[0, i], x[1, i], x[2, i]
             for j in range(i):
                 s2 = (x[0, j] - x0) ** 2 + (x[1, j] - x1) ** 2 + (x[2, j] - x2) ** 2
-                least[j] = min(least[j], s2)
+                nearest[j] = min(nearest[j], s2)
         closest = inf
         for i in range(n):
-            closest = min(closest, least[i])
+            closest = min(closest, nearest[i])
         distances[k] = sqrt(closest)
     return distances
 
@@ -68,9 +68,9 @@ def greatest_distances(q):
         one, outermost = _farthest(x, centre)
         other, _ = _farthest(x, x[one])
         _, most = _farthest(x, x[other])
-        least = sqrt(most) * (1.0 - 1e-9) - sqrt(outermost)
+        lower_bound = sqrt(most) * (1.0 - 1e-9) - sqrt(outermost)
         for i in range(len(x)):
-            if sqrt(_square(x, i, centre)) >= least:
+            if sqrt(_square(x, i, centre)) >= lower_bound:
                 rim[count] = i
                 count += 1
         for a in range(count):

@@ -59,8 +59,8 @@ def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = Fals
     functions: dict[str, Kernel] = {}
     lines: dict[str, list[str]] = {_ACT: [], _ENERGY: []}
     for k, (act, energy) in enumerate(terms):
-        own = f"numbers[starts[{k}, 0] : starts[{k + 1}, 0]]"
-        both = f"{own}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
+        own_numbers = f"numbers[starts[{k}, 0] : starts[{k + 1}, 0]]"
+        both = f"{own_numbers}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
         functions |= {f"act_{k}": act, f"energy_{k}": energy}
         lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {both}, seen)")
         lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {both}, seen)")
@@ -89,8 +89,8 @@ def signatures() -> LawFunctions:
     numba = load_numba()
     float64, int64 = numba.float64, numba.int64
     matrix, vector, indices = float64[:, ::1], float64[::1], numba.uint32[::1]
-    seen = (
+    types = (
         matrix, vector, matrix, int64[:, ::1], indices, indices, int64, int64[::1], numba.uint64[::1],
         numba.uint64[:, ::1], matrix,
     )  # fmt: skip
-    return LawFunctions(float64(float64, matrix, matrix, matrix, *seen), float64(float64, matrix, matrix, *seen))
+    return LawFunctions(float64(float64, matrix, matrix, matrix, *types), float64(float64, matrix, matrix, *types))

@@ -82,11 +82,11 @@ def lift(
 
 def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
     """Return a function of ``(z, *parameters)`` that runs over a one-dimensional array z."""
-    found: list[Any] = []
+    row: list[Any] = []
 
     def over_array(z: Any, *parameters: Any) -> Any:
-        if not found:  # bound, and numba loaded, at the first call
-            found.append(bound(_ROOM + "over_array", function=function).over_array)
-        return found[0](z, tuple(thawed(each) if isinstance(each, np.ndarray) else float(each) for each in parameters))
+        if not row:  # bound, and numba loaded, at the first call
+            row.append(bound(_ROOM + "over_array", function=function).over_array)
+        return row[0](z, tuple(thawed(each) if isinstance(each, np.ndarray) else float(each) for each in parameters))
 
     return over_array

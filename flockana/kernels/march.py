@@ -98,5 +98,5 @@ def march(block, k, h, ends, system, method, room, pairs):
         h, rejected = later, True
     end = room.rates[method.rows[method.stages]]
     put(end, block.f[k + 1])
-    known = finite(step.reached) and finite(end)
-    return Marched(RUNNING if known else NOT_FINITE, step.h, later, tried)
+    is_known = finite(step.reached) and finite(end)
+    return Marched(RUNNING if is_known else NOT_FINITE, step.h, later, tried)

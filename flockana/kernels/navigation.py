@@ -34,7 +34,7 @@ def act(t, x, v, u, numbers, panels, listed):
         pull_to(u, x, v, target[0], target[1], c1[0], c2[0])
         return -c2[0] * squared_deviations(v)
     for i in range(n):
-        own = np.int64(listed.order[i]) if gains > 1 else 0
+        agent = np.int64(listed.order[i]) if gains > 1 else 0
         bend = 1.0
         if unit > 0.0:
             square = 0.0
@@ -42,9 +42,9 @@ def act(t, x, v, u, numbers, panels, listed):
                 square += (x[i, k] - target[0, k]) ** 2
             bend = sqrt(1.0 + square / (unit * unit))
         for k in range(m):
-            pull, slip = c1[own] * (x[i, k] - target[0, k]) / bend, v[i, k] - target[1, k]
-            u[i, k] -= pull + c2[own] * slip
-            power -= c2[own] * (v[i, k] + frame[1, k]) * slip + pull * target[2, k]
+            pull, slip = c1[agent] * (x[i, k] - target[0, k]) / bend, v[i, k] - target[1, k]
+            u[i, k] -= pull + c2[agent] * slip
+            power -= c2[agent] * (v[i, k] + frame[1, k]) * slip + pull * target[2, k]
     return power
 
 

@@ -138,13 +138,13 @@ def _visit(curve, edge, far, par, here, room):
     point_at(legs, s, rate[0, : here.size])
     speed = longest(rate)
     last = min(1.0, s + far / speed) if speed > 0.0 else 1.0
-    stop, least = s, np.inf
+    stop, nearest = s, np.inf
     for k in range(LOOKS):
         look = s + (last - s) * k / (LOOKS - 1)
         point_at(curve, look, here)
         away = _distance(here, par, room)
-        if away < least:
-            stop, least = look, away
+        if away < nearest:
+            stop, nearest = look, away
     return 1.0 if s + SLACK * (stop - s) >= 1.0 or stop <= s else stop
 
 
@@ -192,5 +192,5 @@ def act(t, x, v, u, numbers, panels, listed):
 @kernel
 def energy(t, x, v, numbers, panels, listed):
     """Return the energy c1 Σ ψ_β of the obstacle term."""
-    seen = x + listed.frame[0]
-    return numbers[C1] * potential(seen, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
+    place = x + listed.frame[0]
+    return numbers[C1] * potential(place, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])

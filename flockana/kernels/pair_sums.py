@@ -104,10 +104,10 @@ def _act_in_slab(own, s, x, v, u, numbers, listed, cuts, near, room):
 def act(t, x, v, u, numbers, panels, listed):
     """Add the forces of the listed pairs to u and return their power: even slabs at once, then odd ones."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
-    slabs, total, own = cuts.size - 1, 0.0, OWN[:0]
+    slabs, total, marker = cuts.size - 1, 0.0, OWN[:0]
     for parity in range(2):
         for half in prange((slabs + 1 - parity) // 2):
-            _act_in_slab(own, 2 * np.int64(half) + parity, x, v, u, numbers, (first, second), cuts, near, room)
+            _act_in_slab(marker, 2 * np.int64(half) + parity, x, v, u, numbers, (first, second), cuts, near, room)
     for s in range(slabs):
         total += room[3 * s, 0]
     return -numbers[1] * total
@@ -129,9 +129,9 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
 def energy(t, x, v, numbers, panels, listed):
     """Return c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
-    slabs, total, pairs, n, own = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
+    slabs, total, pairs, n, marker = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
     for s in prange(slabs):
-        _energy_in_slab(own, np.int64(s), x, numbers, panels, (first, second), cuts, near, room)
+        _energy_in_slab(marker, np.int64(s), x, numbers, panels, (first, second), cuts, near, room)
     for s in range(slabs):
         total, pairs = total + room[3 * s, 0], pairs + np.int64(room[3 * s, 1])
     beyond = n * (n - 1) // 2 - pairs
@@ -235,7 +235,7 @@ def _sweep_slab(own, low, high, start, rows, flock, r2, numbers, gains):
 def forces_in_slabs(q, p, r, numbers, c1, c2, u, room):
     """As `forces` for a large flock: even slabs at once, then odd ones."""
     order, start, rows = sort_into_grid(q, r)
-    x, v, forced, cuts, own, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
+    x, v, forced, cuts, marker, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
     slabs, r2 = cut_into_slabs(start, rows, cuts), max(r * r, 5e-324)
     totals = np.empty(slabs)
     for k in prange(order.size):
@@ -245,7 +245,7 @@ def forces_in_slabs(q, p, r, numbers, c1, c2, u, room):
         for half in prange((slabs + 1 - parity) // 2):
             s = 2 * np.int64(half) + parity
             low, high = cuts[s + 1], cuts[s + 2]
-            totals[s] = _sweep_slab(own, low, high, start, rows, (x, v, forced), r2, numbers, (c1, c2))
+            totals[s] = _sweep_slab(marker, low, high, start, rows, (x, v, forced), r2, numbers, (c1, c2))
     for k in prange(order.size):
         for c in range(M):
             u[order[k], c] += forced[k, c]

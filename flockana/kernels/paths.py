@@ -193,7 +193,7 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
     The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
     how far each agent gets from its first control point.
     """
-    lower, reached, where, a, b = stop, stop, -1.0, -1, -1
+    lower, best, where, a, b = stop, stop, -1.0, -1, -1
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for k in range(first.size):
         i, j = first[k], second[k]
@@ -206,10 +206,10 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
             lower = max(0.0, proven - slack)
             where, a, b = at, i, j
         if at >= 0.0:
-            reached = min(reached, value)
+            best = min(best, value)
         if lower == 0.0:
             break
-    return lower, reached, where, a, b
+    return lower, best, where, a, b
 
 
 @kernel
@@ -220,7 +220,7 @@ def closest_of_few(t, states, slack, stops, tols):
     """
     (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
     first, second = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
-    lower, reached, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
+    lower, best, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
     a, b = np.full(steps, -1), np.full(steps, -1)
     for k in range(steps):
         if stops[k] == 0.0:
@@ -233,9 +233,9 @@ def closest_of_few(t, states, slack, stops, tols):
                 first[count], second[count] = i, j
                 d0, d1, d2 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
                 count += d0 * d0 + d1 * d1 + d2 * d2 < limit
-        found = closest_pair(points, reach, allowance, first[:count], second[:count], stops[k], tols[k])
-        lower[k], reached[k], where[k], a[k], b[k] = found
-    return lower, reached, where, a, b
+        approach = closest_pair(points, reach, allowance, first[:count], second[:count], stops[k], tols[k])
+        lower[k], best[k], where[k], a[k], b[k] = approach
+    return lower, best, where, a, b
 
 
 @kernel

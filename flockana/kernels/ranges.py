@@ -46,22 +46,22 @@ def _halve(stack, top):
 @kernel
 def _slopes(c):
     """Return the least and largest difference of neighbouring coefficients: a tenth of the slope."""
-    least, most = np.inf, -np.inf
+    minimum, most = np.inf, -np.inf
     for k in range(10):
-        least, most = min(least, c[k + 1] - c[k]), max(most, c[k + 1] - c[k])
-    return least, most
+        minimum, most = min(minimum, c[k + 1] - c[k]), max(most, c[k + 1] - c[k])
+    return minimum, most
 
 
 @kernel
 def _follow(stack, widths, band, slope_band, was_out):
     """Return (was out of range, what is known of entries) along stack[0], known to `band` and `slope_band`."""
-    known = NEVER
+    side = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:
         c, width = stack[top], widths[top]
-        least, most = c.min(), c.max()
+        minimum, most = c.min(), c.max()
         slopes = _slopes(c)
-        if least > band:
+        if minimum > band:
             was_out, top = True, top - 1
         elif most < -band:
             if was_out:
@@ -74,14 +74,14 @@ def _follow(stack, widths, band, slope_band, was_out):
             top -= 1
         elif slopes[1] * 10.0 < -slope_band * width and (c[0] > band or was_out) and c[10] < -band:
             return True, ENTERS
-        elif width < 2.0**-_DEPTH or (least >= -band and most <= band):
+        elif width < 2.0**-_DEPTH or (minimum >= -band and most <= band):
             was_out = was_out or c[0] > band or c[10] > band
-            known, top = UNSURE, top - 1
+            side, top = UNSURE, top - 1
         else:
             _halve(stack, top)
             widths[top] = widths[top + 1] = 0.5 * width
             top += 1
-    return was_out, known
+    return was_out, side
 
 
 @kernel
@@ -110,13 +110,13 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
             off = allowance[i] + allowance[j] + rounding
             slack = off + place
             _squared(points, i, j, r, stack[0])
-            least = _ROUNDING * np.abs(stack[0]).max()
-            band = (4.0 * r + slack) * slack + least
-            slope_band = _WIGGLE * ((4.0 * r + slack) * off + least) + 4.0 * ((r + slack) * speed * h + way * place)
-            was_out[k], known = _follow(stack, widths, band, slope_band, was_out[k])
-            if known == ENTERS:
+            threshold = _ROUNDING * np.abs(stack[0]).max()
+            band = (4.0 * r + slack) * slack + threshold
+            slope_band = _WIGGLE * ((4.0 * r + slack) * off + threshold) + 4.0 * ((r + slack) * speed * h + way * place)
+            was_out[k], side = _follow(stack, widths, band, slope_band, was_out[k])
+            if side == ENTERS:
                 return i, j
-            if known == UNSURE:
+            if side == UNSURE:
                 unsure[k] = True
     return -1, -1
 

@@ -169,7 +169,7 @@ def _allowed(k, size, floor):
 @inlined
 def error_of(step, method):
     """Return the estimated error of a step over what is allowed, as scipy's solvers weigh it."""
-    h, y, reached, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
+    h, y, stop, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
         weights, square, other = method.estimates[estimate], 0.0, square
         for begin in range(0, y.size, STRIP):
@@ -182,7 +182,7 @@ def error_of(step, method):
                     for k in range(end - begin):
                         strip[k] += weight * rate[k]
             for k in range(begin, end):
-                scale = _allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(reached[k])) * method.rtol
+                scale = _allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(stop[k])) * method.rtol
                 square += (strip[k - begin] / scale) ** 2
     if len(method.estimates) == 1:
         return h * sqrt(square / y.size)

@@ -27,14 +27,14 @@ _BLOCK = 2**16  # pairs looked at together where a list of all would not fit int
 @inlined
 def _at_rest(t, h, points, view):
     """Return the same paths in the frame in which the obstacles are at rest."""
-    seen, m = points.copy(), view[1].size
+    places, m = points.copy(), view[1].size
     frame = np.empty((2, m))
     for k in range(6):
         frame_at(t + 0.2 * k * h, view, frame)
         for i in range(len(points)):
             for c in range(m):
-                seen[i, k, c] += frame[0, c]
-    return seen
+                places[i, k, c] += frame[0, c]
+    return places
 
 
 @inlined
@@ -78,8 +78,8 @@ def share_of_step(t, ends, around, view, kept, near):
     share = 1.0
     if BODIES:
         points, _, allowance = bernstein(*ends)
-        seen = _at_rest(t, ends.h, points, view)
-        share = around.guard(seen, allowance, around.numbers, around.starts, around.shell[0], around.shell[1], share)
+        places = _at_rest(t, ends.h, points, view)
+        share = around.guard(places, allowance, around.numbers, around.starts, around.shell[0], around.shell[1], share)
     if PAIRS and len(ends.q0) > 1:
         common = common_way(ends)
         ways = farthest_ways(ends, common)
@@ -90,14 +90,14 @@ def share_of_step(t, ends, around, view, kept, near):
                 return POLE
             if not around.radii.size:
                 return share
-        held = kept
+        rows_kept = kept
         if not covers(kept, ends.q0, between[1]):
             if not covers(near, ends.q0, between[1]):
                 around.listed(ends.q0, (1.0 + SKIN) * between[1], near)
-            held = near
-        count = held.counts[COUNT]
+            rows_kept = near
+        count = rows_kept.counts[COUNT]
         if count >= 0:
-            first, second = held.first[:count], held.second[:count]
+            first, second = rows_kept.first[:count], rows_kept.second[:count]
             share = _share_of(ends, (common, ways, between), around, first, second, share)
         elif count < CROWDED:
             share = NO_ROOM

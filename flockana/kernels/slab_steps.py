@@ -23,11 +23,11 @@ def ways_between(q, reference, along, low, high):
     for part in prange(_PARTS):
         begin, end = np.int64(part) * n // _PARTS, (np.int64(part) + 1) * n // _PARTS
         for c in range(m):
-            least = most = q[0, c] - along[c] * reference[0, c]
+            lowest = most = q[0, c] - along[c] * reference[0, c]
             for i in range(begin, end):
                 way = q[i, c] - along[c] * reference[i, c]
-                least, most = way if way < least else least, way if way > most else most
-            low[part, c], high[part, c] = least, most
+                lowest, most = way if way < lowest else lowest, way if way > most else most
+            low[part, c], high[part, c] = lowest, most
 
 
 parallel_combine_strips, parallel_ways_between = parallel(combine_strips), parallel(ways_between)
@@ -45,16 +45,16 @@ def covered_by_threads(pairs, q, within):
     reference, m = pairs.places, q.shape[1]
     along, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
     for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
-        square, least = 0.0, np.inf
+        square, lowest = 0.0, np.inf
         for c in range(m):
             along[c] = slope_along(reference, q, c, 1.0) if stretched else 1.0
-            least = min(least, along[c])
+            lowest = min(lowest, along[c])
         parallel_ways_between(q, reference, along, low, high)
         for c in range(m):
             first, last = low[0, c], high[0, c]
             for part in range(1, _PARTS):
                 first, last = min(first, low[part, c]), max(last, high[part, c])
             square += (last - first) ** 2
-        if np.sqrt(square) <= least * pairs.reach[0] - within:
+        if np.sqrt(square) <= lowest * pairs.reach[0] - within:
             return True
     return False

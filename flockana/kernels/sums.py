@@ -19,10 +19,10 @@ def square_between(q, i, j):
 @kernel
 def finite(x):
     """Return whether all numbers of an array are finite."""
-    known = True
+    is_known = True
     for k in range(x.size):
-        known &= np.isfinite(x[k])
-    return known
+        is_known &= np.isfinite(x[k])
+    return is_known
 
 
 @kernel

@@ -42,11 +42,11 @@ def integral_panels(
     at_left, at_right = integrals[:, ::2].sum(axis=1) - integrals[:, 1::2].sum(axis=1), integrals.sum(axis=1)
     first, last = int(np.searchsorted(edges, anchor)), edges.size - 1
     for rows, start, end in ((range(first - 1, -1, -1), at_right, at_left), (range(first, last), at_left, at_right)):
-        reached = value
+        total = value
         for k in rows:
-            rise = reached - start[k]
+            rise = total - start[k]
             integrals[k, 0] += rise
-            reached = end[k] + rise
+            total = end[k] + rise
     return np.hstack([edges[:-1, None], edges[1:, None], _times(integrals, _powers())])
 
 

@@ -103,7 +103,7 @@ def covers(pairs, q, within):
     """
     reference, m = pairs.places, q.shape[1]
     for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
-        square, least = 0.0, np.inf
+        square, nearest = 0.0, np.inf
         for c in range(0, m, 2):  # two coordinates at once: they lie side by side
             d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
             if stretched:
@@ -115,8 +115,8 @@ def covers(pairs, q, within):
                 low_c, high_c = way_c if way_c < low_c else low_c, way_c if way_c > high_c else high_c
                 low_d, high_d = way_d if way_d < low_d else low_d, way_d if way_d > high_d else high_d
             square += (high_c - low_c) ** 2 + ((high_d - low_d) ** 2 if d > c else 0.0)
-            least = min(least, min(along_c, along_d))
-        if np.sqrt(square) <= least * pairs.reach[0] - within:
+            nearest = min(nearest, min(along_c, along_d))
+        if np.sqrt(square) <= nearest * pairs.reach[0] - within:
             return True
     return False
 
@@ -147,7 +147,7 @@ def no_pairs(n: int, m: int) -> Pairs:
 
 def with_room(pairs: Pairs) -> Pairs | None:
     """Return an empty list with the room that the last one lacked, or twice as much; None if it lacked none."""
-    if (needed := -int(pairs.counts[COUNT])) <= -CROWDED:
+    if (lacking := -int(pairs.counts[COUNT])) <= -CROWDED:
         return None
-    room = max(needed, 2 * pairs.first.size)
+    room = max(lacking, 2 * pairs.first.size)
     return pairs._replace(first=np.empty(room, np.uint32), second=np.empty(room, np.uint32))

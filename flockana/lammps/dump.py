@@ -81,12 +81,12 @@ def read_lammps(
     t, q, p = start + dump["t"], dump["q"], dump["p"]
     law.check_agents(q.shape[1])
     flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
-    own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
-    u, extra = own, dict[str, FloatArray]()
+    own_forces, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
+    u, extra = own_forces, dict[str, FloatArray]()
     if "u" in dump:
         u = dump["u"]
-        largest = float(np.abs(own).max())
-        extra["force_residual"] = np.abs(u - own).max(axis=(1, 2)) / (largest if largest > 0.0 else 1.0)
+        largest = float(np.abs(own_forces).max())
+        extra["force_residual"] = np.abs(u - own_forces).max(axis=(1, 2)) / (largest if largest > 0.0 else 1.0)
     if np.isfinite(rates).all():
         work = CubicSpline(t, rates).antiderivative() if len(t) > 1 else np.zeros_like  # ∫ from the first sample
         extra["work"] = work(t) - work(t[0])

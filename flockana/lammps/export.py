@@ -195,14 +195,14 @@ def _ensure_own(paths: Iterable[Path]) -> None:
             continue
         try:
             with ensure_target(path, remedy="choose another folder").open("rb") as file:
-                own = _FIRST_LINE.fullmatch(file.readline(_LONGEST_LINE))
+                match = _FIRST_LINE.fullmatch(file.readline(_LONGEST_LINE))
         except FileNotFoundError:  # a link to nowhere
-            own = None
+            match = None
         except FileError:
             raise
         except OSError as error:
             raise FileError(f"cannot read {path}: {error.strerror or error}; choose another folder") from error
-        if own is None:
+        if match is None:
             raise FileError(
                 f"{path} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; "
                 "choose another folder, or move it away"

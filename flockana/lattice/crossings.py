@@ -217,8 +217,8 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     if len(touching):
         return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
     near, (within,), unit = scaled_near_one(q, reach)
-    x, found = _padded(near), None
+    x, best = _padded(near), None
     for a, b in _close_links(x, links, within):
         within, k = nearest_links(x, thawed(links), a, b, q.shape[1] < 3, within)
-        found = found if k < 0 else (int(a[k]), int(b[k]))
-    return Separation(within * unit, found)
+        best = best if k < 0 else (int(a[k]), int(b[k]))
+    return Separation(within * unit, best)

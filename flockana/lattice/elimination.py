@@ -82,9 +82,9 @@ class Elimination:
         columns, values, rows = columns[later], values[later], rows[later]
         touched = np.concatenate([columns[columns >= end], *(at[at >= end] for at, _ in below)])
         boundary = np.unique(touched).astype(np.int64)
-        own, size = end - start, end - start + boundary.size
-        self._place[start:end] = np.arange(own)
-        self._place[boundary] = np.arange(own, size)
+        own_size, size = end - start, end - start + boundary.size
+        self._place[start:end] = np.arange(own_size)
+        self._place[boundary] = np.arange(own_size, size)
         front = np.zeros((size, size))
         front[rows, self._place[columns]] = values
         for at, rest in below:
@@ -94,9 +94,9 @@ class Elimination:
         if self._least is None and largest > _GROWN * self._largest:
             growth = largest / self._largest
             raise SolverError(f"elimination grew entries {growth:.3g} times: the signs of its pivots cannot be trusted")
-        t, signs = self._pivots(front[:own, :own], largest)
-        x = t @ front[:own, own:]
-        left = front[own:, own:] - x.T @ (x if signs is None else signs[:, None] * x)
+        t, signs = self._pivots(front[:own_size, :own_size], largest)
+        x = t @ front[:own_size, own_size:]
+        left = front[own_size:, own_size:] - x.T @ (x if signs is None else signs[:, None] * x)
         return _Front(slice(start, end), boundary, t, x, signs), left
 
     def _pivots(self, block: FloatArray, largest: float) -> tuple[FloatArray, FloatArray | None]:

@@ -115,12 +115,14 @@ class Composition(GainedLaw):
     @property
     def scales(self) -> Scales | None:  # type: ignore[override]
         """Length and time scales of the pair law or consensus net; the time of drag or thrust if no gain gives one."""
-        known = self.alpha or self.net
-        if known is None or isinstance(known, Weight):
+        law = self.alpha or self.net
+        if law is None or isinstance(law, Weight):
             return None
-        own = alpha_scales(known, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull))
-        used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
-        return Scales(own.length, 1.0 / abs(self.thrust)) if not used and self.thrust else own
+        lengths = alpha_scales(
+            law, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull)
+        )
+        is_used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
+        return Scales(lengths.length, 1.0 / abs(self.thrust)) if not is_used and self.thrust else lengths
 
     @property
     def _pull(self) -> tuple[Any, Any]:
@@ -154,8 +156,8 @@ class Composition(GainedLaw):
         if self.alpha is not None:
             terms.append(PairTerm(self.alpha, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))
         if net is not None:
-            own = AlignmentTerm(net, gains.c2_alpha) if isinstance(net, Weight) else Consensus(net, gains.c2_alpha)
-            terms.append(own)
+            term = AlignmentTerm(net, gains.c2_alpha) if isinstance(net, Weight) else Consensus(net, gains.c2_alpha)
+            terms.append(term)
         if self.obstacle_field is not None:
             terms.append(ObstacleTerm(self.obstacle_field, gains.c1_beta, gains.c2_beta))
         if pull is not None:
@@ -275,7 +277,7 @@ def compose(
     _ensure_parts("obstacles", obstacles or None, repulsion=repulsion, braking=braking, beta=beta)
     if consensus is not None and pair is None and net is None:
         raise ArgumentError(f"consensus = {consensus!r} without a net: give net=AlphaInteraction(...), or a pair")
-    given = {
+    parts = {
         "c1_alpha": (pair, gradient),
         "c2_alpha": (net if pair is None else pair, consensus if consensus is not None else 0.0),
         "c1_beta": (obstacles or None, repulsion),
@@ -283,18 +285,20 @@ def compose(
         "c1_gamma": (navigation, pull),
         "c2_gamma": (navigation, match),
     }
-    own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
+    powers = {
+        name: _of_informed(gain, name, informed, agents) for name, (part, gain) in parts.items() if part is not None
+    }
     unit = _bounding_length(bounded, pair)
     thrust, brake = _along(drag, speed)
     plain = net is None and pair is not None and not (feedforward or thrust or brake)
     if plain and navigation is None and not obstacles:
-        return Algorithm1(pair, Gains(**own))  # type: ignore[arg-type]  # validated there
+        return Algorithm1(pair, Gains(**powers))  # type: ignore[arg-type]  # validated there
     if plain and navigation is not None and not obstacles and unit is None:
-        return Algorithm2(pair, Gains(**own), navigation)  # type: ignore[arg-type]
+        return Algorithm2(pair, Gains(**powers), navigation)  # type: ignore[arg-type]
     beta = BetaInteraction() if beta is None else beta
     if plain and navigation is not None and pair is not None and unit == pair.bend_length:
-        return Algorithm3(pair, Gains(**own), navigation, beta, obstacles)
-    gains = Gains(**(dict.fromkeys(given, 0.0) | own))
+        return Algorithm3(pair, Gains(**powers), navigation, beta, obstacles)
+    gains = Gains(**(dict.fromkeys(parts, 0.0) | powers))
     rest = {"feedforward": feedforward, "obstacles": obstacles, "beta": beta, "thrust": thrust, "brake": brake}
     return Composition(pair, gains, net=net, target=navigation, unit=unit, **rest)  # type: ignore[arg-type]
 
@@ -314,9 +318,9 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
     if agents is None:
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
     n = checks.ensure_count("agents", agents)
-    known = {checks.ensure_index("informed has", i, n) for i in informed}
+    members = {checks.ensure_index("informed has", i, n) for i in informed}
     common = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
-    return tuple(common if i in known else 0.0 for i in range(n))
+    return tuple(common if i in members else 0.0 for i in range(n))
 
 
 def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:

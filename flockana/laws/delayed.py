@@ -63,10 +63,10 @@ class Delayed(Wrapper):
     def __post_init__(self) -> None:
         super().__post_init__()
         ensure_choice("late", self.late, LATE)
-        wanted = "a number >= 0, or one for each pair, (n, n)"
-        lag = ensure_numbers("delay", self.delay, wanted)
+        expectation = "a number >= 0, or one for each pair, (n, n)"
+        lag = ensure_numbers("delay", self.delay, expectation)
         if lag.ndim not in (0, 2) or not lag.size or not (np.isfinite(lag) & (lag >= 0.0)).all():
-            raise ArgumentError(f"delay = {format_value(self.delay)}: expected {wanted}")
+            raise ArgumentError(f"delay = {format_value(self.delay)}: expected {expectation}")
         if lag.ndim == 2 and self.late != "neighbours":
             raise ArgumentError('delay is one for each pair: expected late="neighbours"')
         if self.late == "pairs" or (self.late != "all" and first_order(self.law) is not None):
@@ -78,10 +78,10 @@ class Delayed(Wrapper):
     def _check_history(self) -> None:
         """Raise unless the history is valid and covers the delay; store it as tuples."""
         t = ensure_series("history_t", self.history_t)
-        wanted = f"finite positions ({len(t)}, n, m), one row for each time"
-        q = ensure_numbers("history_q", self.history_q, wanted)
+        expectation = f"finite positions ({len(t)}, n, m), one row for each time"
+        q = ensure_numbers("history_q", self.history_q, expectation)
         if q.ndim != 3 or len(q) != len(t) or not np.isfinite(q).all():
-            raise ArgumentError(f"history_q has shape {q.shape}: expected {wanted}")
+            raise ArgumentError(f"history_q has shape {q.shape}: expected {expectation}")
         if not (np.diff(t) > 0.0).all() or t[-1] >= 0.0:
             raise ArgumentError(f"history_t = {format_value(self.history_t)}: expected rising times below 0, the start")
         object.__setattr__(self, "history_t", tuple(t.tolist()))
@@ -141,6 +141,6 @@ class Delayed(Wrapper):
         else:
             times = np.unique(self.delay)
             states = [step.past(view.t - float(lag)) if lag else (view.q, view.p) for lag in times]
-            which, own = np.searchsorted(times, self.delay), np.arange(len(view.q))
-            heard = tuple(np.stack(parts)[which, own] for parts in zip(*states, strict=True))
+            which, own_delay = np.searchsorted(times, self.delay), np.arange(len(view.q))
+            heard = tuple(np.stack(parts)[which, own_delay] for parts in zip(*states, strict=True))
         return input_of(self.law, step, view._replace(heard=heard, both=self.late == "pairs"))

@@ -140,7 +140,7 @@ class DirectedNet(WrappingLaw):
         gains = self.law.gains.c1_alpha, self.law.gains.c2_alpha
         if not isinstance(self.ranges, tuple):
             return (LawFunction("the pair law", self._with_range(self.ranges), *gains),)
-        agents = {r: tuple(i for i, own in enumerate(self.ranges) if own == r) for r in sorted({*self.ranges})}
+        agents = {r: tuple(i for i, r_i in enumerate(self.ranges) if r_i == r) for r in sorted({*self.ranges})}
         return tuple(
             LawFunction("the pair law", self._with_range(r), *gains, listeners=who) for r, who in agents.items()
         )
@@ -201,8 +201,8 @@ class DirectedNet(WrappingLaw):
         i, j, delta, slip, s2 = i[near], j[near], delta[near], slip[near], s2[near]
         stress, weight, slope, fade = np.zeros((4, i.size))
         for r in np.unique(reach[i]):
-            own = reach[i] == r
-            stress[own], weight[own], slope[own], fade[own] = Reaching(self.alpha, float(r)).inner(s2[own])
+            mask = reach[i] == r
+            stress[mask], weight[mask], slope[mask], fade[mask] = Reaching(self.alpha, float(r)).inner(s2[mask])
         sight, by_delta, by_own = self._sight_slopes(delta, p[i], s2)
         force = term.stiffness * stress[:, None] * delta + term.damping * weight[:, None] * slip
         bend = 2.0 * (term.stiffness * slope[:, None] * delta + term.damping * fade[:, None] * slip)
@@ -250,7 +250,7 @@ class DirectedNet(WrappingLaw):
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         def one_way() -> FloatArray:
             edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
-            return np.array([len({*seen} - {(i, j) for j, i in seen}) / max(1, len(seen)) for seen in edges])
+            return np.array([len({*pairs} - {(i, j) for j, i in pairs}) / max(1, len(pairs)) for pairs in edges])
 
         def energy() -> FloatArray:
             return np.array([self.law.hamiltonian(float(time), *state) for time, *state in zip(t, q, p, strict=True)])

@@ -51,8 +51,8 @@ class DiscreteLaw(LawOfMotion):
     @property
     def continuous(self) -> Law | None:
         """Continuous law that the map steps, its parameter `law`; None if it steps none."""
-        own = vars(self).get("law")
-        return own if isinstance(own, Law) else None
+        inner = vars(self).get("law")
+        return inner if isinstance(inner, Law) else None
 
     def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
         """Return the derivative of the next headings by the headings, shape (n, n); None unless headings are mapped.

@@ -87,9 +87,9 @@ class Disturbed(Wrapper):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name, least in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
+        for name, length in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
             if not callable(getattr(self, name)) or name != "force":
-                object.__setattr__(self, name, _pushes(name, getattr(self, name), least))
+                object.__setattr__(self, name, _pushes(name, getattr(self, name), length))
         if (self.times is None) != (self.table is None) or len(self.times or ()) != len(self.table or ()):
             raise ArgumentError(
                 f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected the same"
@@ -107,8 +107,8 @@ class Disturbed(Wrapper):
     def _pushed(self) -> Iterator[tuple[str, Any]]:
         """Yield the name and value of each push at time 0, of shape (m,) or (n, m)."""
         first = None if self.table is None else self.table[0]
-        given = {"force": self._called(0.0), "swing": self.swing, "table": first}
-        yield from ((name, push) for name, push in given.items() if push is not None)
+        arguments = {"force": self._called(0.0), "swing": self.swing, "table": first}
+        yield from ((name, push) for name, push in arguments.items() if push is not None)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         super().check_dimension(m)
@@ -132,8 +132,8 @@ class Disturbed(Wrapper):
         """
         if not callable(self.force):
             return Disturbed(**scaled_fields(self, length, time))
-        own, rest = self._called, replace(self, force=None)
-        return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(own(t / time)))
+        called, rest = self._called, replace(self, force=None)
+        return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(called(t / time)))
 
     def _called(self, t: float) -> Any:
         """Return the constant force, or that of a function at a time; None without a force."""

@@ -81,8 +81,8 @@ class _Turns:
 
     @property
     def scales(self) -> Scales | None:
-        own: Scales | None = self.laws[0].scales
-        return own
+        scales_of_first: Scales | None = self.laws[0].scales
+        return scales_of_first
 
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:

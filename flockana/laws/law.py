@@ -86,8 +86,8 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
             if name == "pair":
                 return _pair_among(vars(self).values())
             if name in _LACKING:
-                own = vars(self).get("law")  # that it wraps or steps
-                return getattr(own, name) if isinstance(own, Law) else _LACKING[name]
+                inner = vars(self).get("law")  # that it wraps or steps
+                return getattr(inner, name) if isinstance(inner, Law) else _LACKING[name]
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
 
     @property
@@ -131,8 +131,8 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
             says = wraps or overrides_consistently(type(part), "functions", ("act",))
             yield part if says else Unknown(type(part).__name__)
         ours = type(self).__module__.startswith("flockana.")
-        told = ours if wraps else bool(parts) and overrides_consistently(type(self), "terms", ("flow", "step"))
-        if not told:
+        is_told = ours if wraps else bool(parts) and overrides_consistently(type(self), "terms", ("flow", "step"))
+        if not is_told:
             yield Unknown(type(self).__name__)
 
     def corners_at(self, q: Any, tolerance: float = 1e-9) -> tuple[PairCorner, ...]:
@@ -300,14 +300,14 @@ class Law(LawOfMotion):
 
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return `flow`; raise unless it is an array of real numbers in the flock's shape and a real number."""
-        given: Any = self.flow(t, q, p)
+        flow: Any = self.flow(t, q, p)
         name, at = type(self).__name__, f"at t = {t:g}"
-        if not isinstance(given, tuple) or len(given) != 2:
-            raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (u, dH/dt)")
-        ensure_returned_array(f"{name} gives u", given[0], q.shape, at)
-        if np.ndim(given[1]) != 0 or np.asarray(given[1]).dtype.kind not in "fiu":
-            raise ArgumentError(f"{name} gives dH/dt = {format_value(given[1])} {at}: expected a real number, or NaN")
-        return given
+        if not isinstance(flow, tuple) or len(flow) != 2:
+            raise ArgumentError(f"{name} gives {format_value(flow)} {at}: expected (u, dH/dt)")
+        ensure_returned_array(f"{name} gives u", flow[0], q.shape, at)
+        if np.ndim(flow[1]) != 0 or np.asarray(flow[1]).dtype.kind not in "fiu":
+            raise ArgumentError(f"{name} gives dH/dt = {format_value(flow[1])} {at}: expected a real number, or NaN")
+        return flow
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Control input u(t, q, p).
@@ -360,11 +360,11 @@ class Law(LawOfMotion):
         """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; by differences unless overridden."""
         from scipy.sparse import csr_array
 
-        own = self.scales
-        length = own.length if own else float(np.abs(q - q[0]).max()) or 1.0
+        scales = self.scales
+        length = scales.length if scales else float(np.abs(q - q[0]).max()) or 1.0
         by_position = differences(lambda x: self.flow(t, x, p)[0], q, length)
         pace = float(np.sqrt(np.abs(by_position.matrix).max(initial=0.0))) or float(np.abs(p).max()) / length or 1.0
-        by_velocity = differences(lambda v: self.flow(t, q, v)[0], p, own.speed if own else length * pace)
+        by_velocity = differences(lambda v: self.flow(t, q, v)[0], p, scales.speed if scales else length * pace)
         spread = max(by_position.spread, by_velocity.spread)
         if spread > _SMOOTH:
             raise ArgumentError(

@@ -33,7 +33,7 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
 
 def assembled(parts: Any) -> Any:
     """Return the sum of sparse matrices and of diagonal blocks of single agents."""
-    matrices, blocks = ([x for x in parts if isinstance(x, np.ndarray) == own] for own in (False, True))
+    matrices, blocks = ([x for x in parts if isinstance(x, np.ndarray) == is_dense] for is_dense in (False, True))
     if blocks:
         matrices.append(block_diagonal(sum(blocks[1:], blocks[0])))
     return sum(matrices[1:], matrices[0]).tocsr()

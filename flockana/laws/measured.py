@@ -55,10 +55,12 @@ class Measured(Wrapper):
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         share = step.interval**-0.5
-        seen = (view.q, view.p) if self.of == "all" else (view.heard or (view.q[None], view.p[None]))
+        state = (view.q, view.p) if self.of == "all" else (view.heard or (view.q[None], view.p[None]))
         size = view.q.shape if self.of == "all" else (len(view.q), *view.q.shape)
         noisy = []
-        for value, intensity, channel in zip(seen, (self.position, self.velocity), (_POSITION, _VELOCITY), strict=True):
+        for value, intensity, channel in zip(
+            state, (self.position, self.velocity), (_POSITION, _VELOCITY), strict=True
+        ):
             noise = share * intensity * step.normal(self.seed, channel, size) if intensity else 0.0
             noisy.append(value + noise)
         if self.of == "all":

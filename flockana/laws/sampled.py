@@ -53,10 +53,10 @@ class Sampled(Wrapper):
         normalise(self, ensure_positive, "period")
         if self.offsets is None:
             return
-        wanted = f"one for each agent, 0 <= offset < {self.period:g}"
-        offsets = ensure_numbers("offsets", self.offsets, wanted)
+        expectation = f"one for each agent, 0 <= offset < {self.period:g}"
+        offsets = ensure_numbers("offsets", self.offsets, expectation)
         if offsets.ndim != 1 or not offsets.size or not ((offsets >= 0.0) & (offsets < self.period)).all():
-            raise ArgumentError(f"offsets = {format_value(self.offsets)}: expected {wanted}")
+            raise ArgumentError(f"offsets = {format_value(self.offsets)}: expected {expectation}")
         object.__setattr__(self, "offsets", tuple(offsets.tolist()))
 
     @property

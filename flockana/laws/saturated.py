@@ -78,9 +78,9 @@ class Saturated(Wrapper):
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u, rate = self.law.flow(t, q, p)
-        given = self.bounded(u)
+        bounded = self.bounded(u)
         velocity = moving_frame(p) if self.moving else p
-        return given, rate + float(np.sum((given - u) * velocity))
+        return bounded, rate + float(np.sum((bounded - u) * velocity))
 
     def slopes(self, u: FloatArray) -> FloatArray:
         """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise where an input is at it.

@@ -67,10 +67,10 @@ class SumOfTerms(Law):
             return None
         kernels: list[TermKernel] = []
         for term in self.terms:
-            known = term.compiled(m) if overrides_consistently(type(term), "compiled", ("act", "energy")) else None
-            if known is None:
+            code = term.compiled(m) if overrides_consistently(type(term), "compiled", ("act", "energy")) else None
+            if code is None:
                 return None
-            kernels += [known] if isinstance(known, TermKernel) else known
+            kernels += [code] if isinstance(code, TermKernel) else code
         form = Compiled(tuple(kernels), self.moving)
         return None if form.reach and any(kernel.numbered for kernel in kernels) else form
 

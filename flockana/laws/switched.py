@@ -92,10 +92,10 @@ class SwitchedLaw(Law):
             rho = float(np.linalg.norm(x))
             speed = float(v @ x) / rho
             bend = (float(v @ v) - speed**2) / rho
-            held = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
-            held[i] += 0.5 * speed / rho * x
-            held[j] -= 0.5 * speed / rho * x
-            old, new = (self.piece_flow(side, t, q, held)[0] for side in (before, after))
+            held_p = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
+            held_p[i] += 0.5 * speed / rho * x
+            held_p[j] -= 0.5 * speed / rho * x
+            old, new = (self.piece_flow(side, t, q, held_p)[0] for side in (before, after))
             out = 1.0 if after[k] > before[k] else -1.0
             leaving, back = (out * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
             if leaving > 0.0 > back and abs(speed) <= self.held_speed(min(leaving, -back)):

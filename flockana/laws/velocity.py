@@ -79,13 +79,13 @@ class VelocityLaw(LawOfMotion):
         from scipy.sparse import csr_array
 
         length = self.scales.length if self.scales else float(np.abs(q - q[0]).max()) or 1.0
-        known = differences(lambda x: self.velocity(t, x), q, length)
-        if known.spread > _SMOOTH:
+        rates = differences(lambda x: self.velocity(t, x), q, length)
+        if rates.spread > _SMOOTH:
             raise ArgumentError(
-                f"{type(self).__name__} has a kink or a jump at this state (slopes differ by {known.spread:.2g} of the "
+                f"{type(self).__name__} has a kink or a jump at this state (slopes differ by {rates.spread:.2g} of the "
                 "largest): expected a state around which it is smooth, or a law that implements `slopes`"
             )
-        return csr_array(known.matrix)
+        return csr_array(rates.matrix)
 
     def acceleration(self, t: float, q: FloatArray) -> FloatArray:
         """Return d²q/dt² along the motion, unchecked; by differences of order 4 unless overridden."""
@@ -123,8 +123,8 @@ class VelocityLaw(LawOfMotion):
         q = self._checked(q)
         if not sparse:
             ensure_fits("the Jacobian", (q.size, q.size), "ask for sparse=True")
-        own = overrides_consistently(type(self), "slopes", ("velocity",))  # else they are another law's
-        matrix: Any = (type(self) if own else VelocityLaw).slopes(self, ensure_finite_scalar("t", t), q)
+        is_own = overrides_consistently(type(self), "slopes", ("velocity",))  # else they are another law's
+        matrix: Any = (type(self) if is_own else VelocityLaw).slopes(self, ensure_finite_scalar("t", t), q)
         return matrix if sparse else matrix.toarray()
 
     def _checked(self, q: Any) -> FloatArray:
@@ -155,8 +155,8 @@ class VelocityLaw(LawOfMotion):
         q = self._checked(q)
         v, at = self.velocity(t, q), f"at the start, t = {t:g}"
         ensure_returned_array(f"{self.title} gives a velocity", v, q.shape, at)
-        if not (known := np.isfinite(v).all(axis=1)).all():
-            i = int(np.argmin(known))
+        if not (is_finite := np.isfinite(v).all(axis=1)).all():
+            i = int(np.argmin(is_finite))
             raise ArgumentError(f"{self.title} gives velocity[{i}] = {v[i]} {at}: expected finite velocities there")
         v = np.asarray(v, dtype=np.float64)
         if p is None:

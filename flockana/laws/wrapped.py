@@ -74,10 +74,10 @@ class Step:
             Of the array.
         """
         block, row = divmod(self.number, _BLOCK)
-        found = self._drawn.get((seed, channel))
-        if found is None or found[0] != block:
-            found = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
-        return found[1][row]
+        draws = self._drawn.get((seed, channel))
+        if draws is None or draws[0] != block:
+            draws = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
+        return draws[1][row]
 
 
 def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -> FloatArray:
@@ -281,15 +281,15 @@ def _heard_input(law: Law, view: View) -> FloatArray:
         elif view.both and view.linked is None and len(heard[0]) == 1:
             term.act(view.t, np.ascontiguousarray(heard[0][0]), np.ascontiguousarray(heard[1][0]), u)
         else:
-            own = _own(view, heard)
-            away = heard[0] - own[0][:, None]
+            own_input = _own(view, heard)
+            away = heard[0] - own_input[0][:, None]
             near = np.einsum("ijk,ijk->ij", away, away) < term.pair.range**2
             near &= ~np.eye(n, dtype=bool)
             i, j = np.nonzero(near if view.linked is None else near & view.linked)
             if not i.size:
                 continue
-            slip = np.broadcast_to(heard[1] - own[1][:, None], (n, n, u.shape[1]))[i, j]
-            weight, adjacency = _pair_weights(term, own[0][i], away[i, j])
+            slip = np.broadcast_to(heard[1] - own_input[1][:, None], (n, n, u.shape[1]))[i, j]
+            weight, adjacency = _pair_weights(term, own_input[0][i], away[i, j])
             force = term.stiffness * weight[:, None] * away[i, j] + term.damping * adjacency[:, None] * slip
             np.add.at(u, i, force)
     return u
@@ -304,8 +304,8 @@ def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -
     n, u = len(view.q), np.empty_like(view.q)
     q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
     for i in range(n):
-        own = np.arange(n)[:, None] == i
-        u[i] = law.flow(view.t, np.where(own, view.q, q[i]), np.where(own, view.p, p[i]))[0][i]
+        is_self = np.arange(n)[:, None] == i
+        u[i] = law.flow(view.t, np.where(is_self, view.q, q[i]), np.where(is_self, view.p, p[i]))[0][i]
     return u
 
 
@@ -314,14 +314,16 @@ def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, 
     if not view.both:
         return view.q, view.p
     n = len(view.q)
-    own = np.arange(n)
-    return tuple(np.broadcast_to(part, (n, *part.shape[1:]))[own, own] for part in heard)  # type: ignore[return-value]
+    agents = np.arange(n)
+    return tuple(np.broadcast_to(part, (n, *part.shape[1:]))[agents, agents] for part in heard)  # type: ignore[return-value]
 
 
 def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[FloatArray, FloatArray]:
     """φ n per difference and a_ij of pairs at these differences."""
-    own = np.arange(len(here))
-    weight, adjacency, _ = term.pair.kernels.terms(np.vstack([here, here + away]), own, len(own) + own, term.pair.par)
+    index = np.arange(len(here))
+    weight, adjacency, _ = term.pair.kernels.terms(
+        np.vstack([here, here + away]), index, len(index) + index, term.pair.par
+    )
     return weight, adjacency
 
 

@@ -64,17 +64,17 @@ def clearance(
         ends = (x.reshape(-1, m) for k in (part, after) for x in (q[k], h * p[k], h * h * u[k]))
         curves, reach, off = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *ends))
         points, more = curves[..., :m], 0.0 if slack is None else slack[part]
-        for obstacle, least in zip(obstacles, least_of, strict=True):
-            row, agent = np.nonzero(least.at_samples[part] - (reach + more) < least.lower)
+        for obstacle, clearances in zip(obstacles, least_of, strict=True):
+            row, agent = np.nonzero(clearances.at_samples[part] - (reach + more) < clearances.lower)
             back = points[row, agent] - points[row, agent, 5:]  # from their last points fewer get so far
             reach_back = np.sqrt(np.einsum("kxm,kxm->kx", back, back).max(axis=1, initial=0.0))
             allowance = (off + more)[row, agent]
-            near = least.at_samples[after][row, agent] - (reach_back + allowance) < least.lower
+            near = clearances.at_samples[after][row, agent] - (reach_back + allowance) < clearances.lower
             row, agent = row[near], agent[near]
-            bound = refine(obstacle, points[row, agent], allowance[near], least.lower, tol)
-            least.update(bound, t, row + part.start, agent)
+            bound = refine(obstacle, points[row, agent], allowance[near], clearances.lower, tol)
+            clearances.update(bound, t, row + part.start, agent)
     k = min(range(len(least_of)), key=lambda each: least_of[each].reached, default=-1)
-    bounds = np.array([least.lower for least in least_of])
+    bounds = np.array([clearances.lower for clearances in least_of])
     if k < 0:
         return Clearance(inf, inf, float(t[0]), -1, -1, bounds)
     return Clearance(float(bounds.min()), least_of[k].reached, least_of[k].time, least_of[k].agent, k, bounds)

@@ -92,5 +92,5 @@ class Measure:
 @cache
 def measures() -> Mapping[str, Measure]:
     """Return all measures by name, from the ``MEASURES`` of the files of this package."""
-    found = (*modules("flockana.measures"), *source_modules("measures"))
-    return {item.name: item for module in found for item in getattr(module, "MEASURES", ())}
+    all_modules = (*modules("flockana.measures"), *source_modules("measures"))
+    return {item.name: item for module in all_modules for item in getattr(module, "MEASURES", ())}

@@ -31,11 +31,11 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
     q, (d, r), unit = scaled_near_one(q, d, r)
-    n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
+    n, agents, count, excess = len(q), np.arange(len(q)), 0, 0.0
     for first, second in pair_blocks(q, r):
-        unite(known, first, second)
+        unite(agents, first, second)
         count, excess = count + first.size, excess + squared_excess(q, first, second, d)
-    sizes = np.bincount(labelled(known))
+    sizes = np.bincount(labelled(agents))
     connectivity = 1.0 if n == 1 else (n - sizes.size) / (n - 1)
     return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1) * unit * unit
 

@@ -63,9 +63,9 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
     [0, 0, 1]
     """
     n = ensure_count("n", n)
-    pairs, known = ensure_links(pairs, n), np.arange(n)
-    unite(known, pairs[:, 0], pairs[:, 1])
-    return labelled(known)
+    pairs, agents = ensure_links(pairs, n), np.arange(n)
+    unite(agents, pairs[:, 0], pairs[:, 1])
+    return labelled(agents)
 
 
 def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> csr_array:

@@ -46,8 +46,8 @@ def closest_approach(
     at_samples = min_distances(q)
     extents = np.maximum(q.max(axis=(1, 2)), -q.min(axis=(1, 2)))  # |q| would be another run's memory
     k = int(np.argmin(at_samples))
-    lower = reached = float(at_samples[k])
-    when, pair = float(t[k]), _pair_at(q[k], reached)
+    lower = best = float(at_samples[k])
+    when, pair = float(t[k]), _pair_at(q[k], best)
     stops, noises = np.minimum(at_samples[:-1], at_samples[1:]), ROUNDING * extents[:-1]
     bounds = np.where(stops > noises, stops, 0.0)
     if len(bounds) and bounds.min() == 0.0:
@@ -58,8 +58,8 @@ def closest_approach(
         if low < lower:
             share = at if at >= 0.0 else float(at_samples[k + 1] < at_samples[k])  # nowhere below both ends
             lower, when, pair = low, float(t[k] + share * (t[k + 1] - t[k])), (int(min(a, b)), int(max(a, b)))
-        reached = min(reached, distance)
-    return ClosestApproach(lower, reached, when, pair, bounds)
+        best = min(best, distance)
+    return ClosestApproach(lower, best, when, pair, bounds)
 
 
 def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray, noises: FloatArray) -> Iterator[Any]:
@@ -67,9 +67,9 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
     q, p, u = (np.ascontiguousarray(x) for x in states)
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
-        found = closest_of_few(t, (q, p, u), slack, stops, tols)
-        near = np.flatnonzero(found[3] >= 0)
-        yield from zip(near.tolist(), *(each[near].tolist() for each in found), strict=True)
+        approach = closest_of_few(t, (q, p, u), slack, stops, tols)
+        near = np.flatnonzero(approach[3] >= 0)
+        yield from zip(near.tolist(), *(each[near].tolist() for each in approach), strict=True)
         return
     for k in np.flatnonzero(stops).tolist():
         points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])

@@ -61,10 +61,10 @@ def out_tree_root(n: int, edges: Edges) -> int | None:
     """Return the root of a rooted out-tree, or None for any other graph."""
     # Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
     # "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
-    seen = np.bincount([i for _, i in edges], minlength=n)
-    if len(edges) != n - 1 or seen.max() > 1 or not is_connected(n, edges):
+    in_degrees = np.bincount([i for _, i in edges], minlength=n)
+    if len(edges) != n - 1 or in_degrees.max() > 1 or not is_connected(n, edges):
         return None  # n − 1 edges, each to another agent, connected: no room for a cycle
-    return int(np.argmin(seen))
+    return int(np.argmin(in_degrees))
 
 
 def is_connected(n: int, edges: Edges) -> bool:

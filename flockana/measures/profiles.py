@@ -17,16 +17,16 @@ def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatAr
     from scipy.spatial.distance import pdist
 
     positions = ensure_numbers("q", q, "numbers, in arrays")
-    wanted = ensure_numbers("shares", shares, "numbers, in arrays")
+    expectation = ensure_numbers("shares", shares, "numbers, in arrays")
     if positions.ndim != 3:
         raise ArgumentError(f"q has shape {positions.shape}: expected (T, n, m), positions over time")
-    if wanted.ndim != 1 or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+    if expectation.ndim != 1 or not ((expectation >= 0.0) & (expectation <= 1.0)).all():
         raise ArgumentError(f"shares = {shares!r}: expected numbers from 0 to 1")
     if positions.shape[1] < 2:
-        return np.full((len(positions), wanted.size), np.nan)
-    profile = np.empty((len(positions), wanted.size))
+        return np.full((len(positions), expectation.size), np.nan)
+    profile = np.empty((len(positions), expectation.size))
     at_once = max(1, 2 * _DISTANCES // positions.shape[1] ** 2)
     for first in range(0, len(positions), at_once):  # a call of np.quantile costs as much as thousands of distances
         block = slice(first, first + at_once)
-        profile[block] = np.quantile([pdist(instant) for instant in positions[block]], wanted, axis=1).T
+        profile[block] = np.quantile([pdist(instant) for instant in positions[block]], expectation, axis=1).T
     return profile

@@ -39,12 +39,12 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
     ensure_fits(f"what is told of n = {n} agents,", (5, n), "ask for fewer agents")
     if not isinstance(nets, Iterable) or isinstance(nets, str | bytes) or getattr(nets, "ndim", 1) == 0:
         raise ArgumentError(f"nets = {nets!r}: expected the links at each instant, such as [[[0, 1]], [[1, 2]]]")
-    ends, known = [0], np.arange(n)
+    ends, agents = [0], np.arange(n)
     for k, net in enumerate(nets, start=1):
-        unite(known, *ensure_links(net, n).T)
-        if not labelled(known).any():
+        unite(agents, *ensure_links(net, n).T)
+        if not labelled(agents).any():
             ends.append(k)
-            known = np.arange(n)
+            agents = np.arange(n)
     return tuple(pairwise(ends))
 
 
@@ -53,8 +53,8 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     # A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{run.law.title} has no net: expected a run of a law with a range")
-    own = getattr(run.law, "links", None)
-    return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
+    net = getattr(run.law, "links", None)
+    return joint_windows(run.n, (links(q, run.law.pair.range) if net is None else net(q) for q in run.q))
 
 
 MEASURES = (

@@ -18,10 +18,10 @@ def marks_of(run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[fl
     >>> [name for _, name in marks_of(run, [verify("os-1", run)])]
     ['os-1 iii, os-1 iii-barrier', 'os-1 ii']
     """
-    found: dict[float, list[str]] = {float(time): ["as in the source"] for time in instants}
+    marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in instants}
     for verdict in verdicts:
         for claim in verdict.claims:
             time = claim.witness.get("time") if isinstance(claim.witness, Mapping) else None
             if isinstance(time, float | int) and run.t[0] <= time <= run.t[-1]:
-                found.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
-    return [(time, ", ".join(names)) for time, names in sorted(found.items())]
+                marks.setdefault(float(time), []).append(f"{verdict.theorem} {claim.name}")
+    return [(time, ", ".join(names)) for time, names in sorted(marks.items())]

@@ -135,18 +135,18 @@ def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
 
 def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
     """Return (name, label, logarithmic, values) of each series of the strip."""
-    found = []
+    rows = []
     energy = run.energy()
     if np.isfinite(energy).any():
-        found.append(("H", "energy H", False, energy))
+        rows.append(("H", "energy H", False, energy))
         if "work" in run.extra:
-            found.append(("residual", "residual of the energy balance", False, run.energy_residual))
+            rows.append(("residual", "residual of the energy balance", False, run.energy_residual))
     for name in SHOWN:
         if name in run._metric_names:
             it = run.measure(name)
-            found.append((name, it.label, bool(it.logarithmic), run.metric(name)))
-    found.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
-    return [each for each in found if np.isfinite(each[-1]).all()]  # a strip draws finite numbers only
+            rows.append((name, it.label, bool(it.logarithmic), run.metric(name)))
+    rows.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
+    return [each for each in rows if np.isfinite(each[-1]).all()]  # a strip draws finite numbers only
 
 
 def finite_or_none(value: Any) -> float | None:

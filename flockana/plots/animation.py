@@ -127,16 +127,16 @@ def animate(
     writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
-    told, shown = (progress, False) if callable(progress) else (None, progress)
-    bar = progress_bar(frame_count(seconds, fps), enabled=shown)
+    callback, bar_shown = (progress, False) if callable(progress) else (None, progress)
+    bar = progress_bar(frame_count(seconds, fps), enabled=bar_shown)
     with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL), bar as advance:
 
         def drawn(k: int, total: int) -> None:
             if came:
                 raise KeyboardInterrupt
             advance(k + 1, "drawing")
-            if told is not None:
-                told(k + 1, total)
+            if callback is not None:
+                callback(k + 1, total)
 
         film.save(partial, writer, dpi=_DPI, progress_callback=drawn)
     return target

@@ -56,11 +56,11 @@ def bars(
     for column, panel in zip(columns, panels, strict=True):
         pairs = [_cell(f"{row}, {column}", cells[column]) for row, cells in table.items()]
         values, widths = np.array(pairs).T
-        known = np.isfinite(values)
-        lengths = np.where(known, values, 1.2 * max(values[known], default=1.0))
-        panel.barh(places, lengths, _HEIGHT, color=[BLUE if one else MUTED for one in known])
+        is_finite = np.isfinite(values)
+        lengths = np.where(is_finite, values, 1.2 * max(values[is_finite], default=1.0))
+        panel.barh(places, lengths, _HEIGHT, color=[BLUE if one else MUTED for one in is_finite])
         panel.errorbar(values, places, xerr=widths, fmt="none", ecolor=INK, capsize=2.0)
-        for place in places[~known]:
+        for place in places[~is_finite]:
             panel.annotate("∞", (0.0, place), xytext=(4.0, 0.0), textcoords="offset points", va="center")
         if column in (limits or {}):
             panel.axvline((limits or {})[column], color=VERMILLION, linestyle="--", linewidth=1.2)

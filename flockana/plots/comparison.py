@@ -53,8 +53,8 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     panels = np.ravel(ax)
     if len(panels) != len(outcomes):
         raise ArgumentError(f"{len(panels)} axes for {len(outcomes)} laws: expected one for each")
-    reached = np.concatenate([outcome.run.q.reshape(-1, 2) for outcome in outcomes])
-    low, high = reached.min(axis=0), reached.max(axis=0)
+    all_places = np.concatenate([outcome.run.q.reshape(-1, 2) for outcome in outcomes])
+    low, high = all_places.min(axis=0), all_places.max(axis=0)
     middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
     for outcome, panel in zip(outcomes, panels, strict=True):
         _paths(panel, outcome.run)

@@ -52,10 +52,10 @@ def share_against(
     of : {"verified", "refuted"}
         Which share.
     """
-    chosen = _ensure_table(table, {parameter}, claims, of)
-    curves = _alike(table, chosen, of)
+    chosen_claims = _ensure_table(table, {parameter}, claims, of)
+    curves = _alike(table, chosen_claims, of)
     if len(curves) > _MOST:
-        text = f"{len(chosen)} claims: expected at most {_MOST} in one picture"
+        text = f"{len(chosen_claims)} claims: expected at most {_MOST} in one picture"
         raise ArgumentError(f"{text}; choose some by claims=[...]")
     axes = ensure_axes(ax)
     values = table[parameter].values
@@ -113,11 +113,11 @@ def share_bars(
     claims : iterable of str, optional
         Which; by default all.
     """
-    chosen = _ensure_table(table, set(), claims, "verified")
-    axes, part = ensure_axes(ax), table.sel(claim=chosen)
+    chosen_claims = _ensure_table(table, set(), claims, "verified")
+    axes, part = ensure_axes(ax), table.sel(claim=chosen_claims)
     names = "share", "low", "high"
     shares = {of: np.array([part[name].sel(of=of).values for name in names]) for of in ("verified", "refuted")}
-    return draw_bars(axes, chosen, shares, part.runs.values, table.attrs["level"], title)
+    return draw_bars(axes, chosen_claims, shares, part.runs.values, table.attrs["level"], title)
 
 
 def draw_bars(
@@ -127,11 +127,11 @@ def draw_bars(
     rows = np.arange(len(claims))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
         share, low, high = shares[of]
-        known = np.isfinite(share)
-        axes.hlines(rows[known] + shift, low[known], high[known], color=colour, linewidth=1.4)
+        is_finite = np.isfinite(share)
+        axes.hlines(rows[is_finite] + shift, low[is_finite], high[is_finite], color=colour, linewidth=1.4)
         fill = colour if of == "verified" else "white"
         style = {"color": colour, "markerfacecolor": fill, "markersize": 5, "linestyle": "none"}
-        axes.plot(share[known], rows[known] + shift, mark, label=of, **style)
+        axes.plot(share[is_finite], rows[is_finite] + shift, mark, label=of, **style)
     axes.set_yticks(rows, claims)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0))
     several = " to ".join(map(str, dict.fromkeys((int(np.min(runs)), int(np.max(runs))))))
@@ -166,22 +166,22 @@ def distribution(
         A logarithmic axis; values that are not positive are left out and counted in the legend.
     """
     axes = ensure_axes(ax)
-    drawn = 0
+    count = 0
     for k, (name, values) in enumerate(groups.items()):
-        known = np.sort(np.asarray(values, dtype=np.float64).ravel())
-        known = known[np.isfinite(known)]
-        shown = known[known > 0.0] if log else known
-        if not shown.size:
+        x = np.sort(np.asarray(values, dtype=np.float64).ravel())
+        x = x[np.isfinite(x)]
+        data = x[x > 0.0] if log else x
+        if not data.size:
             continue
-        below = known.size - shown.size  # they count in the shares, although a logarithmic axis has no place for them
+        below = x.size - data.size  # they count in the shares, although a logarithmic axis has no place for them
         note = f", {below} at 0" if below else ""
-        share = (below + np.arange(shown.size + 1)) / known.size
-        label = f"{name} ({known.size} runs{note})"
-        (line,) = axes.step(np.concatenate([shown[:1], shown]), share, where="post", label=label)
+        share = (below + np.arange(data.size + 1)) / x.size
+        label = f"{name} ({x.size} runs{note})"
+        (line,) = axes.step(np.concatenate([data[:1], data]), share, where="post", label=label)
         height = -0.02 - 0.03 * k
-        axes.plot(shown, np.full(shown.size, height), "|", color=line.get_color(), markersize=5, markeredgewidth=0.7)
-        drawn += 1
-    if not drawn:
+        axes.plot(data, np.full(data.size, height), "|", color=line.get_color(), markersize=5, markeredgewidth=0.7)
+        count += 1
+    if not count:
         raise ArgumentError(f"{quantity}: no finite value{' above 0' if log else ''} to draw; was the measure taken?")
     if bound is not None:
         axes.axvline(bound, color=MUTED, linestyle=":", linewidth=1.2, label=f"{bound:g}")
@@ -218,17 +218,17 @@ def phase_diagram(
     axes = ensure_axes(ax)
     names = phase.attrs["flag_meanings"].split()
     codes = phase.transpose(x, y, "seed").values
-    seen: set[str] = set()
+    labels_seen: set[str] = set()
     for column, row in np.ndindex(*codes.shape[:2]):
-        known = codes[column, row][codes[column, row] >= 0]
+        known_codes = codes[column, row][codes[column, row] >= 0]
         left = column - 0.5
-        for code, count in zip(*np.unique(known, return_counts=True), strict=True):
-            width, name = float(count) / known.size, names[code]
+        for code, count in zip(*np.unique(known_codes, return_counts=True), strict=True):
+            width, name = float(count) / known_codes.size, names[code]
             colour, hatch = _PHASES[name]
-            label = None if name in seen else name
+            label = None if name in labels_seen else name
             look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0.0}
             axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, label=label, **look))
-            left, seen = left + width, seen | {name}
+            left, labels_seen = left + width, labels_seen | {name}
     for axis, name, label in ((axes.xaxis, x, labels[0]), (axes.yaxis, y, labels[1])):
         values = phase[name].values.tolist()
         axis.set_ticks(range(len(values)), [f"{v:g}" if isinstance(v, int | float) else str(v) for v in values])
@@ -258,13 +258,13 @@ def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[
             f"the table is over {', '.join(sorted(others)) or 'no parameter'}: expected "
             f"{', '.join(sorted(parameters)) or 'none'}; select values of the others by .sel(...)"
         )
-    known = [str(name) for name in table.claim.values]
-    chosen = known if claims is None else list(claims)
-    for name in chosen:
-        ensure_known("claim", name, known)
-    if not chosen:
+    all_claims = [str(name) for name in table.claim.values]
+    chosen_claims = all_claims if claims is None else list(claims)
+    for name in chosen_claims:
+        ensure_known("claim", name, all_claims)
+    if not chosen_claims:
         raise ArgumentError("no claims: expected at least one; were theorems checked?")
-    return chosen
+    return chosen_claims
 
 
 def _finish(axes: Any, title: str) -> Axes:

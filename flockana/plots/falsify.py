@@ -58,23 +58,23 @@ def search_history(
     label : str
         Name of the claim.
     """
-    values, least = (np.asarray(series, dtype=np.float64) for series in (margins, best))
-    if values.ndim != 1 or values.shape != least.shape or not values.size:
-        raise ArgumentError(f"margins {values.shape}, best {least.shape}: expected one number per run in each")
+    values, best_so_far = (np.asarray(series, dtype=np.float64) for series in (margins, best))
+    if values.ndim != 1 or values.shape != best_so_far.shape or not values.size:
+        raise ArgumentError(f"margins {values.shape}, best {best_so_far.shape}: expected one number per run in each")
     axes = ensure_axes(ax)
     run = np.arange(1, values.size + 1)
-    known = np.isfinite(values)
-    axes.plot(run[known], values[known], "o", color=MUTED, markersize=2.5, label="one run")
-    axes.step(run, least, where="post", color=BLUE, linestyle="-", label="smallest margin so far")
+    solid = np.isfinite(values)
+    axes.plot(run[solid], values[solid], "o", color=MUTED, markersize=2.5, label="one run")
+    axes.step(run, best_so_far, where="post", color=BLUE, linestyle="-", label="smallest margin so far")
     axes.axhline(0.0, color=INK, linewidth=0.9, linestyle=":", label="refuted below 0")
     hits = np.asarray(found, dtype=np.int64)
     if hits.size:
         look = {"markersize": 9, "markerfacecolor": "none", "markeredgewidth": 1.5, "linestyle": "none"}
         axes.plot(run[hits], values[hits], "s", color=VERMILLION, label="refuted", **look)
-    if not known.all():
+    if not solid.all():
         foot = axes.get_xaxis_transform()
-        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="no margin")
-    _scale(axes, values[known])
+        axes.plot(run[~solid], np.full((~solid).sum(), 0.02), "|", color=MUTED, transform=foot, label="no margin")
+    _scale(axes, values[solid])
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(0.5, values.size + 0.5)
     axes.yaxis.get_offset_text().set(x=-0.09, ha="center")  # a power of ten, which would lie under the legend

@@ -81,9 +81,9 @@ def defect_map(
     if len(links):
         _draw_links(axes, x[links], strain, limit, raster)
     size = float(np.clip(2600.0 / len(x), 3.0, 70.0))
-    shown = np.minimum(degrees, _MOST + 1).astype(np.intp)
-    for k in np.unique(shown).tolist():
-        (marker, colour), these = _LOOKS[k], x[shown == k]
+    shown_degrees = np.minimum(degrees, _MOST + 1).astype(np.intp)
+    for k in np.unique(shown_degrees).tolist():
+        (marker, colour), these = _LOOKS[k], x[shown_degrees == k]
         label = f"{k if k <= _MOST else f'{k} or more'} neighbour{'' if k == 1 else 's'}: {len(these)}"
         edge: dict[str, Any] = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
         edge |= {"depthshade": False} if m == 3 else {}

@@ -42,7 +42,7 @@ def residuals(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
     t = comparison.t
     step = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
     edges: Any = np.concatenate([t - 0.5 * step, [t[-1] + 0.5 * step]])
-    shown = ax.pcolormesh(edges, np.arange(size.shape[0] + 1) - 0.5, size, cmap="cividis_r", rasterized=True)
-    ax.figure.colorbar(shown, ax=ax, label="‖residual‖ (length/time²)")
+    image = ax.pcolormesh(edges, np.arange(size.shape[0] + 1) - 0.5, size, cmap="cividis_r", rasterized=True)
+    ax.figure.colorbar(image, ax=ax, label="‖residual‖ (length/time²)")
     ax.set(xlabel="time", ylabel="agent", title=f"left unexplained by {type(comparison.law).__name__}")
     return ax

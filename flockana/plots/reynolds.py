@@ -35,9 +35,9 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     axes = ensure_axes(ax)
     signs = (parts.stress > 0.0, parts.stress < 0.0, parts.stress == 0.0)
     styles = ((BLUE, "-", "F⁺, pulls"), (VERMILLION, "--", "F⁻, pushes"), (FAINT, ":", "F⁰"))
-    for chosen, (colour, dash, name) in zip(signs, styles, strict=True):
-        if chosen.any():
-            lines = points[parts.links[chosen]]
+    for sign, (colour, dash, name) in zip(signs, styles, strict=True):
+        if sign.any():
+            lines = points[parts.links[sign]]
             axes.add_collection(LineCollection(lines, colors=colour, linestyles=dash, linewidths=0.8, label=name))
     axes.scatter(*points.T, s=12, color=INK, linewidths=0, zorder=3)
     names = "flock centring", "collision avoidance", "velocity matching"

@@ -84,13 +84,13 @@ class PlainScale(Artist):
         points[:, self.k] = values
         at = getattr(self.ax, f"get_{self.name}axis_transform")().transform(points)[:, self.k]
         low, high = getattr(self.ax.bbox, f"interval{self.name}")
-        seen = (at >= low - _OUTSIDE) & (at <= high + _OUTSIDE)
+        inside_limits = (at >= low - _OUTSIDE) & (at <= high + _OUTSIDE)
         length, width, pad = (
             float(look.get(key, self._style(f"{which}.{rc}")))
             for key, rc in (("length", "size"), ("width", "width"), ("pad", "pad"))
         )
-        shown = tuple(text for text, inside in zip(numbers, seen.tolist(), strict=True) if inside)
-        return Ticks(at[seen], shown, length * self._pixel, width, pad * self._pixel, bool(look["gridOn"]))
+        texts = tuple(text for text, inside in zip(numbers, inside_limits.tolist(), strict=True) if inside)
+        return Ticks(at[inside_limits], texts, length * self._pixel, width, pad * self._pixel, bool(look["gridOn"]))
 
     def _style(self, key: str) -> Any:
         """Return the style's settings of the ticks of this scale."""

@@ -34,21 +34,21 @@ _INSTANTS = 1500  # about as many as a figure has pixels across
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
     """Draw one metric of a run over time; empty axes say why where the law does not define it."""
     ensure_run(trajectory)
-    drawn, ax = trajectory.measure(name), ensure_axes(ax)
+    lines, ax = trajectory.measure(name), ensure_axes(ax)
     try:
         values = trajectory.metric(name)
     except UnknownNameError:
-        return finish_empty(ax, drawn.label, "not defined for this law")
+        return finish_empty(ax, lines.label, "not defined for this law")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    logarithmic = drawn.logarithmic or _spans_decades(values)
+    logarithmic = lines.logarithmic or _spans_decades(values)
     if logarithmic and (values > 0.0).any():
         ax.set_yscale("log")
         _shade_floor(trajectory, name, values, ax)
-    if drawn.at_most_one:
+    if lines.at_most_one:
         ax.set_ylim(float(np.nanmin(values, initial=0.0)) - 0.03, 1.05)
     elif not logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, drawn.label)
+    return finish_over_time(ax, trajectory.t, lines.label)
 
 
 def _spans_decades(values: Any) -> bool:
@@ -115,8 +115,8 @@ def distances(trajectory: Trajectory, ax: Any) -> str | None:
     """Draw the least distance of two agents at the samples, a lower bound between samples (of flows), and d and r."""
     if trajectory.n == 1:
         return "one agent has no distances"
-    t, least = trajectory.t, trajectory.metric("min_distance")
-    ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
+    t, min_distance = trajectory.t, trajectory.metric("min_distance")
+    ax.plot(t, min_distance, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not trajectory.law.is_map:
         bound = trajectory.closest_approach().lower_by_interval
         ax.stairs(
@@ -138,10 +138,10 @@ def pair_distances(trajectory: Trajectory, ax: Any) -> str | None:
     """Draw the profile of all pairs' distances over time: least, quarters, median and largest."""
     if trajectory.n == 1:
         return "one agent has no distances"
-    least, low, middle, high, largest = pair_distance_profile(trajectory.q).T
-    ax.fill_between(trajectory.t, least, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
+    smallest, low, middle, high, largest = pair_distance_profile(trajectory.q).T
+    ax.fill_between(trajectory.t, smallest, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
     ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of the pairs")
-    curves(ax, trajectory.t, ((middle, "median", BLUE, "-"), (least, "least (D)", INK, "-")))
+    curves(ax, trajectory.t, ((middle, "median", BLUE, "-"), (smallest, "least (D)", INK, "-")))
     ax.set_ylim(bottom=0.0)
     return None
 
@@ -172,10 +172,10 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
     t, q = trajectory.t, trajectory.q
     (width, alpha), few = line_width_and_opacity(2 * len(solids)), len(solids) <= 3
     for k, solid in enumerate(solids):
-        least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
+        smallest = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
         name = f"{type(solid).__name__.lower()} {k + 1}" if few else None if k else "each obstacle, at the samples"
         colour, dash = ((BLUE, "-"), (PURPLE, "-."), (INK, (0, (5, 1))))[k if few else 0]
-        ax.plot(t, least, color=colour, linestyle=dash, linewidth=width, alpha=alpha, label=name)
+        ax.plot(t, smallest, color=colour, linestyle=dash, linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
     if np.isfinite(bound):  # of samples alone nothing is known between them
         levels(ax, [(bound, "lower bound for all times", VERMILLION, "--")])

@@ -66,10 +66,10 @@ def snapshot(
     k = nearest_sample(trajectory.t, time)
     law = drawn_law(trajectory)
     moving = float(np.linalg.norm(trajectory.p[k], axis=1).max()) > _AT_REST * trajectory.scales.speed
-    drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities and moving, bar=bar)
+    axes_drawn = draw_sample(law, trajectory, k, ax=ax, velocities=velocities and moving, bar=bar)
     if ranges:
-        _range_circles(drawn, trajectory.q[k], law)
-    return drawn
+        _range_circles(axes_drawn, trajectory.q[k], law)
+    return axes_drawn
 
 
 def nearest_sample(t: FloatArray, time: float | None) -> int:
@@ -89,8 +89,8 @@ def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
         raise ArgumentError(
             f"ranges = True: expected a law with a range in the plane, not {law!r} for m = {q.shape[1]}"
         )
-    own = getattr(law, "ranges", None)
-    widths = np.broadcast_to(2.0 * np.asarray(law.pair.range if own is None else own), len(q))
+    ranges = getattr(law, "ranges", None)
+    widths = np.broadcast_to(2.0 * np.asarray(law.pair.range if ranges is None else ranges), len(q))
     look: dict[str, Any] = {"facecolor": "none", "edgecolor": MUTED, "linewidth": 0.5, "alpha": 0.6}
     look |= {"units": "xy", "offsets": q, "offset_transform": ax.transData}
     ax.add_collection(EllipseCollection(widths, widths, np.zeros(len(q)), **look))
@@ -124,12 +124,12 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 @singledispatch
 def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
     """Return points that a film of a run must show, shape (N, m); register it with `draw_sample`."""
-    shown = [trajectory.q.reshape(-1, trajectory.m)]
+    corners = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
-        shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
+        corners.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
     if law.obstacles:
-        shown.append(bounds(law.obstacles))
-    return np.concatenate(shown)
+        corners.append(bounds(law.obstacles))
+    return np.concatenate(corners)
 
 
 def configuration(
@@ -182,18 +182,18 @@ def configuration(
     size = float(np.clip(900.0 / len(x), 3.0, 26.0))
     axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
     _multiplicities(axes, x)
-    seen = x
+    corners = x
     if target is not None:
         place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
         star(axes, place, label="γ-agent")
-        seen = np.vstack([x, place])
+        corners = np.vstack([x, place])
     if len(obstacles):
-        seen = np.vstack([seen, in_plane(bounds(obstacles))])
-        draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
+        corners = np.vstack([corners, in_plane(bounds(obstacles))])
+        draw_obstacles(obstacles, ax=axes, view=corners[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
     write_title(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
-    return frame_space(axes, seen, m)
+    return frame_space(axes, corners, m)
 
 
 def _lengths(d: Any, pairs: Any) -> Any:

@@ -51,9 +51,9 @@ def pole_map(poles: Any, *, ax: Axes | None = None) -> Axes:
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
     for (marker, colour), (name, group) in zip(_LOOKS, values.items(), strict=False):
-        shown = group[(group != 0.0) & (group.real <= 0.0)]
+        decaying = group[(group != 0.0) & (group.real <= 0.0)]
         look: dict[str, Any] = {"color": colour, "markersize": 6.0, "markeredgewidth": 1.3, "zorder": 3}
-        axes.plot(shown.real, shown.imag, marker, label=name, **look)
+        axes.plot(decaying.real, decaying.imag, marker, label=name, **look)
     grows, zeros = whole[whole.real > 0.0], int(np.sum(whole == 0.0))
     if grows.size:
         axes.plot(grows.real, grows.imag, "^", color=VERMILLION, markersize=6.0, label="growing", zorder=3)
@@ -125,16 +125,16 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     else:
         look = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.004, "color": BLUE, "zorder": 4}
         axes.quiver(*points.T, *arrows.T, **look)
-    seen = np.vstack([points, points + np.abs(moves), points - np.abs(moves)])
+    corners = np.vstack([points, points + np.abs(moves), points - np.abs(moves)])
     if target is not None:
         place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
         star(axes, place, s=90, color=PURPLE, zorder=3.5)
-        seen = np.vstack([seen, place])
+        corners = np.vstack([corners, place])
     write_title(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
-        axes.update_datalim(seen)
+        axes.update_datalim(corners)
         axes.autoscale_view()
-    return frame_space(axes, seen, m)
+    return frame_space(axes, corners, m)
 
 
 @check_kinds

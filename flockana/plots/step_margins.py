@@ -30,7 +30,7 @@ def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = 
     if not steps:
         raise ArgumentError("steps is empty: expected (largest stable step, step in use) by name")
     pairs = [(ensure_positive(f"{k}: margin", a), ensure_positive(f"{k}: dt", b)) for k, (a, b) in steps.items()]
-    ratios = [largest / used for largest, used in pairs]
+    ratios = [largest / step_used for largest, step_used in pairs]
     axes, places = ensure_axes(ax), -np.arange(len(ratios))
     for place, ratio in zip(places, ratios, strict=True):
         stable = ratio > 1.0

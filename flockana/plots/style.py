@@ -125,8 +125,8 @@ def subplots(
     rows, columns = ensure_count("rows", rows), ensure_count("columns", columns)
     with style():
         kind = {"projection": "3d"} if m == 3 else {}
-        wanted = column_size(size, rows, columns) if isinstance(size, str) else size or (4.4 * columns, 3.4 * rows)
-        return plt.subplots(rows, columns, figsize=wanted, subplot_kw=kind)
+        inches = column_size(size, rows, columns) if isinstance(size, str) else size or (4.4 * columns, 3.4 * rows)
+        return plt.subplots(rows, columns, figsize=inches, subplot_kw=kind)
 
 
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:

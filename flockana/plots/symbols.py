@@ -54,8 +54,8 @@ def typeset(text: str) -> str:
 
     def rule(m: re.Match[str]) -> str:
         pattern, write = _RULES[int(str(m.lastgroup)[1:])]
-        found = re.compile(pattern).match(text, m.start())
-        assert found is not None
-        return write(found)
+        match = re.compile(pattern).match(text, m.start())
+        assert match is not None
+        return write(match)
 
     return _ANY.sub(rule, text)

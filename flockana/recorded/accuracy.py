@@ -38,8 +38,8 @@ class Accuracy:
     def __str__(self) -> str:
         if self.kind == "unknown":
             return "an accuracy that is not stated"
-        known = {"bound": "bound", "sd": "0.99 band", "estimated": "estimated 0.99 band"}[self.kind]
-        return f"positions to {np.nanmax(self.place):.3g}, velocities to {np.nanmax(self.speed):.3g} ({known})"
+        word = {"bound": "bound", "sd": "0.99 band", "estimated": "estimated 0.99 band"}[self.kind]
+        return f"positions to {np.nanmax(self.place):.3g}, velocities to {np.nanmax(self.speed):.3g} ({word})"
 
 
 def band(samples: int, m: int) -> float:

@@ -54,13 +54,13 @@ def unwrapped(rec: Recording, box: Any) -> Recording:
         )
     q = rec.q.copy()
     for i in range(rec.n):
-        seen = np.flatnonzero(rec.present[:, i])
-        h = np.diff(rec.t[seen])[:, None]
-        ahead = np.zeros((len(h), rec.m)) if rec.p is None else h * _mean_velocity(rec.p[seen, i])
-        off = np.diff(rec.q[seen, i], axis=0) - ahead
+        rows = np.flatnonzero(rec.present[:, i])
+        h = np.diff(rec.t[rows])[:, None]
+        ahead = np.zeros((len(h), rec.m)) if rec.p is None else h * _mean_velocity(rec.p[rows, i])
+        off = np.diff(rec.q[rows, i], axis=0) - ahead
         short = np.where(np.isfinite(size), off - period * np.rint(off / period), off)
         _ensure_short(rec, i, short, ahead, h, size)
-        q[seen[1:], i] = q[seen[0], i] + np.cumsum(ahead + short, axis=0)
+        q[rows[1:], i] = q[rows[0], i] + np.cumsum(ahead + short, axis=0)
     note = f"unwrapped from a box of {', '.join(f'{x:g}' for x in size)}"
     return replace(rec, q=q, read_as=(*rec.read_as, note))
 
@@ -82,10 +82,10 @@ def _ensure_short(
     reach = np.maximum((fastest + turned) * h, np.abs(short))
     if (bad := reach >= _HALF * size).any():
         k, axis = (int(x) for x in np.argwhere(bad)[0])
-        seen = np.flatnonzero(rec.present[:, i])
+        rows = np.flatnonzero(rec.present[:, i])
         beside = " beyond its velocity" if rec.p is not None else ""
         raise ArgumentError(
-            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{beside} from t = {rec.t[seen[k]]:g} to "
-            f"{rec.t[seen[k + 1]]:g} along {'xyz'[axis]}, half of the period {size[axis]:g} or more: "
+            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{beside} from t = {rec.t[rows[k]]:g} to "
+            f"{rec.t[rows[k + 1]]:g} along {'xyz'[axis]}, half of the period {size[axis]:g} or more: "
             "expected shorter steps; sample more often, give velocities, or leave the agent out"
         )

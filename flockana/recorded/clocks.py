@@ -18,9 +18,9 @@ _MOST = 200  # agents that are judged, those with most samples
 def ensure_one_clock(rec: Recording) -> None:
     """Raise if two agents are seen at the same time, but hardly ever at one instant."""
     most = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
-    seen: FloatArray = rec.present[:, most].astype(np.float64)
-    there = np.maximum.accumulate(seen, axis=0) * np.maximum.accumulate(seen[::-1], axis=0)[::-1]
-    while_both, shared = seen.T @ there, seen.T @ seen
+    presence: FloatArray = rec.present[:, most].astype(np.float64)
+    there = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
+    while_both, shared = presence.T @ there, presence.T @ presence
     fewer = np.minimum(while_both, while_both.T)
     apart = (fewer >= _ENOUGH) & (shared < _SHARED * fewer)
     if apart.any():

@@ -25,6 +25,6 @@ def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[F
     scores = np.linalg.solve(others, np.einsum("kimc,kim->ic", slopes, residuals)[:, :, None])[:, :, 0]
     covariance: FloatArray = inverse @ (scores.T @ scores) @ inverse * ((n - 1) / n)
     shares = np.einsum("ab,ibc,ca->ia", inverse, squares, inverse)
-    told = shares.sum(axis=0) > 0.0
-    effective = shares.sum(axis=0)[told] ** 2 / np.sum(shares[:, told] ** 2, axis=0)
+    has_share = shares.sum(axis=0) > 0.0
+    effective = shares.sum(axis=0)[has_share] ** 2 / np.sum(shares[:, has_share] ** 2, axis=0)
     return covariance, float(effective.min(initial=n - 1))

@@ -92,9 +92,9 @@ class Comparison(ShortRepr):
         name = self.law.title
         lines = [f"{name} explains {share_text(self.explained)} of the recorded accelerations (from {self.basis})"]
         for one in self.shares:
-            known = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
+            error_text = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
             lines.append(
-                f"  {_percent(one.share):>8}  {one.text}: {one.symbol} = {one.found:.4g}{known}, "
+                f"  {_percent(one.share):>8}  {one.text}: {one.symbol} = {one.found:.4g}{error_text}, "
                 f"{one.stated:.4g} in the law"
             )
         lines += [f"  finding: {text}" for text in self.findings]
@@ -105,13 +105,13 @@ class Comparison(ShortRepr):
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        kept = ("basis", "explained", "explained_refitted", "caution")
+        names = ("basis", "explained", "explained_refitted", "caution")
         return {
             "law": self.law.title,
             "shares": [one._asdict() for one in self.shares],
             "findings": list(self.findings),
             "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
-        } | {name: getattr(self, name) for name in kept}
+        } | {name: getattr(self, name) for name in names}
 
 
 def _percent(share: float) -> str:
@@ -160,42 +160,42 @@ def compare(rec: Recording, law: Any) -> Comparison:
     True
     """
     ensure_recording(rec)
-    given, own, scheme, notes = ensure_law(law), rec.measured, None, list[str]()
-    given.check_dimension(rec.m)
-    given.check_agents(rec.n)
-    continuous = given.continuous
-    of_own = isinstance(given, DiscreteLaw) and not given.approximates and own.p is not None
+    checked_law, states, scheme, notes = ensure_law(law), rec.measured, None, list[str]()
+    checked_law.check_dimension(rec.m)
+    checked_law.check_agents(rec.n)
+    continuous = checked_law.continuous
+    of_own = isinstance(checked_law, DiscreteLaw) and not checked_law.approximates and states.p is not None
     if continuous is None or of_own:
-        data, steps, led, said = map_steps(own, given)
-        found, off = explained(data, steps), _position_finding(own, led, f"steps of {given.title}")
-        notes += [said] if said else []
-        found = found._replace(findings=()) if said else found  # what is left may be the noise
+        data, steps, led, remark = map_steps(states, checked_law)
+        result, off = explained(data, steps), _position_finding(states, led, f"steps of {checked_law.title}")
+        notes += [remark] if remark else []
+        result = result._replace(findings=()) if remark else result  # what is left may be the noise
     else:
         data = accelerations(rec)
-        found, off = explained(data, continuous), ""
+        result, off = explained(data, continuous), ""
         scheme = data.scheme
-        if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
+        if scheme is None and data.basis == "steps" and result.left < 0.5 * result.total:
             scheme = scheme_by_law(rec, continuous)
         notes += [] if scheme is None else [f"steps are {scheme} of {rec.interval:.4g}"]
-        if own.p is not None and len(rec.t) > 2:
-            led = 0.5 * (own.p[1:] + own.p[:-1]) * np.diff(rec.t)[:, None, None]
-            off = _position_finding(own, led, "velocities and times")
-    by_law, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
-    texts, noise = (off,) if off else (*notes, *found.findings), float(np.nanmedian(data.error))
+        if states.p is not None and len(rec.t) > 2:
+            led = 0.5 * (states.p[1:] + states.p[:-1]) * np.diff(rec.t)[:, None, None]
+            off = _position_finding(states, led, "velocities and times")
+    by_law, refitted = (1.0 - left / (result.total or 1.0) for left in (result.left, result.left_refitted))
+    texts, noise = (off,) if off else (*notes, *result.findings), float(np.nanmedian(data.error))
     return Comparison(
-        law, data.basis, data.t, data.u, found.residual, by_law, refitted, found.shares, texts, noise, tuple(rec.ids)
+        law, data.basis, data.t, data.u, result.residual, by_law, refitted, result.shares, texts, noise, tuple(rec.ids)
     )
 
 
 def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
     """Return by which factor positions move otherwise than they are led; empty if they move so."""
-    moved = np.diff(rec.q, axis=0)
-    known = ~np.isnan(moved + led)
-    moved, led = moved[known], led[known]
-    if not (moved @ moved > 0.0 and led @ led > 0.0):
+    steps = np.diff(rec.q, axis=0)
+    is_known = ~np.isnan(steps + led)
+    steps, led = steps[is_known], led[is_known]
+    if not (steps @ steps > 0.0 and led @ led > 0.0):
         return ""
-    factor = float(moved @ led / (led @ led))
-    left = float(np.sum((moved - factor * led) ** 2) / (moved @ moved))
+    factor = float(steps @ led / (led @ led))
+    left = float(np.sum((steps - factor * led) ** 2) / (steps @ steps))
     if abs(factor - 1.0) <= max(_OFF_CLOCK, 3.0 * np.sqrt(left)) * max(1.0, abs(factor)):
         return ""
     return (

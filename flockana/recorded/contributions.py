@@ -42,10 +42,10 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
         return (Contribution("law", law.title, "the law as a whole", 1.0, _acts(law)),)
     parts, gained = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
-        (symbol, text), own = SYMBOLS[name], getattr(gains, name)
-        each = isinstance(own, tuple)
-        acts = _acts(replace(gained, gains=_single_gain(name, own if each else 1.0)))
-        label, stated = (f"{symbol} of each agent, times", 1.0) if each else (symbol, float(own))
+        (symbol, text), gain = SYMBOLS[name], getattr(gains, name)
+        each = isinstance(gain, tuple)
+        acts = _acts(replace(gained, gains=_single_gain(name, gain if each else 1.0)))
+        label, stated = (f"{symbol} of each agent, times", 1.0) if each else (symbol, float(gain))
         parts.append(Contribution(name, label, text, stated, acts))
     return tuple(parts)
 
@@ -64,10 +64,10 @@ def _other_terms(law: Any) -> dict[str, Any]:
 
 def _used_gains(law: Any) -> list[str]:
     paired = law.pair is not None
-    used = {"c1_alpha": paired, "c2_alpha": paired or getattr(law, "net", None) is not None}
-    used |= dict.fromkeys(("c1_beta", "c2_beta"), bool(law.obstacles))
-    used |= dict.fromkeys(("c1_gamma", "c2_gamma"), law.target is not None)
-    return [name for name, is_used in used.items() if is_used]
+    which = {"c1_alpha": paired, "c2_alpha": paired or getattr(law, "net", None) is not None}
+    which |= dict.fromkeys(("c1_beta", "c2_beta"), bool(law.obstacles))
+    which |= dict.fromkeys(("c1_gamma", "c2_gamma"), law.target is not None)
+    return [name for name, is_used in which.items() if is_used]
 
 
 def _single_gain(name: str, value: Any) -> Gains:
@@ -141,10 +141,10 @@ def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], Fl
     def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         i, j = np.asarray(links(q, r)).T
         x = q[j] - q[i]
-        given = force(x, lengths(x), p[j] - p[i])
+        forces = force(x, lengths(x), p[j] - p[i])
         u = np.zeros_like(q)
-        np.add.at(u, i, given)
-        np.add.at(u, j, -given)
+        np.add.at(u, i, forces)
+        np.add.at(u, j, -forces)
         return u
 
     return acts

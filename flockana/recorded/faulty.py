@@ -93,6 +93,6 @@ def faulty_recording(name: str) -> Recording:
         x, v = y.reshape(2, _AGENTS, 2)
         return np.concatenate([v.ravel(), code(x, v).ravel()])
 
-    done = solve_ivp(rate, (0.0, _END), np.concatenate([q.ravel(), p.ravel()]), t_eval=t, rtol=1e-9, atol=1e-9)
-    states = done.y.T.reshape(len(t), 2, _AGENTS, 2)
+    solution = solve_ivp(rate, (0.0, _END), np.concatenate([q.ravel(), p.ravel()]), t_eval=t, rtol=1e-9, atol=1e-9)
+    states = solution.y.T.reshape(len(t), 2, _AGENTS, 2)
     return Recording(t, states[:, 0], states[:, 1], bound=1e-6, source=f"implementation {name}")

@@ -71,15 +71,15 @@ class Regression:
         root = np.sqrt(self.weights)[:, :, None]
         matrix = np.stack([(root * column).ravel() for column in columns], axis=1)
         y, norms = root * self.target, np.linalg.norm(matrix, axis=0)
-        used, (gains, errors) = norms > 0.0, np.zeros((2, len(columns)))
-        if not used.any():
+        is_used, (gains, errors) = norms > 0.0, np.zeros((2, len(columns)))
+        if not is_used.any():
             return Solution(gains, errors, float(np.sum(y**2)), y.size)
-        a = matrix[:, used] / norms[used]
+        a = matrix[:, is_used] / norms[is_used]
         beta = np.linalg.pinv(a.T @ a) @ (a.T @ y.ravel())
         rest = y - (a @ beta).reshape(y.shape)
         covariance, freedom = covariance_over_agents(a.reshape(*y.shape, -1), rest)
-        gains[used] = beta / norms[used]
-        errors[used] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norms[used]
+        gains[is_used] = beta / norms[is_used]
+        errors[is_used] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norms[is_used]
         return Solution(gains, errors, float(np.sum(rest**2)), freedom)
 
 

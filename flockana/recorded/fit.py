@@ -137,12 +137,12 @@ def fit(
     20.0
     """
     rec = ensure_recording(rec).measured
-    own = ensure_law(law)
+    checked_law = ensure_law(law)
     ensure_flag("independent", independent)
-    if own.is_map:
+    if checked_law.is_map:
         raise ArgumentError(f"{law.title} is a map: expected a continuous law, such as the one that it steps")
-    own.check_dimension(rec.m)
-    own.check_agents(rec.n)
+    checked_law.check_dimension(rec.m)
+    checked_law.check_agents(rec.n)
     parameters = FreeParameters.of(law, free)
     if len(rec.t) < (4 if rec.p is None else 2):
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more, or 2 with velocities")
@@ -176,30 +176,30 @@ class _Search(NamedTuple):
 
 def _best_of(search: _Search, sd: FloatArray) -> tuple[Problem, MatchResult]:
     """Return the best match of several searches, the first from the law's own parameters."""
-    found: list[tuple[Problem, MatchResult]] = []
+    matches: list[tuple[Problem, MatchResult]] = []
     for begin in _beginnings(search):
         try:
-            found.append(_lengthened(search, sd, begin))
+            matches.append(_lengthened(search, sd, begin))
         except FlockanaError:
             continue
-        if search.is_chance(found[-1][1].variance, found[-1][1].freedom):
+        if search.is_chance(matches[-1][1].variance, matches[-1][1].freedom):
             break
-    if not found:
+    if not matches:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    return min(found, key=lambda each: each[1].variance)
+    return min(matches, key=lambda each: each[1].variance)
 
 
 def _beginnings(search: _Search) -> list[FloatArray]:
     """Return first parameters: the law's, gains by regression on accelerations, and multiples of the law's."""
     values, names = search.parameters.values, search.parameters.names
-    found = [values * factor for factor in _FACTORS]
+    starts = [values * factor for factor in _FACTORS]
     try:
         shares = {one.symbol: one.found for one in compare(search.rec, search.parameters.law).shares}
     except FlockanaError:
-        return found
+        return starts
     guess = np.array([shares.get(SYMBOLS[x][0], v) if x in SYMBOLS else v for x, v in zip(names, values, strict=True)])
     usable = np.isfinite(guess) & ((guess > 0.0) | (values <= 0.0))
-    return [found[0], np.where(usable, guess, values), *found[1:]]
+    return [starts[0], np.where(usable, guess, values), *starts[1:]]
 
 
 def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Problem, MatchResult]:
@@ -277,10 +277,10 @@ def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
     bound = np.concatenate([np.repeat(x, rec.m) for x in limits])
     low, high = np.full(len(bound), inf), np.full(len(bound), -inf)
     for part, residual in zip(parts, best.residuals, strict=False):
-        seen = part.root > 0.0
-        error = np.divide(residual.reshape(seen.shape), part.root, out=np.zeros(seen.shape), where=seen)
-        low = np.minimum(low, np.where(seen, error, inf).min(axis=0))
-        high = np.maximum(high, np.where(seen, error, -inf).max(axis=0))
+        is_used = part.root > 0.0
+        error = np.divide(residual.reshape(is_used.shape), part.root, out=np.zeros(is_used.shape), where=is_used)
+        low = np.minimum(low, np.where(is_used, error, inf).min(axis=0))
+        high = np.maximum(high, np.where(is_used, error, -inf).max(axis=0))
     room = np.maximum(2.0 * bound - np.maximum(high - low, 0.0), 0.0) / sqrt(12.0)
     deviation = np.array([1.0 / max(float(part.root.max()), 1e-300) for part in parts]).min()
     count = sum(len(part.t) for part in parts)

@@ -65,12 +65,12 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     assert rec.p is not None
     _ensure_few_steps(rec, law)
     place, speed = (np.broadcast_to(x, rec.present.shape) for x in (rec.accuracy.place, rec.accuracy.speed))
-    known = bool(np.isfinite(place).all())
+    is_known = bool(np.isfinite(place).all())
     worst: list[tuple[float, float, str, float, int]] = []
     wide = 1 if law.scales is None else max(1, int(law.scales.time / rec.interval))
     for stride in {1, wide} if len(rec.t) > wide else {1}:  # dense samples are compared one law time apart too
         times, q, p = rec.t[::stride], rec.q[::stride], rec.p[::stride]
-        widths = [x[::stride] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
+        widths = [x[::stride] if is_known else np.zeros(q.shape[:2]) for x in (place, speed)]
         off, allowed = _differences(law, times, q, p, *widths)
         for name, apart, room in zip(("q", "p"), off, allowed, strict=True):
             ratio = apart / room
@@ -80,7 +80,7 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     where, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
     reach = " and ".join(f"{max(one[1] for one in worst if one[2] == kind):.3g} in {kind}" for kind in "qp")
     status: Literal["met", "unmet", "assumed"] = "met" if accuracy.decides else "assumed"
-    if not known:
+    if not is_known:
         excess, text = 1.0, f"off by {reach} (worst: {where}); no accuracy is stated"
     elif excess > 1.0:
         status, text = "unmet", f"{where} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
@@ -113,15 +113,15 @@ def _differences(
         for _ in range(_WAYS):
             ways = rng.normal(size=(2, *q.shape))
             ways /= np.linalg.norm(ways, axis=3, keepdims=True)
-            moved = predicted(law, t, q + place[:, :, None] * ways[0], p + speed[:, :, None] * ways[1])
+            changes = predicted(law, t, q + place[:, :, None] * ways[0], p + speed[:, :, None] * ways[1])
             for k in range(2):
-                widest = lengths(moved[k] - near[k]).max(axis=1, keepdims=True)
+                widest = lengths(changes[k] - near[k]).max(axis=1, keepdims=True)
                 grown[k] = np.maximum(grown[k], np.broadcast_to(widest, off[0].shape))
     floors = rounding_floors(t, q, p, np.diff(p, axis=0) / np.diff(t)[:, None, None], np.empty(0))
     tiny = np.finfo(float).tiny
     allowed = tuple(
-        own[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + tiny
-        for k, (own, floor) in enumerate(((place, floors.place), (speed, floors.speed)))
+        own_changes[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + tiny
+        for k, (own_changes, floor) in enumerate(((place, floors.place), (speed, floors.speed)))
     )
     return off, (allowed[0], allowed[1])
 
@@ -138,20 +138,20 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     assert smooth.p is not None
     parts, largest = windows(rec, duration), (0.0, 0.0, 0)
     try:
-        found = matched(Problem(parts, lambda _: law, np.empty(0)))
+        match = matched(Problem(parts, lambda _: law, np.empty(0)))
     except FlockanaError as error:
         raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
-    for part, residual in zip(parts, found.residuals, strict=True):
+    for part, residual in zip(parts, match.residuals, strict=True):
         size = np.abs(residual).reshape(len(part.t), rec.n, rec.m).max(axis=2)
         k, i = np.unravel_index(int(np.argmax(size)), size.shape)
         largest = max(largest, (float(size[k, i]), float(part.t[k]), int(i)))
-    misfit = float(np.sqrt(found.variance))
-    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, found.freedom) / found.freedom))
+    misfit = float(np.sqrt(match.variance))
+    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, match.freedom) / match.freedom))
     band = float(norm.isf((1.0 - CONFIDENCE) / 4.0 / rec.q.size))
     size, t, agent = largest
     ratio = max(misfit / most, size / band)
     where = f"worst: {size:.3g} deviations, agent {rec.ids[agent]} at t = {t:.6g}"
-    q0, p0 = found.starts[0].reshape(2, rec.n, rec.m)
+    q0, p0 = match.starts[0].reshape(2, rec.n, rec.m)
     status: Literal["met", "unmet", "assumed"] = "met" if ratio <= 1.0 else "unmet"
     text = f"solutions of the law over {duration:.3g} each are off by {misfit:.4g} times the stated noise ({where})"
     if rec.sd is None or rec.estimated:

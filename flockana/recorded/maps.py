@@ -37,12 +37,12 @@ def map_steps(rec: Recording, law: Any) -> tuple[Accelerations, MapSteps, FloatA
             f"velocities, to be led on by {law.title}; give p=, such as (q[1:] - q[:-1])/dt where positions move by "
             "dt p"
         )
-    said, noise = "", getattr(law, "noise", None)
+    remark, noise = "", getattr(law, "noise", None)
     if noise is not None and noise != (none := type(noise)()):
-        law, said = replace(law, noise=none), f"steps of {law.title} are compared without its noise"
+        law, remark = replace(law, noise=none), f"steps of {law.title} are compared without its noise"
     q, p = predicted(law, rec.t, rec.q, rec.p)
     h = np.diff(rec.t)[:, None, None]
     each = dict(zip(rec.t[:-1].tolist(), (p - rec.p[:-1]) / h, strict=True))
     states = (rec.t[:-1], rec.q[:-1], rec.p[:-1])
     data = mean_accelerations(rec, rec.p)._replace(basis="map", states=states, scheme=None)
-    return data, MapSteps(law.title, each), q - rec.q[:-1], said
+    return data, MapSteps(law.title, each), q - rec.q[:-1], remark

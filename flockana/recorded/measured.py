@@ -30,20 +30,20 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
     assert rec.p is not None
     p, shape = rec.p, rec.present.shape
     law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)
-    used = {name: it for name, it in measures().items() if it.over_time is not None and it.defined(law)}
-    values, errors = ({name: np.full(len(rec.t), np.nan) for name in used} for _ in range(2))
+    used_measures = {name: it for name, it in measures().items() if it.over_time is not None and it.defined(law)}
+    values, errors = ({name: np.full(len(rec.t), np.nan) for name in used_measures} for _ in range(2))
     widths = [np.broadcast_to(x, shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
     moving = rec.present & ~np.isnan(p[:, :, 0])
-    for of_velocities, seen in ((False, rec.present), (True, moving)):
-        for agents, samples in _alike(seen):
+    for of_velocities, presence in ((False, rec.present), (True, moving)):
+        for agents, samples in _alike(presence):
             at = np.ix_(samples, agents)
             flock, off = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
-            for name, it in used.items():
+            for name, it in used_measures.items():
                 if (name in _OF_VELOCITIES) == of_velocities:
                     values[name][samples] = series = it.over_time(flock)  # type: ignore[misc]
                     errors[name][samples] = _error(name, flock, series, *off)
     data: dict[str, Any] = {"agents": ("time", rec.present.sum(axis=1), {"long_name": "agents seen"})}
-    for name, it in used.items():
+    for name, it in used_measures.items():
         data[name] = ("time", values[name], {"long_name": it.text, "units": it.unit})
         data[f"{name}_error"] = ("time", errors[name], {"long_name": f"error of: {it.text}", "units": it.unit})
     return xarray.Dataset(data, coords={"time": rec.t}, attrs={"accuracy": str(rec.accuracy), "d": d, "r": r})
@@ -52,8 +52,8 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
 def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
     """Return sets of agents, each with the samples at which exactly these were seen; never the empty set."""
     sets, which = np.unique(seen, axis=0, return_inverse=True)
-    found = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
-    return [(agents, samples) for agents, samples in found if agents.size]
+    groups = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
+    return [(agents, samples) for agents, samples in groups if agents.size]
 
 
 def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p: FloatArray) -> FloatArray:
@@ -80,15 +80,15 @@ def _net_error(name: str, flock: Flock, k: int, value: float, off: float) -> flo
     """Error of a measure of the net, whose links may come and go when positions move."""
     d, r = flock.law.lattice
     q = flock.q[k]
-    least, most = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off
+    minimum, most = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off
     if name in _OF_NETS:
-        return max(abs(_OF_NETS[name](q, x) - value) for x in (least, most))
+        return max(abs(_OF_NETS[name](q, x) - value) for x in (minimum, most))
     # Ẽ: links that stay change by 2 off each, those that may come or go by what they add at most
     pairs = links(q, most)
     apart = link_lengths(q, pairs)
-    sure = apart <= least
+    sure = apart <= minimum
     squares = (np.abs(apart - d) + 2.0 * off) ** 2 / d**2
     high = 2.0 * float(squares.sum()) / (2.0 * int(sure.sum()) + 1.0)
-    kept = np.maximum(np.abs(apart[sure] - d) - 2.0 * off, 0.0) ** 2 / d**2
-    low = 2.0 * float(kept.sum()) / (2.0 * len(pairs) + 1.0)
+    excess = np.maximum(np.abs(apart[sure] - d) - 2.0 * off, 0.0) ** 2 / d**2
+    low = 2.0 * float(excess.sum()) / (2.0 * len(pairs) + 1.0)
     return max(abs(high - value), abs(value - low))

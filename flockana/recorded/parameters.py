@@ -26,28 +26,28 @@ class FreeParameters:
         if names is None:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:
-                known = ", ".join(_names(law)) or "it has none"
-                raise ArgumentError(f"free = None: {law.title} has no gains; name parameters: {known}")
+                listing = ", ".join(_names(law)) or "it has none"
+                raise ArgumentError(f"free = None: {law.title} has no gains; name parameters: {listing}")
         if not isinstance(names, list | tuple) or not names or len(set(map(str, names))) < len(names):
             got = format_value(names)
             raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
         paths = tuple(_path(law, str(name)) for name in names)
-        found = cls(law, tuple(map(str, names)), paths)
-        for name, value in zip(found.names, found.values, strict=True):
+        parameters = cls(law, tuple(map(str, names)), paths)
+        for name, value in zip(parameters.names, parameters.values, strict=True):
             if not np.isfinite(value):
                 raise ArgumentError(f"{name} = {value}: expected one number to start from")
-        return found
+        return parameters
 
     @property
     def values(self) -> FloatArray:
         """Values in the law."""
-        found = []
+        numbers = []
         for name, path in zip(self.names, self.paths, strict=True):
             value = law_parameter(self.law, path)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
                 raise ArgumentError(f"{name} = {format_value(value)}: expected a parameter that is one number")
-            found.append(float(value))
-        return np.array(found)
+            numbers.append(float(value))
+        return np.array(numbers)
 
     def with_values(self, values: Sequence[float] | FloatArray) -> Any:
         """Return the law with other values."""
@@ -86,12 +86,12 @@ def _path(law: Any, name: str) -> str:
 
 def _names(law: Any) -> tuple[str, ...]:
     """Numbers among the parameters of a law, and those of its parts."""
-    found: list[str] = []
+    names: list[str] = []
     for field in fields(law):
         value = getattr(law, field.name)
         if is_dataclass(value) and not isinstance(value, type):
             inner = [each.name for each in fields(value) if isinstance(getattr(value, each.name), float)]
-            found += inner if field.name == "gains" else [f"{field.name}.{each}" for each in inner]
+            names += inner if field.name == "gains" else [f"{field.name}.{each}" for each in inner]
         elif isinstance(value, float):
-            found.append(field.name)
-    return tuple(found)
+            names.append(field.name)
+    return tuple(names)

@@ -23,9 +23,9 @@ def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.ND
     best, window = 0, (0, 0)
     for k in starts.tolist():
         order = np.sort(ends[k])[::-1]
-        held = (order - k) * np.arange(1, n + 1)
-        if held.max() > best:
-            j = int(np.argmax(held))
-            best, window = int(held[j]), (k, int(order[j]))
+        area = (order - k) * np.arange(1, n + 1)
+        if area.max() > best:
+            j = int(np.argmax(area))
+            best, window = int(area[j]), (k, int(order[j]))
     start, end = window
     return slice(start, end), np.flatnonzero(present[start:end].all(axis=0))

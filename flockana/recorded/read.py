@@ -123,9 +123,9 @@ class _How(NamedTuple):
 
 def _of_arrays(arrays: Mapping[str, Any], where: str, how: _How) -> dict[str, Any]:
     by_name = how.columns if isinstance(how.columns, Mapping) else None
-    found = named_arrays(arrays, where, columns=by_name, dt=how.dt, axes=how.axes, clock=how.clock)
+    named = named_arrays(arrays, where, columns=by_name, dt=how.dt, axes=how.axes, clock=how.clock)
     ids = arrays.get("ids") if isinstance(arrays.get("ids"), tuple) else None
-    return found if ids is None else found | {"ids": ids}
+    return named if ids is None else named | {"ids": ids}
 
 
 def _of_frame(frame: Any, how: _How) -> dict[str, Any]:
@@ -143,10 +143,10 @@ def _of_file(path: Path, how: _How, accuracy: Mapping[str, Any]) -> Recording:
     if not path.exists():
         raise FileError(f"no file {path}: expected CSV, TSV, npz, mat, netCDF or a dump of LAMMPS")
     try:
-        given = {name: value for name, value in accuracy.items() if value is not None}
+        stated = {name: value for name, value in accuracy.items() if value is not None}
         contents = _contents(path, how)
-        kept = {name: value for name, value in contents.items() if not given or name not in _ACCURACY}
-        return Recording(**({"source": path.name} | kept | given))
+        arrays = {name: value for name, value in contents.items() if not stated or name not in _ACCURACY}
+        return Recording(**({"source": path.name} | arrays | stated))
     except FileError:
         raise
     except ArgumentError as error:
@@ -163,9 +163,12 @@ def _contents(path: Path, how: _How) -> dict[str, Any]:
         return _of_arrays(arrays, str(path), how) | _read_metadata(arrays)
     if suffix in _DUMPS or _starts_with_item(path):
         dump = read_dump(path, how.dt, how.m, wrapped=how.wrapped)
-        held = [name for name in "qpu" if name in dump]
-        texts = ("t from TIME" if how.dt is None else "t from TIMESTEP times dt", f"{', '.join(held)} from the dump")
-        return {name: dump[name] for name in ["t", *held]} | {"ids": [f"{i:g}" for i in dump["ids"]], "read_as": texts}
+        stored = [name for name in "qpu" if name in dump]
+        texts = ("t from TIME" if how.dt is None else "t from TIMESTEP times dt", f"{', '.join(stored)} from the dump")
+        return {name: dump[name] for name in ["t", *stored]} | {
+            "ids": [f"{i:g}" for i in dump["ids"]],
+            "read_as": texts,
+        }
     names = None if how.columns is None or isinstance(how.columns, Mapping) else list(how.columns)
     return table_arrays(read_text(path, names), how.columns, how.dt, how.clock, how.m, how.jitter)
 
@@ -174,8 +177,8 @@ def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:
     """Return names, source and accuracy from the file that `Recording.save` wrote beside the samples."""
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}
-    found = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
-    return found | {"ids": arrays["ids"].tolist(), "source": str(arrays["source"])}
+    stated = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
+    return stated | {"ids": arrays["ids"].tolist(), "source": str(arrays["source"])}
 
 
 def _starts_with_item(path: Path) -> bool:

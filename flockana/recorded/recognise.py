@@ -73,13 +73,13 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
         laws = {name: candidate.law() for name, candidate in candidates().items()}
     if not isinstance(laws, Mapping) or not laws:
         raise ArgumentError(f"laws = {format_value(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
-    found: list[tuple[str, Comparison]] = []
+    ranking: list[tuple[str, Comparison]] = []
     refused: dict[str, str] = {}
     for name, law in laws.items():
         try:
-            found.append((name, compare(rec, law)))
+            ranking.append((name, compare(rec, law)))
         except FlockanaError as error:
             refused[name] = str(error)
-    if not found:
+    if not ranking:
         raise ArgumentError(f"no law applies to this recording: {next(iter(refused.values()))}")
-    return Recognition(tuple(sorted(found, key=lambda each: -each[1].explained_refitted)), refused)
+    return Recognition(tuple(sorted(ranking, key=lambda each: -each[1].explained_refitted)), refused)

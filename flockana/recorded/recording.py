@@ -119,10 +119,12 @@ class Recording(ResultCache):
     def _check_accuracy(self) -> None:
         ensure_flag("estimated", self.estimated)
         ensure_flag("smoothed", self.smoothed)
-        given = [name for name in _ERRORS if getattr(self, name) is not None and not (self.smoothed and name == "p_sd")]
-        if len({name.removeprefix("p_") for name in given}) > 1:
+        errors = [
+            name for name in _ERRORS if getattr(self, name) is not None and not (self.smoothed and name == "p_sd")
+        ]
+        if len({name.removeprefix("p_") for name in errors}) > 1:
             raise ArgumentError(
-                f"{' and '.join(given)} are given: expected one kind of accuracy, bound and p_bound, or sd and p_sd"
+                f"{' and '.join(errors)} are given: expected one kind of accuracy, bound and p_bound, or sd and p_sd"
             )
         normalise(self, lambda name, value: ensure_error(name, value, self.q.shape[:2]), *_ERRORS)
 
@@ -326,9 +328,9 @@ class Recording(ResultCache):
         """
         if ensure_path(path, action="write").suffix != ".npz":
             raise FileError(f"cannot write {str(path)!r}: expected a name that ends in .npz")
-        given = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "read_as"}
+        values = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "read_as"}
         with atomic_write(path) as partial:
-            np.savez_compressed(partial, **{name: value for name, value in given.items() if value is not None})
+            np.savez_compressed(partial, **{name: value for name, value in values.items() if value is not None})
         return Path(path)
 
     def player(self, *, d: float | None = None, r: float | None = None, height: int = 760) -> Any:

@@ -67,22 +67,22 @@ class Problem:
         theta, shift = self.split(z)
         try:
             law = self.with_values(theta)
-            found = [part.residual(law, start, finer, shift) for part, start in zip(self.parts, starts, strict=False)]
+            misfits = [part.residual(law, start, finer, shift) for part, start in zip(self.parts, starts, strict=False)]
         except FlockanaError:
             return None
         if self.spread is not None:
-            found.append(-z[len(theta) :] / self.spread[self.spread > 0.0])
-        return found if all(np.isfinite(each).all() for each in found) else None
+            misfits.append(-z[len(theta) :] / self.spread[self.spread > 0.0])
+        return misfits if all(np.isfinite(each).all() for each in misfits) else None
 
     def slopes(self, z: FloatArray, starts: Sequence[FloatArray], finer: int, block: float) -> list[FloatArray]:
         """Return the slopes of each window in its start, the parameters and the constant errors."""
         theta, _ = self.split(z)
         law, nearby = self.with_values(theta), neighbouring_laws(self.with_values, theta)
-        found = [part.slopes(law, nearby, start, finer, block) for part, start in zip(self.parts, starts, strict=False)]
+        rows = [part.slopes(law, nearby, start, finer, block) for part, start in zip(self.parts, starts, strict=False)]
         if self.spread is None:
-            return found
+            return rows
         active, wide = np.flatnonzero(self.spread > 0.0), []
-        for part, each in zip(self.parts, found, strict=True):
+        for part, each in zip(self.parts, rows, strict=True):
             by_shift = np.zeros((*part.root.shape, len(active)))
             by_shift[:, active, np.arange(len(active))] = part.root[:, active]
             wide.append(np.concatenate([each, by_shift.reshape(len(each), -1)], axis=1))
@@ -153,13 +153,13 @@ class NormalEquations:
         downhill = [each.T @ off for each, off in zip(self.slopes, residuals, strict=True)]
         parts = [(x[: x.size - count], x[x.size - count :]) for x in downhill]
         blocks = list(zip(parts, self.corners, self.across, strict=True))
-        moved = self.covariance @ sum(
-            (own - across.T @ (corner @ start) for (start, own), corner, across in blocks), np.zeros(count)
+        move = self.covariance @ sum(
+            (own_block - across.T @ (corner @ start) for (start, own_block), corner, across in blocks), np.zeros(count)
         )
-        for (start, own), corner, across in blocks:
-            starts.append(corner @ (start - across @ moved))
-            gained += float(start @ starts[-1]) + float(own @ moved)
-        return moved, starts, gained
+        for (start, own_block), corner, across in blocks:
+            starts.append(corner @ (start - across @ move))
+            gained += float(start @ starts[-1]) + float(own_block @ move)
+        return move, starts, gained
 
 
 def inverse(matrix: FloatArray) -> FloatArray:
@@ -198,7 +198,7 @@ def matched(
     for _ in range(rounds):
         if normal is None:
             since, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)
-        moved, moves, promised = normal.step(now)
+        step, moves, promised = normal.step(now)
         unit = max(_squares(now) / size, 1.0)  # residuals of a law that does not fit are larger than noise
         if promised <= (_GAIN if block == _FINE else _CLOSE) * unit:
             if block == _FINE and since <= _NEAR * unit and normal.damping == 0.0:
@@ -206,8 +206,8 @@ def matched(
                 break
             block, damping, normal = _FINE, 0.0, None
             continue
-        part_of = _share(theta, moved, problem.first)
-        tried_theta = theta + part_of * moved
+        part_of = _share(theta, step, problem.first)
+        tried_theta = theta + part_of * step
         tried_starts = [x + part_of * move for x, move in zip(starts, moves, strict=True)]
         tried = problem.residuals(tried_theta, tried_starts, finer)
         gained = 0.0 if tried is None else _squares(now) - _squares(tried)

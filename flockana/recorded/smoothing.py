@@ -62,8 +62,8 @@ def smoothed(
 
 def _usual_interval(t: FloatArray, y: FloatArray) -> float:
     """Return the median interval between the samples of a series."""
-    seen = ~np.isnan(y)
-    steps = [np.diff(t[seen[:, k]]) for k in range(y.shape[1])]
+    is_seen = ~np.isnan(y)
+    steps = [np.diff(t[is_seen[:, k]]) for k in range(y.shape[1])]
     every = np.concatenate(steps)
     return float(np.median(every)) if every.size else 1.0
 
@@ -72,10 +72,10 @@ def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
     """Return all differences of an order between samples within the pieces of the series."""
     rows = []
     for k in range(x.shape[1]):
-        seen = np.flatnonzero(~np.isnan(x[:, k]))
-        piece = pieces[seen, k]
-        if len(seen) > order:
-            rows.append(np.diff(x[seen, k], order)[piece[order:] == piece[: len(piece) - order]])
+        at = np.flatnonzero(~np.isnan(x[:, k]))
+        piece = pieces[at, k]
+        if len(at) > order:
+            rows.append(np.diff(x[at, k], order)[piece[order:] == piece[: len(piece) - order]])
     return np.concatenate(rows) if rows else np.empty(0)
 
 
@@ -100,13 +100,15 @@ def _local_jerk(
     whole = np.zeros((len(tried), pieces.max() + 2, series // groups))
     for g, jerk in enumerate(tried):
         with np.errstate(over="ignore", invalid="ignore"):  # a jerk whose covariances are rounding is not taken
-            own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
-        own = np.nan_to_num(own.reshape(count, -1, groups).sum(axis=2), nan=-1e300, neginf=-1e300, posinf=-1e300)
-        np.add.at(whole[g], (piece, np.arange(series // groups)), own)
+            variances = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), pieces, backwards=False)[2]
+        variances = np.nan_to_num(
+            variances.reshape(count, -1, groups).sum(axis=2), nan=-1e300, neginf=-1e300, posinf=-1e300
+        )
+        np.add.at(whole[g], (piece, np.arange(series // groups)), variances)
         for by in range(-_WINDOW, _WINDOW + 1):
             here, there = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
             weight = 1.0 - abs(by) / (_WINDOW + 1.0)
-            local[g, here] += weight * np.where(piece[here] == piece[there], own[there], 0.0)
+            local[g, here] += weight * np.where(piece[here] == piece[there], variances[there], 0.0)
     allowed = local[:-1] >= local[:-1].max(axis=0) - _DROP
     largest = tried[np.argmax(allowed, axis=0)]
     gain = whole.max(axis=0) - whole[-1] if np.isinf(tried[-1]) else np.full(whole.shape[1:], np.inf)
@@ -146,15 +148,15 @@ def _filtered(
 ) -> _Filtered:
     """Means, deviations, likelihoods of a Kalman filter; of a state given its piece if it goes backwards too."""
     count, series = y.shape
-    seen: npt.NDArray[np.bool_] = ~np.isnan(y)
-    alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk, pieces))  # then so are all covariances
+    is_seen: npt.NDArray[np.bool_] = ~np.isnan(y)
+    alike = all(bool((one == one[:, :1]).all()) for one in (is_seen, sd, jerk, pieces))  # then so are all covariances
     wide = 1 if alike else series
     begins = (pieces >= 0) & (pieces != np.vstack([np.full((1, series), -2), pieces[:-1]]))
     unknown = np.broadcast_to(np.diag(_initial_variance(y, sd, pieces)), (wide, 3, 3))
     state, cov = np.zeros((series, 3)), unknown
     means, covs = np.empty((count, series, 3)), np.empty((count, wide, 3, 3))
     before, cov_before = np.empty_like(means), np.empty_like(covs)
-    likelihood, use, variance = np.zeros((count, series)), seen[:, :wide], sd[:, :wide] ** 2
+    likelihood, use, variance = np.zeros((count, series)), is_seen[:, :wide], sd[:, :wide] ** 2
     turns, kicks = zip(*(_transition(h) for h in np.diff(t, prepend=t[0]).tolist()), strict=True)
     for k in range(count):
         if k:
@@ -165,8 +167,8 @@ def _filtered(
         if use[k].any():
             size = np.maximum(cov[:, 0, 0], 0.0) + variance[k]
             gain = np.where(use[k][:, None], cov[:, :, 0] / size[:, None], 0.0)
-            off = np.where(seen[k], np.nan_to_num(y[k]) - state[:, 0], 0.0)
-            likelihood[k] = -0.5 * (off**2 / size + np.log(size)) * seen[k]
+            off = np.where(is_seen[k], np.nan_to_num(y[k]) - state[:, 0], 0.0)
+            likelihood[k] = -0.5 * (off**2 / size + np.log(size)) * is_seen[k]
             state = state + gain * off[:, None]
             keep = np.broadcast_to(np.eye(3), (wide, 3, 3)).copy()
             keep[:, :, 0] -= gain

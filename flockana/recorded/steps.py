@@ -75,12 +75,12 @@ def kinematic_scheme(rec: Recording) -> str | None:
     if rec.p is None or rec.gaps or not _even(rec):
         return None
     h, p = rec.interval, rec.p
-    moved = np.diff(rec.q, axis=0)
+    steps = np.diff(rec.q, axis=0)
     forms = {"explicit Euler": p[:-1], "semi-implicit Euler": p[1:], "Taylor steps": 0.5 * (p[:-1] + p[1:])}
-    size = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(moved).max())
+    size = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(steps).max())
     turned = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():
-        if turned > 100.0 * size and float(np.abs(moved - h * mean).max()) <= size:
+        if turned > 100.0 * size and float(np.abs(steps - h * mean).max()) <= size:
             return name
     return None
 

@@ -102,16 +102,16 @@ def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
     """
     pieces = np.full(rec.present.shape, -1, dtype=np.intp)
     for i in range(rec.n):
-        seen = np.flatnonzero(rec.present[:, i])
-        steps = np.diff(rec.t[seen])
+        rows = np.flatnonzero(rec.present[:, i])
+        steps = np.diff(rec.t[rows])
         apart = steps > _MISSED * (float(np.median(steps)) if len(steps) else 1.0)
         number = np.concatenate([[0], np.cumsum(apart)])
         last = np.full(len(rec.t), -1)
-        last[seen] = np.arange(len(seen))
+        last[rows] = np.arange(len(rows))
         last = np.maximum.accumulate(last)  # the sample before
-        inside = (last >= 0) & (np.arange(len(rec.t)) <= seen[-1])
+        inside = (last >= 0) & (np.arange(len(rec.t)) <= rows[-1])
         here = last[inside]
-        after = np.minimum(here + (rec.t[inside] > rec.t[seen[here]]), len(seen) - 1)
+        after = np.minimum(here + (rec.t[inside] > rec.t[rows[here]]), len(rows) - 1)
         pieces[inside, i] = np.where(number[here] == number[after], number[here], -1)
     return pieces
 
@@ -177,19 +177,19 @@ def _bridge(
             (np.stack([-fall, fall]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
         ],
     ]
-    told = bool(np.isfinite(ends.off_p).all() and np.isfinite(ends.p).all())
-    p, off_p = (ends.p, ends.off_p) if told else (np.zeros(ends.p.shape), np.zeros(2))
-    found = []
+    is_told = bool(np.isfinite(ends.off_p).all() and np.isfinite(ends.p).all())
+    p, off_p = (ends.p, ends.off_p) if is_told else (np.zeros(ends.p.shape), np.zeros(2))
+    pieces = []
     for order in (0, 1):
         best, error = np.zeros((len(s), ends.q.shape[1])), np.full(len(s), np.inf)
-        for form in forms[: 1 + told]:
+        for form in forms[: 1 + is_told]:
             by_q, by_p = form[order]
             off = most * _kernel(s, duration, by_q[1], by_p[1], order)
             off = off + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ off_p
             best = np.where((off < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best)
             error = np.minimum(off, error)
-        found += [best, error]
-    return found[0], found[1], found[2], found[3]
+        pieces += [best, error]
+    return pieces[0], pieces[1], pieces[2], pieces[3]
 
 
 def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, order: int) -> FloatArray:

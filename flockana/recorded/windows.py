@@ -80,8 +80,8 @@ class Window:
             for k in range(a, b):
                 now = propagate(now, float(times[k + 1] - times[k]))
                 every[k + 1] = now[:width]
-        found = every[at] * self.root[:, :, None]
-        return found.reshape(len(self.t) * width, -1)
+        rows = every[at] * self.root[:, :, None]
+        return rows.reshape(len(self.t) * width, -1)
 
 
 def _propagator(
@@ -144,14 +144,14 @@ def windows(rec: Recording, duration: float, sd: FloatArray | None = None) -> li
         y = np.concatenate([y, rec.p.reshape(total, n * m)], axis=1)
     root = np.where(np.isnan(y), 0.0, 1.0 / sd)
     guess = _guess(rec, fit.q, fit.p)
-    found = []
+    parts = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         if b - a >= 2 and (rec.present[a:b].sum(axis=0) >= 2).all():
             k = a + int(np.argmax(rec.present[a:b].all(axis=1)))  # where all are seen, if they are
-            found.append(Window(rec.t[k:b], y[k:b], root[k:b], guess[k], m))
-    if not found:
+            parts.append(Window(rec.t[k:b], y[k:b], root[k:b], guess[k], m))
+    if not parts:
         raise ArgumentError("no window of samples holds all agents: expected some time at which all were seen")
-    return found
+    return parts
 
 
 def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
@@ -161,11 +161,11 @@ def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
     p = (p if rec.p is None else np.where(np.isnan(rec.p), p, rec.p)).reshape(total, n * m)
     guess = np.empty((total, 2 * n * m))
     for k in range(n * m):
-        seen = np.flatnonzero(~np.isnan(q[:, k]))
-        guess[:, k] = np.interp(rec.t, rec.t[seen], q[seen, k])
-        known = np.flatnonzero(~np.isnan(p[:, k]))
+        rows = np.flatnonzero(~np.isnan(q[:, k]))
+        guess[:, k] = np.interp(rec.t, rec.t[rows], q[rows, k])
+        known_rows = np.flatnonzero(~np.isnan(p[:, k]))
         slopes = np.gradient(guess[:, k], rec.t) if total > 1 else np.zeros(total)
-        guess[:, n * m + k] = np.interp(rec.t, rec.t[known], p[known, k]) if known.size else slopes
+        guess[:, n * m + k] = np.interp(rec.t, rec.t[known_rows], p[known_rows, k]) if known_rows.size else slopes
     return guess
 
 
@@ -188,10 +188,10 @@ def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[Floa
 
 def neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[Neighbour]:
     """Return for each parameter the laws with it increased and decreased, and the difference."""
-    found = []
+    laws = []
     for k, value in enumerate(values.tolist()):
         more, less = values.copy(), values.copy()
         by = _NUDGE * (abs(value) or 1.0)
         more[k], less[k] = value + by, value - by if value != 0.0 else 0.0
-        found.append((with_values(more), with_values(less), float(more[k] - less[k])))
-    return found
+        laws.append((with_values(more), with_values(less), float(more[k] - less[k])))
+    return laws

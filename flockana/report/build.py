@@ -50,8 +50,8 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
         with tempfile.TemporaryFile(dir=path):
             pass
     except OSError as error:
-        taken = os.path.exists(path) and not os.path.isdir(path)
-        reason = "there is a file of that name" if taken else error.strerror or error
+        is_taken = os.path.exists(path) and not os.path.isdir(path)
+        reason = "there is a file of that name" if is_taken else error.strerror or error
         raise FileError(f"cannot write to {path}: {reason}; choose a folder you may write to") from error
     return path
 
@@ -155,15 +155,15 @@ def page_environment() -> Environment:
 
 
 def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
-    shown = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
-    counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in shown)
-    verdicts, whole = [finding.verdict for _, finding, _ in shown], run["of"] is None
+    entries = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
+    counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in entries)
+    verdicts, whole = [finding.verdict for _, finding, _ in entries], run["of"] is None
     return (
         page_environment()
         .get_template("report/template.html.j2")
         .render(
             run=run,
-            opening=opening_sentence([finding for _, finding, _ in shown]),
+            opening=opening_sentence([finding for _, finding, _ in entries]),
             folded=whole,
             telling=most_telling(pages),
             scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
@@ -173,12 +173,12 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
             errata=errata(),
             sorts=SORTS,
             foreword=FOREWORD,
-            checked={finding.verdict.theorem: anchor for _, finding, anchor in reversed(shown)},  # where it is first
+            checked={finding.verdict.theorem: anchor for _, finding, anchor in reversed(entries)},  # where it is first
             coverage={"sources": coverage(), "anchors": anchors(pages)} if whole else None,
             front=front_findings(pages) if whole else (),
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_unexpected(pages),
-            sources=sorted({source_name(f.references[0]) for _, f, _ in shown if f.references}),
+            sources=sorted({source_name(f.references[0]) for _, f, _ in entries if f.references}),
             rigours=sorted({verdict.rigour for verdict in verdicts}),
             player_style=Markup(style()),
             player_script=Markup(script()),
@@ -192,11 +192,11 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
 
 def _unexpected(pages: Sequence[Page]) -> list[tuple[str, str]]:
     """Return (anchor in the page, text) of each difference from the expected statuses."""
-    found = []
+    unexpected = []
     for each in pages:
         if isinstance(each, ScenarioPage) and each.early_end:
-            found.append((scenario_id(each.name), each.early_end))
+            unexpected.append((scenario_id(each.name), each.early_end))
         for finding in each.findings:
             anchor = verdict_id(each.subject, finding.verdict.theorem)
-            found += [(anchor, text) for text in finding.surprises]
-    return found
+            unexpected += [(anchor, text) for text in finding.surprises]
+    return unexpected

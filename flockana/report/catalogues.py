@@ -56,10 +56,10 @@ def _theorem_entries() -> list[dict[str, Any]]:
             if key in expected:
                 expected[key].add(status)
     entries = []
-    for name, known in ((name, theorem(name)) for name in theorems()):
-        statuses = expected[name] | {status for key, status in known.expected.items() if key == name}
-        entry = {"name": name, "title": known.title, "source": _first(known.references), "printed": known.source}
-        entries.append(entry | {"checked on": _KINDS[known.kind], "statuses": sorted(statuses)})
+    for name, each in ((name, theorem(name)) for name in theorems()):
+        statuses = expected[name] | {status for key, status in each.expected.items() if key == name}
+        entry = {"name": name, "title": each.title, "source": _first(each.references), "printed": each.source}
+        entries.append(entry | {"checked on": _KINDS[each.kind], "statuses": sorted(statuses)})
     return entries
 
 
@@ -76,13 +76,13 @@ def select(
     """Return the entries that contain all words, of one source, with one expected status."""
     every = list(entries)
     sources = sorted({entry["source"] for entry in every})
-    if source and not any(source.casefold() in known.casefold() for known in sources):
+    if source and not any(source.casefold() in source_name.casefold() for source_name in sources):
         raise ArgumentError(f"--source {source}: expected part of {', '.join(sources)}")
 
     def fits(entry: dict[str, Any]) -> bool:
         text = " ".join(map(str, entry.values())).casefold()
-        found = all(word.casefold() in text for word in words)
-        return found and source.casefold() in entry["source"].casefold() and (not status or status in entry["statuses"])
+        match = all(word.casefold() in text for word in words)
+        return match and source.casefold() in entry["source"].casefold() and (not status or status in entry["statuses"])
 
     return [entry for entry in every if fits(entry)]
 
@@ -91,8 +91,8 @@ def short_list(entries: Sequence[dict[str, Any]]) -> str:
     """Return a line for each entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
     for source in dict.fromkeys(entry["source"] for entry in entries):
-        own = (entry for entry in entries if entry["source"] == source)
-        lines += [source, *(f"  {entry['name']:{width}}  {entry['title']}" for entry in own)]
+        entries_of_source = (entry for entry in entries if entry["source"] == source)
+        lines += [source, *(f"  {entry['name']:{width}}  {entry['title']}" for entry in entries_of_source)]
     return "\n".join(lines)
 
 

@@ -38,9 +38,9 @@ class Chart:
 
     def svg(self) -> str:
         """Return the chart as an ``<svg>`` element."""
-        shown = [np.asarray(curve.values, dtype=np.float64) for curve in self.curves]
-        logarithmic = self.logarithmic and any((values > 0.0).any() for values in shown)
-        low, high = _limits([*shown, np.array([level for level, _ in self.levels])], logarithmic)
+        curves = [np.asarray(curve.values, dtype=np.float64) for curve in self.curves]
+        logarithmic = self.logarithmic and any((values > 0.0).any() for values in curves)
+        low, high = _limits([*curves, np.array([level for level, _ in self.levels])], logarithmic)
         t0, t1 = float(self.t[0]), float(self.t[-1])
         width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BELOW
 
@@ -61,12 +61,12 @@ class Chart:
                 at = y(log10(level) if logarithmic else level)
                 parts.append(f'<path class="level" d="M{_LEFT} {at:.0f}H{_WIDTH - _RIGHT}"/>')
                 parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{at - 6:.0f}">{escape(name)}</text>')
-        for k, values in enumerate(shown):
+        for k, values in enumerate(curves):
             keep = _kept(values)
             with np.errstate(divide="ignore", invalid="ignore"):
                 heights = np.log10(values[keep]) if logarithmic else values[keep]
-            drawn = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
-            parts.append(f'<path class="curve c{k}" d="{drawn}"/>')
+            path = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
+            parts.append(f'<path class="curve c{k}" d="{path}"/>')
         words = escape(self.words, quote=True)
         head = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">'
         named = [(k, curve.label) for k, curve in enumerate(self.curves) if curve.label]
@@ -86,11 +86,11 @@ def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
     if samples <= 2 * _SPANS:
         return np.arange(samples)
     edges = np.linspace(0, samples, _SPANS + 1).astype(int)
-    found, numbers = {0, samples - 1}, np.nan_to_num(values)
+    corners, numbers = {0, samples - 1}, np.nan_to_num(values)
     for first, last in pairwise(edges.tolist()):
         part = numbers[first:last]
-        found |= {int(first + part.argmin()), int(first + part.argmax())}
-    return np.array(sorted(found))
+        corners |= {int(first + part.argmin()), int(first + part.argmax())}
+    return np.array(sorted(corners))
 
 
 def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, float]:

@@ -43,15 +43,15 @@ def comparison_section(seed: int = 0) -> ComparisonSection:
 def _row(outcome: Outcome) -> Row:
     entry, verdict, share = outcome.entry, outcome.verdict, outcome.velocity_share
     velocities, positions = f"{share:.2g}" if share > _SETTLED else "0", f"{outcome.position_share:.3g}"
-    found = velocities, positions, str(outcome.groups), f"{outcome.least_distance:.3g}"
-    return Row(entry.name, entry.theorem, entry.promise, verdict.status, _reason(verdict), *found)
+    cells = velocities, positions, str(outcome.groups), f"{outcome.least_distance:.3g}"
+    return Row(entry.name, entry.theorem, entry.promise, verdict.status, _reason(verdict), *cells)
 
 
 def _reason(verdict: Verdict) -> str:
     """Return why a verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
-    found = [claim for claim in verdict.main_claims if claim.status == verdict.status]
+    claims = [claim for claim in verdict.main_claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
-        return f"{', '.join(claim.name for claim in found)}: {found[0].detail}"
+        return f"{', '.join(claim.name for claim in claims)}: {claims[0].detail}"
     missed = unmet(verdict.hypotheses)
     return "" if missed is None else f"{missed.name}: {missed.detail}"
 

@@ -66,8 +66,8 @@ def control_pictures() -> tuple[Picture, ...]:
 def state_space(flock: Linearisation, name: str, words: str) -> Download:
     """Return a linearised flock as JSON: entries of A in the order (δq, δp), agent by agent."""
     matrix = flock.A_sparse.tocoo()
-    kept = np.abs(matrix.data) > 0.0
-    columns = (values[kept].tolist() for values in (matrix.row, matrix.col, matrix.data))
+    is_nonzero = np.abs(matrix.data) > 0.0
+    columns = (values[is_nonzero].tolist() for values in (matrix.row, matrix.col, matrix.data))
     entries = [list(entry) for entry in zip(*columns, strict=True)]
     data = {
         "what": words,

@@ -38,9 +38,9 @@ def pictures_of_laws() -> dict[type, Callable[[Trajectory], tuple[Picture, ...]]
 
 def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
     """Draw a run with its law's own pictures, or as any flock."""
-    drawn = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
-    own = (draw for law in drawn for kind, draw in pictures_of_laws().items() if isinstance(law, kind))
-    draw = next(own, flock_pictures)
+    laws = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
+    draws = (draw for law in laws for kind, draw in pictures_of_laws().items() if isinstance(law, kind))
+    draw = next(draws, flock_pictures)
     if not len(instants):
         return draw(trajectory)
     caption = f"The {len(instants)} instants that the source shows: the sample nearest to each. {_WORDS}"
@@ -55,7 +55,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
     blocked = bool((run.law.continuous or run.law).obstacles)
     middle = "middle (of a flock that splits: where it is most split)" if blocked else "middle"
-    made = [
+    pictures_made = [
         Picture(f"Start, {middle} and end. {_WORDS}", stills(run, times)),
         Picture(
             "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
@@ -74,8 +74,8 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
             "where the flock splits."
         )
-        made.append(Picture(words, panels(_clearances(run))))
-    return tuple(made)
+        pictures_made.append(Picture(words, panels(_clearances(run))))
+    return tuple(pictures_made)
 
 
 def measured(run: Trajectory, name: str) -> Chart:

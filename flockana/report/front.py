@@ -30,23 +30,23 @@ class FrontFinding(NamedTuple):
 def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
     """Return the findings whose verdicts are in the report and as expected."""
     by_name = {page.name: page for page in pages if isinstance(page, ScenarioPage)}
-    found = []
+    findings = []
     for scenario, theorem, text in FINDINGS:
         page = by_name.get(scenario)
         verdicts = [] if page is None else [f for f in page.findings if f.verdict.theorem == theorem]
         if page is not None and verdicts and verdicts[0].as_expected:
             address = verdict_id(scenario, theorem)
-            found.append(FrontFinding(text, verdicts[0].verdict.status, address, page.thumbnail))
-    return tuple(found)
+            findings.append(FrontFinding(text, verdicts[0].verdict.status, address, page.thumbnail))
+    return tuple(findings)
 
 
 def opening_sentence(findings: Iterable[Finding]) -> str:
     """Return how many printed claims were found false as expected, and how many theorems hold; empty if none were."""
     expected = [f.verdict for f in findings if f.as_expected]
     false = sum(each.status == "refuted" and each.author == "source" for each in expected)
-    held = sum(each.status == "verified" for each in expected)
+    count_verified = sum(each.status == "verified" for each in expected)
     claims = "1 printed claim was" if false == 1 else f"{false} printed claims were"
-    return f"{claims} found false on these cases, as expected; verified as expected: {held}." if false else ""
+    return f"{claims} found false on these cases, as expected; verified as expected: {count_verified}." if false else ""
 
 
 def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Finding]]]:
@@ -54,8 +54,8 @@ def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Findi
     front = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
 
     def rank(page: ScenarioPage, finding: Finding) -> tuple[bool, bool, int]:
-        shown = (page.name, finding.verdict.theorem) in front
-        return not finding.surprises, not shown, _TELLING.index(finding.verdict.status)
+        is_front = (page.name, finding.verdict.theorem) in front
+        return not finding.surprises, not is_front, _TELLING.index(finding.verdict.status)
 
     ranked = []
     for page in (page for page in pages if isinstance(page, ScenarioPage)):

@@ -74,8 +74,8 @@ def _adapt_svg(text: str) -> str:
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)
     text = re.sub(r"<svg[^>]*>", f'<svg {box.group(0) if box else ""} class="drawn">', text, count=1)
-    used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
-    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{IDS}{m[1]}"' if m[1] in used else "", text)
+    names_used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
+    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{IDS}{m[1]}"' if m[1] in names_used else "", text)
     text = re.sub(r'(href="#|url\(#)', rf"\g<1>{IDS}", text).replace("xlink:href", "href")
     text = re.sub(r"#[0-9a-f]{6}\b", lambda m: f"var({_COLOURS[m[0]]})" if m[0] in _COLOURS else m[0], text)
     text = re.sub(r"font-family: [^;\"]*;? ?", "", text)  # the page has one

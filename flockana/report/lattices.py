@@ -83,5 +83,5 @@ def _barrier(verdicts: Sequence[Verdict]) -> Iterator[Picture]:
         "least V of all states; it stays near c*."
     )
     if computed is not None and witness is not None:
-        energies = ({n: found[key] for n, found in computed.items()} for key in ("together", "ground"))
+        energies = ({n: energy_of[key] for n, energy_of in computed.items()} for key in ("together", "ground"))
         yield drawn(text, (6.5, 3.4), plots().barrier, *energies, witness["c*"])

@@ -109,8 +109,8 @@ def own_pages(
         )
     catalogued = isinstance(subject, Scenario) and not theorems
     verdicts = item.verify(run) if catalogued else _judge(item.name, evidence, law, theorems)
-    own = {each.id: each for each in theorems if isinstance(each, Theorem)}
-    return [scenario_page(item, run, verdicts, figures=figures, own=own)]
+    own_theorems = {each.id: each for each in theorems if isinstance(each, Theorem)}
+    return [scenario_page(item, run, verdicts, figures=figures, own=own_theorems)]
 
 
 def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
@@ -132,13 +132,13 @@ def _ensure_unused(what: str, **given: Any) -> None:
 
 def _ensure_theorems(theorems: Any) -> tuple[str | Theorem, ...]:
     """Return theorems as a tuple; raise unless they are names or theorems."""
-    given = (theorems,) if isinstance(theorems, (str, Theorem)) else theorems
-    if not isinstance(given, Sequence) or not all(isinstance(each, (str, Theorem)) for each in given):
+    names = (theorems,) if isinstance(theorems, (str, Theorem)) else theorems
+    if not isinstance(names, Sequence) or not all(isinstance(each, (str, Theorem)) for each in names):
         got = format_value(theorems)
         raise ArgumentError(
             f"theorems = {got}: expected a list of names or own claims, such as ['os-1', fl.claim(...)]"
         )
-    return tuple(given)
+    return tuple(names)
 
 
 def _judge(name: str, seen: Any, law: Any, theorems: Sequence[str | Theorem]) -> tuple[Verdict, ...]:

@@ -140,10 +140,10 @@ def scenario_page(
 
 def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
     """Return verdicts of the user's own as plain data, without a run."""
-    known = catalogue()
+    entries = catalogue()
     findings = (
-        _finding(each, known[each.theorem], {})
-        if each.theorem in known
+        _finding(each, entries[each.theorem], {})
+        if each.theorem in entries
         else Finding(each, each.theorem, "", "own claim")
         for each in verdicts
     )
@@ -168,8 +168,8 @@ def _scenario_finding(scenario: Scenario, verdict: Verdict, own: Mapping[str, Th
     if verdict.theorem != SOURCE:
         return _finding(verdict, own.get(verdict.theorem) or theorem(verdict.theorem), expected)
     reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
-    said = "What the source reports", reports, scenario.source, expected
-    return Finding(verdict, *said, differences(verdict, expected), scenario.references)
+    texts = "What the source reports", reports, scenario.source, expected
+    return Finding(verdict, *texts, differences(verdict, expected), scenario.references)
 
 
 def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) -> Finding:

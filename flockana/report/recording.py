@@ -77,8 +77,8 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
     rows = []
     for name in MEASURES:
         values, errors = seen[name].values, seen[f"{name}_error"].values
-        known = [f" ± {error:.2g}" if np.isfinite(error) else "" for error in errors]
-        first, last = (f"{values[k]:.4g}{known[k]}" for k in (0, -1))
+        texts = [f" ± {error:.2g}" if np.isfinite(error) else "" for error in errors]
+        first, last = (f"{values[k]:.4g}{texts[k]}" for k in (0, -1))
         rows.append((str(seen[name].attrs["long_name"]), first, last))
     return rows
 

@@ -146,8 +146,8 @@ def _row(label: str, statuses: Counter[str], level: float, item: Scenario | None
     verified, refuted = (Share(statuses[of], runs, *map(float, both)) for of, both in ends.items())
     others = statuses["vacuous"], statuses["inconclusive"]
     reported = {} if item is None else {report.name: report.text for report in item.reports}
-    known = catalogue().get(name)
-    text = reported.get(claim, claim) if known is None else known.title
+    entry = catalogue().get(name)
+    text = reported.get(claim, claim) if entry is None else entry.title
     return Row(name, claim, text, verified, refuted, *others, "" if item is None else item.expected.get(label, ""))
 
 
@@ -159,7 +159,7 @@ def _picture(entries: Sequence[ScenarioShares]) -> Picture | None:
         return None
 
     both = {of: [getattr(row, of) for row in rows.values()] for of in ("verified", "refuted")}
-    shares = {of: np.array([(each.share, each.low, each.high) for each in found]).T for of, found in both.items()}
+    shares = {of: np.array([(each.share, each.low, each.high) for each in share]).T for of, share in both.items()}
     runs = [each.runs for each in both["verified"]]
     text = (
         "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; the "

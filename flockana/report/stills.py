@@ -33,10 +33,10 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     height = max(60.0, scale * float(np.ptp(every[:, 1])) + 0.08 * _SIZE)
 
     def put(points: FloatArray) -> FloatArray:
-        shown = 0.04 * _SIZE + scale * (points - low)
-        return np.column_stack([shown[:, 0], height - shown[:, 1]])
+        points_drawn = 0.04 * _SIZE + scale * (points - low)
+        return np.column_stack([points_drawn[:, 0], height - points_drawn[:, 1]])
 
-    drawn = []
+    parts = []
     for j, k in enumerate(samples.tolist()):
         label = f"t = {run.t[k]:.4g}"
         inner = (
@@ -49,8 +49,8 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
             if marks is not None and marks[j].size:
                 inner += "".join(_mark(kind, *at) for at in put(_project(marks[j])).tolist())
         image = f'<svg viewBox="0 0 {_SIZE:g} {height:.0f}" role="img" aria-label="The flock at {label}">{inner}</svg>'
-        drawn.append(f'<div class="still"><p class="axis">{label}</p>{image}</div>')
-    return f'<div class="panels">{"".join(drawn)}</div>'
+        parts.append(f'<div class="still"><p class="axis">{label}</p>{image}</div>')
+    return f'<div class="panels">{"".join(parts)}</div>'
 
 
 def still(run: Trajectory, time: float) -> str:

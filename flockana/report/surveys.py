@@ -40,17 +40,17 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     """Return the surveys of the section on many seeds."""
     if name is None:
         usual = {subject: scenario(subject, seed).seeds for subject in scenarios()}
-        wanted = {subject: most if count is None else count for subject, most in usual.items() if most}
+        counts = {subject: most if count is None else count for subject, most in usual.items() if most}
     elif not count:
         return ()
     elif name not in scenarios() or not scenario(name, seed).reports:
         expected = f"expected a scenario whose source reports an outcome, got {name}"
         raise ArgumentError(f"--seeds {count}: {expected}; leave --seeds out")
     else:
-        wanted = {name: count}
+        counts = {name: count}
     return tuple(
         Survey(subject, tuple(range(first, min(first + _AT_ONCE, seed + most))))
-        for subject, most in wanted.items()
+        for subject, most in counts.items()
         for first in range(seed, seed + most, _AT_ONCE)
     )
 

@@ -35,8 +35,8 @@ class FoldingTable(Table):
             cells = [heads[k], *(row[k] for row in rows)]
             widest = max(max((line.cell_len for line in cell.split()), default=0) for cell in cells)
             widest = min(max(widest, each.min_width or 0), each.max_width or _WIDE)
-            least = max(min(widest, _LEAST), *map(_longest_piece, cells))
-            rooms[k] = max(least, widest + spare)
+            narrowest = max(min(widest, _LEAST), *map(_longest_piece, cells))
+            rooms[k] = max(narrowest, widest + spare)
             spare += widest - rooms[k]
         if spare < 0 and full > options.max_width:
             yield from self._blocks(heads, rows)
@@ -52,9 +52,9 @@ class FoldingTable(Table):
         """Yield each row as a block: its name, with its values below."""
         yield Text()
         for name, *values in rows:
-            shown = name.copy()
-            shown.overflow, shown.no_wrap = "fold", False
-            yield shown
+            name_shown = name.copy()
+            name_shown.overflow, name_shown.no_wrap = "fold", False
+            yield name_shown
             for head, value in zip(heads[1:], values, strict=True):
                 if value.plain.strip():
                     before = Text(f"{head.plain}: " if self.show_header and head.plain else "", style="bright_black")

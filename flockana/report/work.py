@@ -45,22 +45,22 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
     if name in scenarios():
         return (Task(name, seed=seed, figures=figures),)
     if name is None:
-        wanted: tuple[str, ...] = theorems()
+        names: tuple[str, ...] = theorems()
     elif name == ERRATA:
-        wanted = tuple(erratum for erratum in theorems() if erratum[0].isupper())
+        names = tuple(erratum for erratum in theorems() if erratum[0].isupper())
     elif name in theorems():
-        wanted = (name,)
+        names = (name,)
     else:
         raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems(), ERRATA))
-    fixed = [Task(t, fixed=True) for t in wanted if theorem(t).kind == "fixed"]
+    fixed = [Task(t, fixed=True) for t in names if theorem(t).kind == "fixed"]
     runs = []
-    for subject in scenarios() if len(fixed) < len(wanted) else ():  # to build them all takes a second
-        shared = () if name is None else tuple(t for t in scenario(subject, seed).theorems if t in wanted)
+    for subject in scenarios() if len(fixed) < len(names) else ():  # to build them all takes a second
+        shared = () if name is None else tuple(t for t in scenario(subject, seed).theorems if t in names)
         if name is None or shared:
             runs.append(Task(subject, seed=seed, only=shared, figures=figures))
     if not runs and not fixed:
         raise ArgumentError(
-            f"{name} is checked on a {theorem(wanted[0]).kind}, and no scenario names it: "
+            f"{name} is checked on a {theorem(names[0]).kind}, and no scenario names it: "
             "use flockana.verify from Python, or --on with a saved run"
         )
     return (*runs, *fixed)
@@ -101,9 +101,9 @@ def check_all(
         return
     lost: list[str] = []
     with worker_pool(jobs=min(jobs, len(tasks))) as workers:
-        for done in map_in_batches(_execution_order(tasks), _check_batch, workers, watch=watch):
-            yield from (result for _, result in done if result is not None)
-            lost += [task.name for task, result in done if result is None]
+        for batch in map_in_batches(_execution_order(tasks), _check_batch, workers, watch=watch):
+            yield from (result for _, result in batch if result is not None)
+            lost += [task.name for task, result in batch if result is None]
     if lost:
         raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
 

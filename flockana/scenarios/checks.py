@@ -45,12 +45,12 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
 
 
 def _ensure_statuses(name: str, statuses: Any) -> None:
-    known = get_args(Status)
+    allowed = get_args(Status)
     if not isinstance(statuses, Mapping):
         raise ArgumentError(f"{name} = {statuses!r}: expected a mapping of theorem ids to statuses")
-    wrong = {key: status for key, status in statuses.items() if status not in known}
+    wrong = {key: status for key, status in statuses.items() if status not in allowed}
     if wrong:
-        raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(known)}")
+        raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(allowed)}")
     unnamed = [key for key in statuses if not isinstance(key, str)]
     if unnamed:
         raise ArgumentError(f"{name} has a key {unnamed[0]!r}: expected the id of a theorem")
@@ -64,12 +64,12 @@ def ensure_judged(names: Iterable[str]) -> None:
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
     """Raise unless a scenario has these options, with values of the right kind."""
-    known = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
-    unknown = sorted(set(options) - set(known))
+    defaults = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
+    unknown = sorted(set(options) - set(defaults))
     if unknown:
-        raise ArgumentError(f"{name} has no option {', '.join(unknown)}; it has {', '.join(known) or 'none'}")
+        raise ArgumentError(f"{name} has no option {', '.join(unknown)}; it has {', '.join(defaults) or 'none'}")
     for key, value in options.items():
-        _ensure_like(known[key], key, value)
+        _ensure_like(defaults[key], key, value)
 
 
 def _ensure_like(default: Any, key: str, value: Any) -> None:

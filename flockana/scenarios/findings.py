@@ -57,8 +57,8 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
 
     def converted(check: Check) -> Check:
         def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:
-            own = scales()
-            length, time = own.length / run.scales.length, own.time / run.scales.time
+            units = scales()
+            length, time = units.length / run.scales.length, units.time / run.scales.time
             same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
             return check(run if same else rescale(run, length=length, time=time), tolerances)
 

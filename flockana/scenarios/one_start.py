@@ -115,9 +115,9 @@ def entries() -> tuple[LawEntry, ...]:
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
     """Run the common start under each law, and check its theorem."""
-    known, start = {entry.name: entry for entry in entries()}, one_start(seed)
-    chosen = [ensure_known("law", name, tuple(known)) for name in (known if names is None else names)]
-    return tuple(_outcome(known[name], *start) for name in chosen)
+    catalogue, start = {entry.name: entry for entry in entries()}, one_start(seed)
+    laws = [ensure_known("law", name, tuple(catalogue)) for name in (catalogue if names is None else names)]
+    return tuple(_outcome(catalogue[name], *start) for name in laws)
 
 
 def _outcome(entry: LawEntry, q: FloatArray, p: FloatArray) -> Outcome:

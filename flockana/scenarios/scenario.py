@@ -145,10 +145,10 @@ class Scenario(WithStart):
         """Return the source's reports as one verdict; None if it reports nothing."""
         if not self.reports:
             return ()
-        used = Tolerances() if tolerances is None else tolerances
+        tolerances_used = Tolerances() if tolerances is None else tolerances
         seen = Observed.of(trajectory)
-        known = with_resolution((), (report.judge(seen, used) for report in self.reports), seen)
-        return (Verdict(SOURCE, *known, used, self.name),)
+        verdicts = with_resolution((), (report.judge(seen, tolerances_used) for report in self.reports), seen)
+        return (Verdict(SOURCE, *verdicts, tolerances_used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
         """Return the scenario in other units (`flockana.rescale`); reports keep their source's units."""

@@ -25,8 +25,8 @@ def lazy_state(
     shape: tuple[int, int], draw: Callable[[], tuple[FloatArray, FloatArray]]
 ) -> tuple[FloatArray, FloatArray]:
     """Return positions and velocities for a `Scenario` that are drawn together on first access."""
-    drawn = cache(draw)
-    return lazy_array(shape, lambda: drawn()[0]), lazy_array(shape, lambda: drawn()[1])
+    state = cache(draw)
+    return lazy_array(shape, lambda: state()[0]), lazy_array(shape, lambda: state()[1])
 
 
 class LazyField:

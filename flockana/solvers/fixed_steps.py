@@ -167,10 +167,10 @@ class FixedSteps(DiscreteLaw):
         """Class and arguments by which files hold it: the solver's class, called with a law; None of a subclass."""
         if type(self) is not FixedSteps:
             return None
-        known = {"law": self.law, "dt": self.dt}
+        arguments = {"law": self.law, "dt": self.dt}
         if self._wrappers and self.solver.order_of_wrapped:  # as files of format 1 have it
-            return _STEPPED, known | {"order": self.solver.order_of_wrapped}
-        return type(self.solver), known
+            return _STEPPED, arguments | {"order": self.solver.order_of_wrapped}
+        return type(self.solver), arguments
 
     @property
     def title(self) -> str:
@@ -261,8 +261,8 @@ class FixedSteps(DiscreteLaw):
     def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:  # noqa: D102
         if overrides_consistently(type(self), "visit", ("iterate", "step", "start")):
             return self._made(times, q, p, memory, wanted)
-        own = super().visit if type(self).iterate is not FixedSteps.iterate else self._step_by_step
-        return own(times, q, p, memory, wanted)
+        road = super().visit if type(self).iterate is not FixedSteps.iterate else self._step_by_step
+        return road(times, q, p, memory, wanted)
 
     def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
         """Return (q, p, u, memory) after the steps wanted: by the law's own block, by a compiled one, or in Python."""
@@ -272,8 +272,8 @@ class FixedSteps(DiscreteLaw):
         block = self.law.block(self.solver)
         if block is not None and (states := block(times, q, p, wanted)) is not None:
             return *states, {}
-        made = self._compiled(times, q, p, memory, wanted)
-        return self._interpreted(times, q, p, memory, wanted) if made is None else made
+        samples = self._compiled(times, q, p, memory, wanted)
+        return self._interpreted(times, q, p, memory, wanted) if samples is None else samples
 
     def _compiled(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
@@ -308,9 +308,9 @@ class FixedSteps(DiscreteLaw):
         """Return the steps made one by one in Python."""
         shape, first = q.shape, int(memory["step"]) if memory else 0
         past = Past(deque([tuple(row) for row in memory["past"]] if memory else [], self.past_steps or 1), self.dt)
-        held = {k: one for k, one in enumerate(memory["held"], 1) if np.isfinite(one).all()} if memory else {}
-        now = Step(first, self.dt, lambda _: (q, p), held)
-        kept, row = np.empty((3, len(wanted), *shape)), 0
+        held_inputs = {k: one for k, one in enumerate(memory["held"], 1) if np.isfinite(one).all()} if memory else {}
+        now = Step(first, self.dt, lambda _: (q, p), held_inputs)
+        samples, row = np.empty((3, len(wanted), *shape)), 0
         for k, t in enumerate(times[: wanted[-1]].tolist()):
             now.number, now.begins = first + k, True
             if self.past_steps:
@@ -319,16 +319,16 @@ class FixedSteps(DiscreteLaw):
             if self.past_steps:
                 past.rows.append((q, p, departs, departs))
             if k + 1 == wanted[row]:
-                kept[:, row] = q, p, u
+                samples[:, row] = q, p, u
                 row += 1
         if not memory:
-            return kept[0], kept[1], kept[2], {}
+            return samples[0], samples[1], samples[2], {}
         stored = np.full((len(self._wrappers), *shape), np.nan)
         for key, value in now.held.items():
             stored[key - 1] = value
         after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
         after["past"] = np.array(past.rows) if self.past_steps else np.empty((0, 4, *shape))
-        return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
+        return samples[0], samples[1], samples[2], {name: value[None] for name, value in after.items()}
 
     def _advance(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: Past) -> Row:
         """Return (q, p, input of the step, input at its end) after one step."""

@@ -19,8 +19,8 @@ _EXAMPLE = 'a solver such as RK4(0.01), or its name, such as "DOP853"'
 @cache
 def solvers() -> dict[str, Callable[..., Solver]]:
     """Return what makes each solver, by its name: those of fixed steps take `dt`."""
-    found = [k for module in modules("flockana.solvers") for k in vars(module).values() if isinstance(k, type)]
-    named = {k.__name__: k for k in found if issubclass(k, Solver) and hasattr(k, "order") and k is not Scipy}
+    classes = [k for module in modules("flockana.solvers") for k in vars(module).values() if isinstance(k, type)]
+    named = {k.__name__: k for k in classes if issubclass(k, Solver) and hasattr(k, "order") and k is not Scipy}
     named["Euler-Maruyama"] = named.pop("EulerMaruyama")
     theirs = {name: partial(Scipy, kind) for kind in KINDS for name in (f"scipy-{kind}", Scipy(kind).name)}
     return {**named, **theirs}

@@ -113,10 +113,10 @@ class AdaptivePair(Solver):
 
         if self.in_scipy:
             return getattr(scipy.integrate, self.name)
-        known, stages = self.tableau, self.tableau.stages
+        tableau, stages = self.tableau, self.tableau.stages
         facts = {"order": self.order, "error_estimator_order": self.error_order, "n_stages": stages}
-        arrays = {"A": known.a[:stages, :stages], "B": known.a[stages, :stages], "C": known.c[:stages]}
-        arrays |= {"E": known.estimates[0], "P": known.interpolant}
+        arrays = {"A": tableau.a[:stages, :stages], "B": tableau.a[stages, :stages], "C": tableau.c[:stages]}
+        arrays |= {"E": tableau.estimates[0], "P": tableau.interpolant}
         return type(self.name, (scipy.integrate.RK45,), facts | arrays)
 
     def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102

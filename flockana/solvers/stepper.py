@@ -19,15 +19,15 @@ class FixedStepper:
 
     def step(self) -> None:
         """Make one step."""
-        t, y, left, stages, known = self.t, self.y, self.t_bound - self.t, self.tableau.stages, self.tableau
+        t, y, left, stages, tableau = self.t, self.y, self.t_bound - self.t, self.tableau.stages, self.tableau
         h = left if left <= self.h_abs else self.h_abs
         rates = [self.f]
         for s in range(1, stages + 1):
-            reached = y + h * sum(weight * rate for weight, rate in zip(known.a[s], rates, strict=False) if weight)
+            end = y + h * sum(weight * rate for weight, rate in zip(tableau.a[s], rates, strict=False) if weight)
             if s < stages:
-                rates.append(self.rate(t + known.c[s] * h, reached))
-        if known.lead:
+                rates.append(self.rate(t + tableau.c[s] * h, end))
+        if tableau.lead:
             size = y.size // 2
-            reached[:size] += known.lead * h * h * self.f[size : 2 * size]
+            end[:size] += tableau.lead * h * h * self.f[size : 2 * size]
         self.t, self.h_abs = (self.t_bound, np.inf) if h == left else (t + h, GROWTH * h)
-        self.status, self.y, self.f = "finished" if h == left else "running", reached, self.rate(self.t, reached)
+        self.status, self.y, self.f = "finished" if h == left else "running", end, self.rate(self.t, end)

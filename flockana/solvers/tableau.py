@@ -90,6 +90,6 @@ def shared_rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -
         last[s] = count
     rows = list[int]()
     for s in range(count):
-        taken = {rows[k] for k in range(s) if last[k] > s}
-        rows.append(min(set(range(count)) - taken))
+        rows_used = {rows[k] for k in range(s) if last[k] > s}
+        rows.append(min(set(range(count)) - rows_used))
     return np.array(rows)

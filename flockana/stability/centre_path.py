@@ -39,8 +39,8 @@ def motion(target: Target) -> Motion:
     path = target.harmonic if isinstance(target, Target) else None
     if path is None:
         raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
-    start, velocity, cosine, sine, own = path.terms
-    return Motion(start, velocity, path.factor * velocity + own, cosine - 1j * sine, path.omega, path.factor)
+    start, velocity, cosine, sine, constant = path.terms
+    return Motion(start, velocity, path.factor * velocity + constant, cosine - 1j * sine, path.omega, path.factor)
 
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:

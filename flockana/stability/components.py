@@ -33,10 +33,10 @@ class StrongComponents:
 
     @cached_property
     def _all_heard(self) -> tuple[frozenset[int], ...]:
-        found: list[frozenset[int]] = []
+        subsets: list[frozenset[int]] = []
         for direct in self.heard:
-            found.append(direct.union(*(found[j] for j in direct)))
-        return tuple(found)
+            subsets.append(direct.union(*(subsets[j] for j in direct)))
+        return tuple(subsets)
 
 
 def strong_components(*matrices: Any) -> StrongComponents:

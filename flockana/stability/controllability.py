@@ -226,9 +226,9 @@ def pole_groups(model: ScaledModel) -> list[PoleGroup]:
     count, label = connected_components(near, directed=False)
     groups = []
     for k in range(count):
-        own = label == k
-        value, error = complex(values[own].mean()), float(slack[own].max())
-        groups.append(PoleGroup(0j if abs(value) <= error else value, int(own.sum()), error))
+        in_group = label == k
+        value, error = complex(values[in_group].mean()), float(slack[in_group].max())
+        groups.append(PoleGroup(0j if abs(value) <= error else value, int(in_group.sum()), error))
     return groups
 
 
@@ -237,9 +237,9 @@ def _reach(model: ScaledModel, group: PoleGroup, b: FloatArray) -> PoleReach:
     gains = np.linalg.svd(left.conj().T @ b, compute_uv=False)
     gains = np.concatenate([gains, np.zeros(max(0, left.shape[1] - gains.size))])
     edge = max(group.error, _ROUNDINGS * EPS * len(model.A))
-    reached = int(np.sum(gains > edge))
+    rank = int(np.sum(gains > edge))
     weakest = float(gains[-1]) if gains[-1] > edge else 0.0
-    return PoleReach(group.value * model.pace, group.size, left.shape[1], reached, weakest)
+    return PoleReach(group.value * model.pace, group.size, left.shape[1], rank, weakest)
 
 
 def left_eigenvectors(a: FloatArray, group: PoleGroup) -> ComplexArray:
@@ -268,8 +268,8 @@ def distance_to_loss(model: ScaledModel, agents: Sequence[int], poles: Sequence[
     best = (inf, 0j)
     for pole in list(poles)[:_SEARCHES]:
         start = np.array([pole.real, pole.imag]) / model.pace
-        found = minimize(least, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-14, "maxiter": 200})
-        best = min(best, (float(found.fun), complex(*found.x) * model.pace), key=lambda pair: pair[0])
+        result = minimize(least, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-14, "maxiter": 200})
+        best = min(best, (float(result.fun), complex(*result.x) * model.pace), key=lambda pair: pair[0])
     return best
 
 

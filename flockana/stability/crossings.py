@@ -45,14 +45,14 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
     # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
     # Stiffness up to `neutral` is 0.
-    found = common_diagonals(four)
-    if found is None:
+    crossing = common_diagonals(four)
+    if crossing is None:
         return None
     best = Crossing(inf, nan, inf)
-    for k0, d0, k1, d1 in found.values.T.tolist():
+    for k0, d0, k1, d1 in crossing.values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
             continue
-        if found.real:
+        if crossing.real:
             whole = k0 + k1 if abs(k0 + k1) > neutral else 0.0
             size = 2.0 * abs(k0) + d1 * d1 + d0 * d0
             frequencies = _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, whole * (k0 - k1), size)
@@ -62,18 +62,18 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
         for omega in frequencies:
             late_part, prompt_part = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
             delay = phase(-late_part * prompt_part.conjugate()) / omega
-            best = min(best, Crossing(delay, omega, delay if found.real else (1.0 - CLOSE) * delay))
+            best = min(best, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))
     return best
 
 
 def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
     """ω > 0 with |a(ω)| = |b(ω)|, polynomials by rising powers; those far below `size` are left out."""
     balance = np.poly1d((np.convolve(a, a.conj()).real - np.convolve(b, b.conj()).real)[::-1])
-    slope, roots, found = balance.deriv(), balance.roots, []
+    slope, roots, meetings = balance.deriv(), balance.roots, []
     for omega in roots.real[(np.abs(roots.imag) <= _DOUBLE * np.abs(roots)) & (roots.real > _LOW * size)].tolist():
         better = omega - float(balance(omega)) / (float(slope(omega)) or inf)
-        found.append(better if abs(better - omega) <= _DOUBLE * omega else omega)
-    return found
+        meetings.append(better if abs(better - omega) <= _DOUBLE * omega else omega)
+    return meetings
 
 
 class _Diagonals(NamedTuple):
@@ -88,20 +88,20 @@ def common_diagonals(four: Four) -> _Diagonals | None:
     from scipy.linalg import schur
 
     sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
-    used = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
-    symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used)
-    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used)), np.zeros_like(four[0]))
+    used_parts = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
+    symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used_parts)
+    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used_parts)), np.zeros_like(four[0]))
     if not symmetric and eigen(mixed)[2].max(initial=0.0) > CLOSE:
         return None
     turn: Any = np.linalg.eigh(mixed)[1] if symmetric else schur(mixed, output="complex")[1]
     values = []
     for x, size in zip(four, sizes, strict=True):
         there = turn.conj().T @ x @ turn
-        own = np.diag(there)
-        off = there - np.diag(own) if symmetric else np.tril(there, -1)
+        own_rates = np.diag(there)
+        off = there - np.diag(own_rates) if symmetric else np.tril(there, -1)
         if np.abs(off).max(initial=0.0) > rounding * size:
             return None
-        values.append(np.where(np.abs(own) > rounding * size, own, 0.0))
+        values.append(np.where(np.abs(own_rates) > rounding * size, own_rates, 0.0))
     return _Diagonals(np.array(values), symmetric)
 
 
@@ -158,13 +158,13 @@ def _spectrum(four: Four, omega: float) -> _Spectrum:
 
 def _distances(at: _Spectrum, lowest: float) -> FloatArray:
     """Least |μ − μ_i|/√(μ² + size_i²) over all real μ from `lowest` on."""
-    a, b, least = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
+    a, b, lower = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
     total = 1.0 + a * a + b * b
     square = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
     with np.errstate(divide="ignore", invalid="ignore"):
         nearest = np.where(square < 1.0, a / (1.0 - square), inf)
-        ends = np.minimum(np.hypot(least - a, b) / np.hypot(1.0, least), 1.0)
-    return np.where(nearest >= least, np.sqrt(square), ends)
+        ends = np.minimum(np.hypot(lower - a, b) / np.hypot(1.0, lower), 1.0)
+    return np.where(nearest >= lower, np.sqrt(square), ends)
 
 
 def _crossing_free(at: _Spectrum, angle: float) -> float:
@@ -200,8 +200,8 @@ def least_crossing(
         places, delays = at.crossings(middle)
         delays = np.where((places >= a) & (places <= b), delays, inf)
         if middle > 0.0 and delays.min() < best.least:
-            found, tried = _refined(four, middle, at, int(delays.argmin()), best.delay)
-            best, left = min(best, found), left - tried
+            crossing, tried = _refined(four, middle, at, int(delays.argmin()), best.delay)
+            best, left = min(best, crossing), left - tried
         reach = _crossing_free(at, min(b * best.least, 2.0 * pi))
         if left <= 0 or middle + reach == middle:
             return best._replace(least=0.0)

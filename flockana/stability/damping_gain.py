@@ -77,37 +77,37 @@ def gain_for_damping(
     >>> round(gain_for_damping(law, [[0.0]], "c2_gamma", 0.5).gain, 9)
     2.0
     """
-    known = tuple(key for key in vars(getattr(law, "gains", None) or object) if key.startswith("c"))
-    if not known:
+    gain_names = tuple(key for key in vars(getattr(law, "gains", None) or object) if key.startswith("c"))
+    if not gain_names:
         raise ArgumentError(f"{type(law).__name__} has no gains: expected a law with gains, such as Algorithm2(...)")
-    ensure_known("gain", name, known)
-    asked = ensure_positive("ratio", ratio)
-    if asked >= 1.0:
+    ensure_known("gain", name, gain_names)
+    wanted_ratio = ensure_positive("ratio", ratio)
+    if wanted_ratio >= 1.0:
         raise ArgumentError(f"ratio = {ratio:g}: expected a damping ratio below 1; from 1 on a mode does not swing")
-    own = ensure_positive(f"law.gains.{name}", getattr(law.gains, name))
-    low, high = (ensure_positive("between", each) for each in between or (own / _WIDE, own * _WIDE))
-    if not low <= own <= high:
-        raise ArgumentError(f"between = ({low:g}, {high:g}): expected to hold the law's own {name} = {own:g}")
+    own_gain = ensure_positive(f"law.gains.{name}", getattr(law.gains, name))
+    low, high = (ensure_positive("between", each) for each in between or (own_gain / _WIDE, own_gain * _WIDE))
+    if not low <= own_gain <= high:
+        raise ArgumentError(f"between = ({low:g}, {high:g}): expected to hold the law's own {name} = {own_gain:g}")
     start = _begin(law, ensure_points("q", getattr(q, "q", q)), mode)
     count = ensure_count("steps", steps)
     crossings, ratios = [], [start.mode.damping_ratio]
     for end in (low, high):
-        gain, here = own, start
-        share = np.log(end / own) / np.log(high / low)
-        for level in np.geomspace(own, end, 1 + int(np.ceil(count * abs(share))))[1:].tolist():
+        gain, here = own_gain, start
+        share = np.log(end / own_gain) / np.log(high / low)
+        for level in np.geomspace(own_gain, end, 1 + int(np.ceil(count * abs(share))))[1:].tolist():
             after = _follow(_with(law, name, level), here)
             ratios.append(after.mode.damping_ratio)
-            if (here.mode.damping_ratio - asked) * (after.mode.damping_ratio - asked) <= 0.0:
+            if (here.mode.damping_ratio - wanted_ratio) * (after.mode.damping_ratio - wanted_ratio) <= 0.0:
                 crossings.append((gain, level, here))
                 break
             gain, here = level, after
     if not crossings:
         raise SolverError(
             f"mode {start.mode.name} has ζ = {min(ratios):.4g} to {max(ratios):.4g} at {name} = {low:g} to {high:g}: "
-            f"expected {asked:g} among them; ask for another mode, gain or range"
+            f"expected {wanted_ratio:g} among them; ask for another mode, gain or range"
         )
-    first, second, here = min(crossings, key=lambda each: abs(np.log(each[0] / own)))
-    return _refine(law, name, asked, (first, second), here)
+    first, second, here = min(crossings, key=lambda each: abs(np.log(each[0] / own_gain)))
+    return _refine(law, name, wanted_ratio, (first, second), here)
 
 
 def _with(law: Any, name: str, gain: float) -> Any:
@@ -138,8 +138,8 @@ def _follow(law: Any, here: _Here) -> _Here:
 
     def change(mode: Mode) -> float:
         overlap = abs(np.vdot(mode.shape, here.mode.shape)) / np.linalg.norm(mode.shape) / _norm(here.mode)
-        moved = abs(_upper(mode) - _upper(here.mode)) / max(abs(mode.eigenvalue), abs(here.mode.eigenvalue))
-        return float(moved + 1.0 - overlap)
+        distance = abs(_upper(mode) - _upper(here.mode)) / max(abs(mode.eigenvalue), abs(here.mode.eigenvalue))
+        return float(distance + 1.0 - overlap)
 
     return _Here(linear, min(linear.modes, key=change))
 

@@ -112,8 +112,8 @@ def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
     both = [velocity_mismatch(each(flock, dq, 0.0 * dq, t)[1]) for each in (linear_motion, _run)]
-    known = _count_above_floor(both[0])
-    late = slice(int(_LATE * known), known)
+    above = _count_above_floor(both[0])
+    late = slice(int(_LATE * above), above)
     if not slopes.size or late.start == late.stop:
         raise ArgumentError(
             f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a "
@@ -253,8 +253,8 @@ def linear_range(
 
 def _length(flock: Linearisation) -> float:
     """Return the law's own length d, else the size of the flock."""
-    own = flock.law.scales
-    return own.length if own else float(np.linalg.norm(flock.q - flock.q.mean(axis=0), axis=1).max()) or 1.0
+    scales = flock.law.scales
+    return scales.length if scales else float(np.linalg.norm(flock.q - flock.q.mean(axis=0), axis=1).max()) or 1.0
 
 
 def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:

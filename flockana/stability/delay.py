@@ -67,13 +67,13 @@ class DelaySystem(ShortRepr):
     neutral: int = 0
 
     def __post_init__(self) -> None:
-        wanted = "(K₀, D₀) and (K₁, D₁), square matrices of one size"
-        four = [ensure_numbers(name, each, wanted) for name in ("prompt", "late") for each in getattr(self, name)]
+        shape = "(K₀, D₀) and (K₁, D₁), square matrices of one size"
+        four = [ensure_numbers(name, each, shape) for name in ("prompt", "late") for each in getattr(self, name)]
         sizes = {each.shape for each in four}
         if len(four) != 4 or len(sizes) > 1 or four[0].ndim != 2 or len(set(four[0].shape)) > 1:
-            raise ArgumentError(f"matrices of shapes {', '.join(str(each.shape) for each in four)}: expected {wanted}")
+            raise ArgumentError(f"matrices of shapes {', '.join(str(each.shape) for each in four)}: expected {shape}")
         if not all(np.isfinite(each).all() for each in four):
-            raise ArgumentError(f"a matrix has a number that is not finite: expected {wanted}")
+            raise ArgumentError(f"a matrix has a number that is not finite: expected {shape}")
 
     @property
     def highest(self) -> float:
@@ -165,9 +165,9 @@ def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> Fl
     if delayed == "neighbours":
         return others
     # what depends on differences alone gives the rows of blocks that sum to 0
-    own = -others.reshape(n, m, n, m).sum(axis=2)
+    own_part = -others.reshape(n, m, n, m).sum(axis=2)
     for i in range(n):
-        others[i * m : (i + 1) * m, i * m : (i + 1) * m] = own[i]
+        others[i * m : (i + 1) * m, i * m : (i + 1) * m] = own_part[i]
     return others
 
 
@@ -283,14 +283,14 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
     (k0, d0), (k1, d1) = system.prompt, system.late
     four = (k0 / unit / unit, d0 / unit, k1 / unit / unit, d1 / unit)
     stiffness = float(np.abs(four[0] + four[2]).max())
-    found = modal_crossing(four, NEUTRAL * stiffness if system.neutral else 0.0)
-    if found is None:
+    crossing = modal_crossing(four, NEUTRAL * stiffness if system.neutral else 0.0)
+    if crossing is None:
         top = 1.01 * system.highest / unit
-        found = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
-    least = min(found.least, still := _still_crossing(system) * unit)
-    if still < found.delay:
-        return DelayMargin(still / unit, 0.0, least / unit)
-    return DelayMargin(found.delay / unit, found.frequency * unit, least / unit)
+        crossing = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
+    delay = min(crossing.least, still := _still_crossing(system) * unit)
+    if still < crossing.delay:
+        return DelayMargin(still / unit, 0.0, delay / unit)
+    return DelayMargin(crossing.delay / unit, crossing.frequency * unit, delay / unit)
 
 
 def _still_crossing(system: DelaySystem) -> float:
@@ -319,8 +319,8 @@ def _still_crossing(system: DelaySystem) -> float:
 def kernels(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return bases of the right and the left kernel of K."""
     rows = np.abs(stiffness).sum(axis=1)
-    found = kernel_of(stiffness, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
-    return found.right, found.left
+    kernel = kernel_of(stiffness, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
+    return kernel.right, kernel.left
 
 
 def _range(matrix: FloatArray) -> FloatArray:
@@ -332,11 +332,11 @@ def _range(matrix: FloatArray) -> FloatArray:
 def _stable(system: DelaySystem) -> bool:
     """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
     # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
-    found = []
+    is_stable = []
     for part in system.strong_parts():
         (k0, d0), (k1, d1) = part.prompt, part.late
-        found.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
-    roots, errors = (np.concatenate(x) for x in zip(*found, strict=True))
+        is_stable.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
+    roots, errors = (np.concatenate(x) for x in zip(*is_stable, strict=True))
     neutral = np.abs(roots) <= errors
     neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
     return bool(np.all(roots.real[~neutral] < -errors[~neutral]))

@@ -84,10 +84,10 @@ def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) ->
     """Return `rightmost_roots` for any number of delays; `neutral` roots at 0 are left out."""
     nodes, count = ensure_count("nodes", nodes), ensure_count("count", count)
     groups = strong_components(*(part for each in parts for part in each[1:])).indices
-    own = [[LatePart(tau, k[np.ix_(rows, rows)], d[np.ix_(rows, rows)]) for tau, k, d in parts] for rows in groups]
-    zeros = [_neutral(part) if neutral else 0 for part in own]
+    sub = [[LatePart(tau, k[np.ix_(rows, rows)], d[np.ix_(rows, rows)]) for tau, k, d in parts] for rows in groups]
+    zeros = [_neutral(part) if neutral else 0 for part in sub]
     if sum(zeros) == neutral:
-        upper = [_of_group(part, zero, nodes, count) for part, zero in zip(own, zeros, strict=True)]
+        upper = [_of_group(part, zero, nodes, count) for part, zero in zip(sub, zeros, strict=True)]
     else:  # motions softer than rounding tells: the smallest roots of the whole
         upper = [_of_group(list(parts), neutral, nodes, count)]
     roots = np.concatenate(upper)
@@ -108,15 +108,15 @@ def _of_group(parts: Parts, neutral: int, nodes: int, count: int) -> ComplexArra
     """Return the rightmost roots with Im s >= 0 of agents that hear each other, refined."""
     size = len(parts[0].stiffness)
     zero, one = np.zeros((size, size)), np.eye(size)
-    used = [part for part in parts if part.stiffness.any() or part.damping.any()]
-    longest = max((tau for tau, *_ in used), default=0.0)
-    first = sum((_companion(part) for part in used if part.delay == 0.0), np.block([[zero, one], [zero, zero]]))
+    used_parts = [part for part in parts if part.stiffness.any() or part.damping.any()]
+    longest = max((tau for tau, *_ in used_parts), default=0.0)
+    first = sum((_companion(part) for part in used_parts if part.delay == 0.0), np.block([[zero, one], [zero, zero]]))
     if longest == 0.0:
         values = eigenvalues(first)[0]
     else:
         generator = np.kron(_chebyshev(nodes) * (2.0 / longest), np.eye(2 * size))
         generator[: 2 * size] = np.kron(np.eye(1, nodes + 1), first)
-        for part in used:
+        for part in used_parts:
             if part.delay > 0.0:
                 weights = _interpolation(nodes, 1.0 - 2.0 * part.delay / longest)
                 generator[: 2 * size] += np.kron(weights[None, :], _companion(part))

@@ -252,9 +252,9 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
         if plan.x is None or promised <= _GAINED * abs(value):
             break
         trial = np.clip(plan.x[:-1], low, high)
-        reached = problem.abscissa(trial)
-        if reached < value - 0.1 * promised:
-            gains, value, radius = trial, reached, 1.5 * radius
+        abscissa = problem.abscissa(trial)
+        if abscissa < value - 0.1 * promised:
+            gains, value, radius = trial, abscissa, 1.5 * radius
             values, slopes = problem.slopes(gains)
         else:
             radius *= 0.4

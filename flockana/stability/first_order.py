@@ -198,9 +198,9 @@ class VelocityLinearisation:
     def facts(self) -> dict[str, str]:
         """Return what a table shows: sizes, poles, zero modes and stability."""
         (n, m), values = self.q.shape, self.eigenvalues
-        known = {"law": f"{self.law.title}, of first order", "agents": f"{n}, m = {m}", "poles": f"{values.size}"}
-        known |= {"zero modes": f"{self.zero_modes}", "stable": "yes" if self.stable else "no"}
-        return known | {"decay rate": f"{self.decay_rate:.4g}"}
+        rows = {"law": f"{self.law.title}, of first order", "agents": f"{n}, m = {m}", "poles": f"{values.size}"}
+        rows |= {"zero modes": f"{self.zero_modes}", "stable": "yes" if self.stable else "no"}
+        return rows | {"decay rate": f"{self.decay_rate:.4g}"}
 
     def __str__(self) -> str:
         return facts_text("Linearisation", self.facts())

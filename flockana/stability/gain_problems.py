@@ -47,8 +47,8 @@ class GainProblem:
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
         """Return bases of the positions and velocities that the projection leaves."""
-        kept = complement(self.apart)
-        return kept, kept if self.speeds else np.eye(len(self.stiffness))
+        kept_space = complement(self.apart)
+        return kept_space, kept_space if self.speeds else np.eye(len(self.stiffness))
 
     def matrix(self, gains: FloatArray) -> FloatArray:
         """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
@@ -76,8 +76,8 @@ class GainProblem:
         force = velocities @ left[k:].conj()
         scale = np.einsum("ij,ij->j", left.conj(), right)
         scale = np.where(np.abs(scale) > 1e-14, scale, 1e-14)
-        moved = np.vstack([positions @ right[:k], velocities @ right[k:]]).reshape(2, self.agents, -1, values.size)
-        slope = -np.einsum("aim,gaim->gam", force.reshape(self.agents, -1, values.size), moved)
+        moves = np.vstack([positions @ right[:k], velocities @ right[k:]]).reshape(2, self.agents, -1, values.size)
+        slope = -np.einsum("aim,gaim->gam", force.reshape(self.agents, -1, values.size), moves)
         return values, (slope.reshape(2 * self.agents, -1) / scale).real.T
 
 
@@ -105,8 +105,8 @@ def gain_problem(
     """
     q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
     n, m = q.shape
-    for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
-        ensure_known(name, value, known)
+    for name, value, choices in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
+        ensure_known(name, value, choices)
     damping = gains.c2_alpha * alpha.laplacian(q).toarray()
     of = {"law": Algorithm2(alpha, gains, StaticTarget(q.mean(axis=0))), "q": q}
     if form == "simplified":

@@ -86,8 +86,8 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
         middle = middle or 1.0 / rate
         if steps.growth(middle) > 0.0:
             period = _refined(steps, before, middle) if before else low
-            known = [_resolved(steps, period, width) for width in (_NEAR, CLOSE)]
-            return Growth(period if known[0] else nan, period if known[1] else 0.0)
+            widths = [_resolved(steps, period, width) for width in (_NEAR, CLOSE)]
+            return Growth(period if widths[0] else nan, period if widths[1] else 0.0)
         before = middle
     return Growth(inf, inf)
 

@@ -104,11 +104,11 @@ def agents_to_inform(
     if exhaustive:
         best = max(combinations(range(n), count), key=value)
         return InformedAgents(best, criterion, value(best), exhaustive, 1.0)
-    chosen: tuple[int, ...] = ()
+    informed_agents: tuple[int, ...] = ()
     for _ in range(count):
-        chosen = max(((*chosen, i) for i in range(n) if i not in chosen), key=value)
+        informed_agents = max(((*informed_agents, i) for i in range(n) if i not in informed_agents), key=value)
     share = 1.0 if criterion == "trace" else 1.0 - 1.0 / e if criterion in _SUBMODULAR else 0.0
-    return InformedAgents(chosen, criterion, value(chosen), exhaustive, share)
+    return InformedAgents(informed_agents, criterion, value(informed_agents), exhaustive, share)
 
 
 def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int]], float]:
@@ -129,14 +129,14 @@ def _rank_of(model: ScaledModel) -> Callable[[Sequence[int]], float]:
     """Return the number of states that forces on agents reach: pole by pole, Krylov vectors of its left subspace."""
     n, m = model.shape
     every = model.inputs(range(n))
-    reached = [_krylov(model.A, group, every) for group in pole_groups(model)]
-    edges = [_RANK * max(float(np.abs(one).max()), EPS) for one in reached]
+    reach_of_group = [_krylov(model.A, group, every) for group in pole_groups(model)]
+    edges = [_RANK * max(float(np.abs(one).max()), EPS) for one in reach_of_group]
 
     def value(agents: Sequence[int]) -> float:
         columns = (np.asarray(agents)[:, None] * m + np.arange(m)).ravel()
         ranks = (
             np.linalg.matrix_rank(one[:, :, columns].reshape(len(one), -1), tol=edge)
-            for one, edge in zip(reached, edges, strict=True)
+            for one, edge in zip(reach_of_group, edges, strict=True)
         )
         return float(sum(ranks))
 
@@ -156,8 +156,8 @@ def _krylov(a: FloatArray, group: PoleGroup, b: FloatArray) -> Any:
         basis = u[:, sizes <= kernel_edge(group, a)]
         if not basis.shape[1]:
             break
-    own, push = left.conj().T @ shifted @ left, left.conj().T @ b
+    own_flow, push = left.conj().T @ shifted @ left, left.conj().T @ b
     powers = [push]
     for _ in range(left.shape[1] - 1):
-        powers.append(own @ powers[-1])
+        powers.append(own_flow @ powers[-1])
     return np.stack(powers, axis=1)

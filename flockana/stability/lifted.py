@@ -69,9 +69,9 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
         back_q = q - delay * p + forward(np.array([[0.0, 0.0, *far]]))
         back_p = p - forward(np.array([[0.0, 0.0, *np.diff(edge)]]))
         heard -= k @ back_q + d @ back_p
-    held = np.eye(size, len(whole), 2 * size)
+    held_rows = np.eye(size, len(whole), 2 * size)
     whole[:size], whole[size : 2 * size] = q, p
-    whole[2 * size : 3 * size] = np.where(due[:, None], heard, held)
+    whole[2 * size : 3 * size] = np.where(due[:, None], heard, held_rows)
     whole[3 * size :, 2 * size : -size] = np.eye(size * (inputs - 1))
     return whole
 

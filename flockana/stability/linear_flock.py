@@ -70,22 +70,22 @@ class LinearFlock(ShortRepr):
 
     def facts(self) -> dict[str, str]:
         """Return what a table shows: sizes, zero modes, poles and the slowest modes."""
-        known = {
+        rows = {
             "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
             "residual": f"{self.residual:.2g} of the law's forces",
         }
         if self.q.size > _MOST_SHOWN:
-            return {**known, "poles": f"{2 * self.q.size}; slowest_modes(...) finds a few of them"}
+            return {**rows, "poles": f"{2 * self.q.size}; slowest_modes(...) finds a few of them"}
         zero, modes = [mode.name for mode in self.zero_modes], self.modes
-        known |= {"zero modes": ", ".join(zero) if len(zero) <= _FEW else f"{len(zero)}", "poles": f"{2 * self.q.size}"}
+        rows |= {"zero modes": ", ".join(zero) if len(zero) <= _FEW else f"{len(zero)}", "poles": f"{2 * self.q.size}"}
         if (doubtful := self._dense.kernel.doubtful(self.zero)).size:
-            known["zero modes in doubt"] = f"{doubtful.size}, of stiffness {doubtful[0]:.2g} of their agents' own"
-        known |= {"stable": "yes" if self.stable else "no"}
+            rows["zero modes in doubt"] = f"{doubtful.size}, of stiffness {doubtful[0]:.2g} of their agents' own"
+        rows |= {"stable": "yes" if self.stable else "no"}
         for k, mode in enumerate(modes[:_FEW], 1):
             swing = f" ± {mode.frequency:.4g}i" if mode.frequency else ""
-            known[f"mode {k}"] = f"{mode.name}: λ = {mode.eigenvalue.real:.4g}{swing}, ζ = {mode.damping_ratio:.3g}"
-        return known | ({"further modes": f"{len(modes) - _FEW}"} if len(modes) > _FEW else {})
+            rows[f"mode {k}"] = f"{mode.name}: λ = {mode.eigenvalue.real:.4g}{swing}, ζ = {mode.damping_ratio:.3g}"
+        return rows | ({"further modes": f"{len(modes) - _FEW}"} if len(modes) > _FEW else {})
 
     def __str__(self) -> str:
         return facts_text("Linearisation", self.facts())
@@ -207,8 +207,8 @@ class LinearFlock(ShortRepr):
                 "subtract the mean from dq and dp and look at `structural`"
             )
         zero = self._dense.invariant
-        kept = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time
-        return (zero.kernel @ np.linalg.solve(zero.cokernel.T @ (self.damping @ zero.kernel), kept)).reshape(dq.shape)
+        still = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time
+        return (zero.kernel @ np.linalg.solve(zero.cokernel.T @ (self.damping @ zero.kernel), still)).reshape(dq.shape)
 
     def ensure_split(self) -> None:
         """Raise unless the centre of mass and the shape move independently of each other, to first order.

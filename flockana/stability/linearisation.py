@@ -251,16 +251,16 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         if isinstance(inputs, str) and inputs == "all":
             free = list(range(n * m))
         elif np.size(inputs) and all(isinstance(one, str) for one in np.atleast_1d(inputs).tolist()):
-            given = np.atleast_1d(inputs).tolist()
-            free = [names.index(ensure_known("input", one, names)) for one in given]
+            input_names = np.atleast_1d(inputs).tolist()
+            free = [names.index(ensure_known("input", one, names)) for one in input_names]
         else:
             free = [i * m + c for i in ensure_agents("inputs", inputs, n) for c in range(m)]
         a, b = self.A.copy(), np.zeros((2 * n * m, len(free)))
         rows = n * m + np.array(free)
         a[rows], b[rows, np.arange(len(free))] = 0.0, 1.0
-        states, chosen = labels("q", n, m) + labels("p", n, m), [names[k] for k in free]
-        read, blank = np.eye(2 * n * m), np.zeros((2 * n * m, len(free)))
-        return control.ss(a, b, read, blank, states=states, inputs=chosen, outputs=states, name="plant")
+        states, chosen_names = labels("q", n, m) + labels("p", n, m), [names[k] for k in free]
+        readings, blank = np.eye(2 * n * m), np.zeros((2 * n * m, len(free)))
+        return control.ss(a, b, readings, blank, states=states, inputs=chosen_names, outputs=states, name="plant")
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
         """Write A, B, C, D of `state_space` and the names of its signals to a MATLAB file.

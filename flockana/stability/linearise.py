@@ -215,8 +215,8 @@ def _linearised_loop(
     flow = linearise(acting, equilibrium, p, **how)
     law.check_agents(len(flow.q))
     parts = late_parts(law, (flow.t, _on_side(acting, flow.q, how["side"])[0], flow.p))
-    known: Any = [csr_array(-np.sum(each, axis=0)) for each in zip(*(part[1:] for part in parts), strict=True)]
-    whole: Any = block_array([[None, eye_array(flow.q.size)], known], format="csr")
+    matrices: Any = [csr_array(-np.sum(each, axis=0)) for each in zip(*(part[1:] for part in parts), strict=True)]
+    whole: Any = block_array([[None, eye_array(flow.q.size)], matrices], format="csr")
     flow = replace(flow, law=law, A_sparse=csr_array(whole))
     if hold is not None and (is_late(law) or hold.offsets is not None):
         return lifted_map(law, flow, parts, hold)
@@ -233,10 +233,10 @@ def _positions(law: Any, equilibrium: Any) -> FloatArray:
 
 def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
     """Return what counts as a zero mode: rounding, what the force left here may feign, soft modes already known."""
-    half, own = q.size, law.scales
+    half, scales = q.size, law.scales
     stiffness, force = -matrix[half:, :half], law.flow(t, q, p)[0]
     force = moving_frame(force) if law.centre_decouples else force
-    length = own.length if own else extent(q)
+    length = scales.length if scales else extent(q)
     zero = zero_threshold(stiffness, force, length)
     sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
     soft, row = getattr(equilibrium, "zero_modes", 0), float(abs(stiffness).sum(axis=1).max())
@@ -304,10 +304,10 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
         return
     size = q.size
     stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))
-    own = 1.0 / max(sqrt(stiff), drag) if stiff or drag else 1.0
-    for later in (_LATER * own, 10.0 * _LATER * own, 100.0 * _LATER * own):
-        moved = law.jacobian(t + later, q + later * p, p, sparse=True) - matrix
-        changes = (abs(moved[size:, part]).max() for part in (slice(0, size), slice(size, None)))
+    time_scale = 1.0 / max(sqrt(stiff), drag) if stiff or drag else 1.0
+    for later in (_LATER * time_scale, 10.0 * _LATER * time_scale, 100.0 * _LATER * time_scale):
+        drift = law.jacobian(t + later, q + later * p, p, sparse=True) - matrix
+        changes = (abs(drift[size:, part]).max() for part in (slice(0, size), slice(size, None)))
         if any(change > _STEADY * scale for change, scale in zip(changes, (stiff, drag), strict=True)):
             raise ArgumentError(
                 f"the Jacobian of {law.title} changes along the motion of this state (within {later:.2g} "

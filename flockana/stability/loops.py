@@ -53,8 +53,8 @@ class _MeanLoss(WrappingLaw):
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         alone = View(t, q, p, linked=np.zeros((len(q),) * 2, dtype=bool))
-        kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), alone)
-        return (1.0 - self.loss) * self.law.flow(t, q, p)[0] + self.loss * kept, float("nan")
+        input_kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), alone)
+        return (1.0 - self.loss) * self.law.flow(t, q, p)[0] + self.loss * input_kept, float("nan")
 
 
 def hold_of(law: Law) -> Sampled | None:
@@ -112,8 +112,8 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
         lags = np.kron(lags, np.ones((m, m)))
         for delay in np.unique(lags).tolist():
             add(delay, *(np.where(lags == delay, part, 0.0) for part in others))
-    used = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
-    return sorted(used, key=lambda part: part.delay)
+    used_parts = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
+    return sorted(used_parts, key=lambda part: part.delay)
 
 
 def _pair_terms(core: Law, state: State) -> list[FloatArray]:

@@ -170,22 +170,22 @@ class MapLinearisation(ShortRepr):
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
         """Modes other than the neutral motions, slowest first; one for each real multiplier or conjugate pair."""
-        found: list[tuple[complex, Any, str, float]] = []
+        all_modes: list[tuple[complex, Any, str, float]] = []
         if self.second_order is None:
             values, vectors, errors = self._dense
-            kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
-            found = [(complex(values[k]), vectors[:, k], "", float(errors[k])) for k in kept]
+            picks = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
+            all_modes = [(complex(values[k]), vectors[:, k], "", float(errors[k])) for k in picks]
         else:
             h, modes = self.dt, self.second_order.modes
             names = ("" if mode.name.isdigit() else mode.name for mode in modes)
             rows = zip(modes, names, strict=True)
             for mode, name in rows:
                 z, error = complex(self._grown(mode.eigenvalue)), h * mode.error * abs(self._grown(mode.eigenvalue, 1))
-                found.append(
+                all_modes.append(
                     (z, mode.shape, name, error) if z.imag >= 0.0 else (z.conjugate(), mode.shape.conj(), name, error)
                 )
-        found.sort(key=lambda one: 1.0 - abs(one[0]))
-        numbered = enumerate(found, start=1)
+        all_modes.sort(key=lambda one: 1.0 - abs(one[0]))
+        numbered = enumerate(all_modes, start=1)
         return tuple(MapMode(z, shape, name or str(k), self.dt, error) for k, (z, shape, name, error) in numbered)
 
     @property
@@ -223,15 +223,15 @@ class MapLinearisation(ShortRepr):
         import control
 
         if self.second_order is None:
-            read, outputs = np.eye(len(self.A)), list(self.states)
+            readings, outputs = np.eye(len(self.A)), list(self.states)
         else:
             n, m = self.q.shape
             unit = translations(n, m)
-            own = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T])
-            read = np.hstack([own, np.zeros_like(own)])
+            own_rows = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T])
+            readings = np.hstack([own_rows, np.zeros_like(own_rows)])
             outputs = axes_of("qc", m) + labels("x", n, m)
         names = {"states": list(self.states), "inputs": list(self.inputs), "outputs": outputs, "name": "map"}
-        return control.ss(self.A, self.B, read, np.zeros((len(read), self.B.shape[1])), self.dt, **names)
+        return control.ss(self.A, self.B, readings, np.zeros((len(readings), self.B.shape[1])), self.dt, **names)
 
 
 def stepped_equation(
@@ -262,24 +262,24 @@ def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
     q, (n, m), size = flow.q, flow.q.shape, flow.q.size
     ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")
     names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
-    known = law, q, flow.p, flow.t, flow.residual
+    rest = law, q, flow.p, flow.t, flow.residual
     if law.position_factor is None and law.stability_function is not None:
         step, push = law.dt * flow.A, law.dt * np.eye(2 * size)[:, size:]
         a, b = np.zeros_like(step), np.zeros_like(push)
         for k in range(len(law.stability_function) - 1, -1, -1):  # R(h A), and its part that acts on a force
             b = a @ push
             a = a @ step + law.stability_function[k] * np.eye(2 * size)
-        return MapLinearisation(*known, a, b, *names, flow.second_order, growth=law.stability_function)
+        return MapLinearisation(*rest, a, b, *names, flow.second_order, growth=law.stability_function)
     h, f = law.dt, float(law.position_factor or 0.0)
     stiffness, damping = flow.stiffness, flow.damping
     one, zero = np.eye(size), np.zeros((size, size))
     move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
     a, b = move + push @ flow.A[size:], push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
-        moved = -np.hstack([moved_before(part, m).toarray() for part in (stiffness, damping)])
-        a, b = (np.linalg.solve(np.eye(2 * size) - push @ moved, part) for part in (a - push @ moved, push))
+        shift = -np.hstack([moved_before(part, m).toarray() for part in (stiffness, damping)])
+        a, b = (np.linalg.solve(np.eye(2 * size) - push @ shift, part) for part in (a - push @ shift, push))
     equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
-    return MapLinearisation(*known, a, b, *names, equation)
+    return MapLinearisation(*rest, a, b, *names, equation)
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
@@ -300,8 +300,8 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     """Linearisation of any map about a steady motion by differences of its steps, memory and all; refused at a kink."""
     (n, m), name, memory = q.shape, law.title, {k: np.array(v) for k, v in law.start(q, p).items()}
     shapes = {"q": q.shape, "p": p.shape} | {key: value.shape for key, value in memory.items()}
-    own, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
-    unit, time = (length, law.dt) if own is None else (own.length, own.time)
+    scales, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
+    unit, time = (length, law.dt) if scales is None else (scales.length, scales.time)
     powers = dict.fromkeys(shapes, (0, 0)) | {"q": (1, 0), "p": (1, -1)} | dict(law.extra_units)
     sizes = {key: unit ** powers[key][0] * time ** powers[key][1] for key in shapes}
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes.values())])
@@ -313,17 +313,17 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
         """Next state in the frame of the motion, after `steps` steps."""
         parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
         values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
-        gone, inner = steps * law.dt * p, {key: values[key] for key in memory}
-        after = law.step(t + steps * law.dt, values["q"] + gone, values["p"], inner)
-        return packed({"q": after[0] - gone - law.dt * p, "p": after[1]} | dict(after[3]))
+        way, inner = steps * law.dt * p, {key: values[key] for key in memory}
+        after = law.step(t + steps * law.dt, values["q"] + way, values["p"], inner)
+        return packed({"q": after[0] - way - law.dt * p, "p": after[1]} | dict(after[3]))
 
     start = packed({"q": q, "p": p} | memory)
-    moved = np.abs(stepped(start) - start)
-    worst = int(np.argmax(moved))
-    if not moved[worst] <= _PARALLEL:
+    shift = np.abs(stepped(start) - start)
+    worst = int(np.argmax(shift))
+    if not shift[worst] <= _PARALLEL:
         where = list(shapes)[int(np.searchsorted(ends, worst, side="right")) - 1]
         raise ArgumentError(
-            f"the state is no steady motion of {name}: {where} changes by {moved[worst]:.3g} of its unit in a step, "
+            f"the state is no steady motion of {name}: {where} changes by {shift[worst]:.3g} of its unit in a step, "
             f"expected at most {_PARALLEL:g}; start from positions and velocities that the map keeps"
         )
     matrix, kink = central_differences(stepped, start, _WIDTH, ORDER_2)
@@ -343,5 +343,5 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     names = (*labels("q", n, m), *labels("p", n, m), *beside)
     a = matrix * units[:, None] / units
     return MapLinearisation(
-        law, q, p, t, float(moved[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off
+        law, q, p, t, float(shift[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off
     )

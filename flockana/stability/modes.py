@@ -195,8 +195,8 @@ class SecondOrder:
     def modes(self) -> tuple[Mode, ...]:
         """Return all modes off the zero modes, slowest first, one for each real eigenvalue or conjugate pair."""
         values, vectors, errors = self._others
-        kept = values.imag >= 0.0
-        return self.named(values[kept], vectors[:, kept], errors[kept], self.invariant.translational)
+        is_upper = values.imag >= 0.0
+        return self.named(values[is_upper], vectors[:, is_upper], errors[is_upper], self.invariant.translational)
 
     @property
     def stable(self) -> bool:
@@ -212,8 +212,8 @@ class SecondOrder:
 
     def local_modes(self) -> list[tuple[float, int, Mode]]:
         """Modes of the components by rising decay rate: (rate, number of the component, mode)."""
-        found = [(mode.decay_rate, k, mode) for k, part in enumerate(self.parts) for mode in part.modes]
-        return sorted(found, key=lambda one: one[:2])
+        ranked_modes = [(mode.decay_rate, k, mode) for k, part in enumerate(self.parts) for mode in part.modes]
+        return sorted(ranked_modes, key=lambda one: one[:2])
 
     def spread(self, k: int, mode: Mode) -> ComplexArray:
         """Return the motion of all coordinates in a mode of component k: those that hear it follow."""
@@ -247,9 +247,9 @@ class SecondOrder:
             heard = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
             push = heard @ shape
             if push.any():
-                own = heard[:, rows].toarray() + s * s * np.eye(rows.size)
-                own += EPS * np.abs(own).max() * np.eye(rows.size)
-                shape[rows] = -np.linalg.solve(own, push)
+                own_matrix = heard[:, rows].toarray() + s * s * np.eye(rows.size)
+                own_matrix += EPS * np.abs(own_matrix).max() * np.eye(rows.size)
+                shape[rows] = -np.linalg.solve(own_matrix, push)
                 shape /= np.abs(shape).max()
 
     @cached_property
@@ -344,8 +344,8 @@ class SecondOrder:
             ):
                 roots = _roots(stiff, drag_, errors)
                 values += roots
-                own = (root for root in roots if root != 0.0 and root.imag >= 0.0)
-                translational += [Mode(root, shape, name, root_error(root, stiff, drag_, errors)) for root in own]
+                squares = (root for root in roots if root != 0.0 and root.imag >= 0.0)
+                translational += [Mode(root, shape, name, root_error(root, stiff, drag_, errors)) for root in squares]
             alone = free & (slow == 0.0)
             chains += int(alone.sum())
             drifting += [name for name, one in zip(labels, alone, strict=True) if one]

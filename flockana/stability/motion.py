@@ -65,8 +65,8 @@ def mode_motion(
     periods, samples = ensure_positive("periods", periods), ensure_count("samples", samples)
     if amplitude is None:
         extent = float(np.ptp(q, axis=0).max())
-        own = linearisation.law.scales
-        alone = own.length if own else 1.0  # of one agent, which has no extent
+        scales = linearisation.law.scales
+        alone = scales.length if scales else 1.0  # of one agent, which has no extent
         amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or alone)
     value = mode.eigenvalue or 2j * pi
     swings = value.imag != 0.0
@@ -76,6 +76,6 @@ def mode_motion(
     t = np.linspace(0.0, periods * length, samples)
     scale = ensure_positive("amplitude", amplitude) / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
     wave = scale * np.exp(value * t)[:, None, None] * mode.shape
-    moved = (np.ascontiguousarray(np.real(factor * wave)) for factor in (1.0, value, value**2))
-    dq, dp, du = moved
+    moves = (np.ascontiguousarray(np.real(factor * wave)) for factor in (1.0, value, value**2))
+    dq, dp, du = moves
     return Trajectory(t, q + dq, dp, du, linearisation.law)

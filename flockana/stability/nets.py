@@ -82,9 +82,9 @@ def string_gains(flock: LinearFlock, first: int = 0, *, limit: float = LIMIT) ->
     if not first < n or n < 2:
         raise ArgumentError(f"first = {first}: expected one of {n} agents, and others to follow it")
     ensure_study("the string gains", n * m, limit)
-    moved = np.arange(n * m) // m == first
+    is_first = np.arange(n * m) // m == first
     k, d = flock.stiffness.toarray(), flock.damping.toarray()
-    inner, heard = np.ix_(~moved, ~moved), np.ix_(~moved, moved)
+    inner, heard = np.ix_(~is_first, ~is_first), np.ix_(~is_first, is_first)
     size, unit = (n - 1) * m, flock.second_order.pace
     stiffness, damping, push, drag = k[inner] / unit**2, d[inner] / unit, k[heard] / unit**2, d[heard] / unit
     # with p = x' + D₀ u the velocity u' of the input does not appear
@@ -98,8 +98,8 @@ def string_gains(flock: LinearFlock, first: int = 0, *, limit: float = LIMIT) ->
         )
     gains, peaks = np.ones(n), np.zeros(n)
     for place, agent in enumerate(np.delete(np.arange(n), first).tolist()):
-        seen = system._replace(c=np.eye(2 * size)[place * m : (place + 1) * m])
-        gains[agent], peaks[agent] = largest_gain(seen, _TOLERANCE)
+        seen_system = system._replace(c=np.eye(2 * size)[place * m : (place + 1) * m])
+        gains[agent], peaks[agent] = largest_gain(seen_system, _TOLERANCE)
     return StringGains(first, gains, peaks * unit)
 
 
@@ -179,10 +179,10 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] =
         ensure_kind(f"chain({n})", flock, LinearFlock, "what linearise(law, q) returns")
         if len(flock.q) != n:
             raise ArgumentError(f"chain({n}) has {len(flock.q)} agents: expected {n}")
-    found = [string_gains(flock) for flock in flocks]
-    link = _link_gain(flocks[-1], float(found[-1].gains[1]))
+    gains = [string_gains(flock) for flock in flocks]
+    link = _link_gain(flocks[-1], float(gains[-1].gains[1]))
     return StringStability(
-        counts, np.array([one.gains[-1] for one in found]), np.array([one.peaks[-1] for one in found]), link
+        counts, np.array([one.gains[-1] for one in gains]), np.array([one.peaks[-1] for one in gains]), link
     )
 
 

@@ -45,8 +45,8 @@ def disturbance_system(flock: Blocks) -> StateSpace:
     import control
 
     a, b, positions, _ = flock.quotient()
-    seen = complement(flock.rigid)
-    c = np.hstack([seen.T @ positions, np.zeros((seen.shape[1], a.shape[0] - positions.shape[1]))])
+    visible_space = complement(flock.rigid)
+    c = np.hstack([visible_space.T @ positions, np.zeros((visible_space.shape[1], a.shape[0] - positions.shape[1]))])
     return control.StateSpace(a, b, c, np.zeros((c.shape[0], b.shape[1])), remove_useless_states=False)
 
 
@@ -200,13 +200,13 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))
     rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)
-    seen = positions.T @ shapes
-    trace = float(np.sum(seen * np.linalg.solve(positions.T @ flock.stiffness @ positions, seen)))
+    visible_shapes = positions.T @ shapes
+    trace = float(np.sum(visible_shapes * np.linalg.solve(positions.T @ flock.stiffness @ positions, visible_shapes)))
     # the bracket may be closed: it is opened by what rounding does to K⁺, and to the norm that is compared with it
     stiff = np.linalg.eigvalsh(positions.T @ flock.stiffness @ positions)
     spread = _ROUNDINGS * EPS * len(flock.stiffness) * float(stiff[-1] / stiff[0]) if stiff.size else 0.0
-    least = EPS * len(flock.stiffness) * float(rates[-1])
-    low, high = (sqrt(trace / (2.0 * float(rate))) if rate > least else inf for rate in (rates[-1], rates[0]))
+    threshold = EPS * len(flock.stiffness) * float(rates[-1])
+    low, high = (sqrt(trace / (2.0 * float(rate))) if rate > threshold else inf for rate in (rates[-1], rates[0]))
     return low * (1.0 - spread), high * (1.0 + spread)
 
 
@@ -237,14 +237,14 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     >>> round(norm * 24, 9), round(peak**2, 5)
     (1.0, 7.0)
     """
-    tol, given = ensure_positive("tol", tol), _balanced(system)
-    if not given.stable:
+    tol, balanced = ensure_positive("tol", tol), _balanced(system)
+    if not balanced.stable:
         return inf, float("nan")
-    here = given.continuous()
+    here = balanced.continuous()
     gain, omega = largest_gain(here, tol)
     if gain == 0.0:
         return 0.0, 0.0
-    return gain, 2.0 * atan(omega) / (1.0 if system.dt is True else float(system.dt)) if given.discrete else omega
+    return gain, 2.0 * atan(omega) / (1.0 if system.dt is True else float(system.dt)) if balanced.discrete else omega
 
 
 def largest_gain(system: Balanced, tol: float, seen: Iterable[float] = ()) -> tuple[float, float]:

@@ -127,13 +127,13 @@ def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
     if on_loss == "zero":
         return _Step(free, tuple(push @ force for _, force in channels))
     acts = np.hstack([push[:, rows] for rows, _ in channels] or [np.zeros((len(free), 0))])
-    held = np.eye(acts.shape[1])
-    kept, new, first = np.block([[free, acts], [np.zeros((len(held), len(free))), held]]), [], 0
+    held_rows = np.eye(acts.shape[1])
+    kept_rows, new, first = np.block([[free, acts], [np.zeros((len(held_rows), len(free))), held_rows]]), [], 0
     for rows, force in channels:
-        own = held[:, first : first + rows.size]
-        new.append(np.vstack([push[:, rows], own]) @ np.hstack([force[rows], -own.T]))
+        own_held = held_rows[:, first : first + rows.size]
+        new.append(np.vstack([push[:, rows], own_held]) @ np.hstack([force[rows], -own_held.T]))
         first += rows.size
-    return _Step(kept, tuple(new))
+    return _Step(kept_rows, tuple(new))
 
 
 def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:

@@ -172,7 +172,7 @@ def _peaks(problem: SecondOrder) -> FloatArray:
     one, inputs = np.eye(len(flock.A)), flock.basis[size:].T
     answers = (np.linalg.solve(1j * w * one - flock.A, inputs) for w in grid.tolist())
     s = 1.0 + np.array([np.einsum("ij,ji->i", flock.force, x) for x in answers])  # (grid, n m)
-    found = np.empty((2, size))
+    peaks = np.empty((2, size))
     for row, shift in enumerate((0.0, 0.5)):
         for k, top in enumerate(np.abs(s - shift).argmax(axis=0).tolist()):
             ends = np.log(grid[[max(top - 1, 0), min(top + 1, len(grid) - 1)]])
@@ -181,8 +181,8 @@ def _peaks(problem: SecondOrder) -> FloatArray:
             def lack(x: float, b: FloatArray = b, f: FloatArray = f, shift: float = shift) -> float:
                 return -abs(1.0 - shift + complex(f @ np.linalg.solve(1j * np.exp(x) * one - flock.A, b)))
 
-            found[row, k] = np.exp(minimize_scalar(lack, bounds=tuple(ends), method="bounded").x)
-    return found
+            peaks[row, k] = np.exp(minimize_scalar(lack, bounds=tuple(ends), method="bounded").x)
+    return peaks
 
 
 def _gains_are_masses(problem: SecondOrder) -> bool:
@@ -237,7 +237,7 @@ def _on_the_axis(
 ) -> list[complex]:
     """Values S(jω) at the roots ω > 0 of a real function of S, by Newton's method from −s² near the positive axis."""
     near = (squares.real < 0.0) & (np.abs(squares.imag) <= _NEAR_AXIS * np.abs(squares))
-    one, found = np.eye(len(a)), []
+    one, frequencies = np.eye(len(a)), []
     for omega in np.sqrt(-squares.real[near]).tolist():
         for _ in range(_STEPS):
             shifted = 1j * omega * one - a
@@ -245,9 +245,9 @@ def _on_the_axis(
             s, turn = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted, answer))
             step = value(s) / slope(turn) if slope(turn) else inf
             if abs(value(s)) <= _TOLERANCE * min(1.0, abs(s)) and abs(step) <= _TOLERANCE * omega:
-                found.append(s)
+                frequencies.append(s)
                 break
             if not 0.0 < omega - step < inf:
                 break
             omega -= step
-    return found
+    return frequencies

@@ -44,10 +44,10 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
             vector = vectors[:, column]
             vector[rows] = shape
             shifted = value + max(float(error), EPS * float(np.abs(matrix).max()))  # beside an equal one of a listener
-            for own in net.indices[k + 1 :]:
-                push = matrix[own] @ vector
+            for k_i in net.indices[k + 1 :]:
+                push = matrix[k_i] @ vector
                 if push.any():
-                    vector[own] = np.linalg.solve(shifted * np.eye(own.size) - matrix[np.ix_(own, own)], push)
+                    vector[k_i] = np.linalg.solve(shifted * np.eye(k_i.size) - matrix[np.ix_(k_i, k_i)], push)
                     vector /= np.abs(vector).max()
             vector /= np.linalg.norm(vector)
             column += 1

@@ -35,11 +35,11 @@ def _multiplier(system: DelaySystem, delay: float, period: float) -> complex:
 def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatArray) -> float:
     """Return the least argument found at which a radius exceeds 1: on a grid, then at the nearest of `whole` below."""
     # Between multiples of the period a delay changes little; there growth may begin, end at once, and begin again.
-    found = first_growth(radius, trials)
-    if found in (0.0, inf):
-        return found
-    again = first_growth(radius, np.concatenate([trials[:1], np.sort(whole[whole < found])[-_AGAIN:]]))
-    return min(found, again)
+    growth = first_growth(radius, trials)
+    if growth in (0.0, inf):
+        return growth
+    again = first_growth(radius, np.concatenate([trials[:1], np.sort(whole[whole < growth])[-_AGAIN:]]))
+    return min(growth, again)
 
 
 def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = LIMIT) -> DelayMargin:
@@ -81,10 +81,10 @@ def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = L
     whole = 0.5 * period * np.arange(1.0, 2.0 * far / period)
     early = trials[trials <= far / _FAR] / period
     ensure_maps(_DELAY, size, np.append(early, np.full(min(_AGAIN, whole.size) + _HALVINGS, early[-1])), limit)
-    found = _search(lambda delay: abs(_multiplier(system, delay, period)), trials, whole)
-    if found == inf:
+    growth = _search(lambda delay: abs(_multiplier(system, delay, period)), trials, whole)
+    if growth == inf:
         return DelayMargin(inf, nan, 0.0)
-    return DelayMargin(found, abs(float(np.angle(_multiplier(system, found, period)))) / period, 0.0)
+    return DelayMargin(growth, abs(float(np.angle(_multiplier(system, growth, period)))) / period, 0.0)
 
 
 def delayed_sampling_margin(system: DelaySystem, delay: float, *, limit: float = LIMIT) -> SamplingMargin:
@@ -129,8 +129,8 @@ def delayed_sampling_margin(system: DelaySystem, delay: float, *, limit: float =
     whole = 2.0 * delay / np.arange(1.0, 2.0 * delay / max(start, brief))
     trials: FloatArray = np.geomspace(start, max(50.0 * quickest, 2.0 * start), _TRIALS)
     ensure_maps(_PERIOD, size, delay / trials, limit)
-    found = _search(radius, trials, whole)
-    if found in (0.0, inf):
-        return SamplingMargin("hold, delayed", found, 0.0, ())
-    z = _multiplier(system, delay, found)
-    return SamplingMargin("hold, delayed", found, 0.0, (ModePeriod(found, z / abs(z), np.zeros((0, 0))),))
+    growth = _search(radius, trials, whole)
+    if growth in (0.0, inf):
+        return SamplingMargin("hold, delayed", growth, 0.0, ())
+    z = _multiplier(system, delay, growth)
+    return SamplingMargin("hold, delayed", growth, 0.0, (ModePeriod(growth, z / abs(z), np.zeros((0, 0))),))

@@ -170,17 +170,17 @@ def margin_of_flow(
     k, d = flow.stiffness.toarray(), flow.damping.toarray()
     symmetric, shape = flow.second_order.symmetric, flow.q.shape
     if factor == 0.0 and not in_place:
-        found = _explicit(flow)
+        explicit = _explicit(flow)
     elif symmetric and not in_place:
-        found = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
+        explicit = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
     else:
-        found = _first_to_grow(flow, factor, in_place=in_place)
-    least, modes = found
+        explicit = _first_to_grow(flow, factor, in_place=in_place)
+    shortest, modes = explicit
     modes = sorted(modes, key=lambda mode: -inf if isnan(mode.period) else mode.period)
     period = modes[0].period if modes else inf
     modes = [mode for mode in modes if not isnan(mode.period)]
-    kept = (ModePeriod(x.period, x.multiplier, np.reshape(x.shape, shape)) for x in modes)
-    return SamplingMargin(name, period, least if isnan(period) else min(least, period), tuple(kept))
+    periods = (ModePeriod(x.period, x.multiplier, np.reshape(x.shape, shape)) for x in modes)
+    return SamplingMargin(name, period, shortest if isnan(period) else min(shortest, period), tuple(periods))
 
 
 def _explicit(flow: LinearFlock) -> tuple[float, list[ModePeriod]]:
@@ -207,8 +207,8 @@ def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -
     turn = _least_damped(k, d) / (1.0 - factor)
     if flip <= turn:
         return inf, flips
-    least, first = _first_to_grow(flow, factor, stable_below=turn)
-    return least, [*first, *flips]
+    shortest, first = _first_to_grow(flow, factor, stable_below=turn)
+    return shortest, [*first, *flips]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
@@ -217,8 +217,8 @@ def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
     shapes = np.linalg.eigh(k / sizes[0] + sqrt(2.0) * d / sizes[1])[1]
     rows = []
     for v in shapes.T:
-        own = zip((v @ k @ v, v @ d @ v), sizes, strict=True)
-        stiff, drag = (0.0 if abs(x) <= _UNDAMPED * size else x for x, size in own)
+        pairs = zip((v @ k @ v, v @ d @ v), sizes, strict=True)
+        stiff, drag = (0.0 if abs(x) <= _UNDAMPED * size else x for x, size in pairs)
         if stiff < 0.0 or drag < 0.0:
             rows.append(ModePeriod(0.0, 1.0 + 0.0j, v))
         elif stiff > 0.0 or drag > 0.0:
@@ -236,23 +236,23 @@ def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
         values, vectors = np.linalg.eig(companion)
         real = np.abs(values.imag) <= sqrt(EPS) * np.abs(values)
         values, vectors = values.real[real], vectors.real[:size, real]
-    kept = values > _UNDAMPED * float(np.abs(values).max(initial=0.0))
-    found = zip(1.0 / values[kept], (vectors / np.linalg.norm(vectors, axis=0)).T[kept], strict=True)
-    return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in found]
+    is_damped = values > _UNDAMPED * float(np.abs(values).max(initial=0.0))
+    flips = zip(1.0 / values[is_damped], (vectors / np.linalg.norm(vectors, axis=0)).T[is_damped], strict=True)
+    return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in flips]
 
 
 def _least_damped(k: FloatArray, d: FloatArray) -> float:
     """Largest h for which D − hK is positive definite on what K holds; 0 if D is not."""
     values, vectors = np.linalg.eigh(k)
-    held = vectors[:, values > 1e-8 * float(np.abs(values).max())]
+    held_vectors = vectors[:, values > 1e-8 * float(np.abs(values).max())]
     free = vectors[:, values <= 1e-8 * float(np.abs(values).max())]
     inner = d
     if free.shape[1]:  # what K does not hold may give way: the Schur complement
         drag = free.T @ d @ free
         inner = d - d @ free @ np.linalg.pinv(drag, rcond=1e-10, hermitian=True) @ free.T @ d
-    stiff = np.linalg.eigvalsh(k)[-held.shape[1] :] if held.size else np.zeros(0)
-    half = held / np.sqrt(stiff) if held.size else held
-    return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held.size else inf
+    stiff = np.linalg.eigvalsh(k)[-held_vectors.shape[1] :] if held_vectors.size else np.zeros(0)
+    half = held_vectors / np.sqrt(stiff) if held_vectors.size else held_vectors
+    return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held_vectors.size else inf
 
 
 def _first_to_grow(
@@ -261,7 +261,7 @@ def _first_to_grow(
     """Return (certified bound, the mode that grows first) component by component; period NaN where it is not known."""
     problem, m = flow.second_order, flow.q.shape[1]
     before = [moved_before(x, m) if in_place else 0.0 * x for x in (flow.stiffness.tocsr(), flow.damping.tocsr())]
-    first, least, part_of = Growth(inf, inf), inf, None
+    first, shortest, part_of = Growth(inf, inf), inf, None
     for k, part in enumerate(problem.parts or (problem,)):
         rows = problem.net.indices[k] if problem.net else np.arange(flow.q.size)
         steps = _steps(part, [x[rows][:, rows].toarray() for x in before], factor)
@@ -273,21 +273,21 @@ def _first_to_grow(
             growth = first_growth(steps, part.pace, stable_below)
             if growth.period == 0.0 and part.stable:  # shorter than any step that is looked at
                 growth = Growth(nan, 0.0)
-        least = min(least, growth.least)
+        shortest = min(shortest, growth.least)
         if not growth.period >= first.period:
             first, part_of = growth, steps
     if part_of is None or first.period == inf:
-        return least, []
+        return shortest, []
     if not first.period > 0.0:
         shape = flow.modes[0].shape if flow.modes else flow.q
-        return least, [ModePeriod(first.period, 1.0 + 0.0j, shape)]
+        return shortest, [ModePeriod(first.period, 1.0 + 0.0j, shape)]
     z = max(part_of.multipliers(first.period).tolist(), key=lambda z: (round(abs(z), 9), z.imag))
     k, d = (
         x.toarray() for x in stepped_equation(flow.stiffness, flow.damping, first.period, factor, m, in_place=in_place)
     )
     w = (z - 1.0) / first.period
     shape = np.linalg.svd(w * w * np.eye(len(k)) + w * d + k)[2][-1].conj()
-    return least, [ModePeriod(first.period, z / abs(z), shape)]
+    return shortest, [ModePeriod(first.period, z / abs(z), shape)]
 
 
 def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:

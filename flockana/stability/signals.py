@@ -62,8 +62,8 @@ def _system(
     A = np.block([[np.zeros((k, k)), np.eye(k)], [-stiffness, -damping]])
     B = np.vstack([np.zeros((k, inputs)), drive])
     C = np.hstack([read, np.zeros((outputs, k))])
-    states, given, seen = names
-    return control.ss(A, B, C, np.zeros((outputs, inputs)), states=states, inputs=given, outputs=seen, name=title)
+    states, causes, effects = names
+    return control.ss(A, B, C, np.zeros((outputs, inputs)), states=states, inputs=causes, outputs=effects, name=title)
 
 
 def whole_system(flock: Any) -> control.StateSpace:
@@ -74,13 +74,13 @@ def whole_system(flock: Any) -> control.StateSpace:
     target, target_names = _target_inputs(flock)
     lengths, length_names = _lengths(flock)
     drive = np.hstack([np.eye(n * m), target])
-    read = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, lengths])
+    readings = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, lengths])
     names = (
         labels("q", n, m) + labels("p", n, m),
         labels("f", n, m) + target_names,
         axes_of("qc", m) + labels("x", n, m) + length_names,
     )
-    return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive, read, names, "flock")
+    return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive, readings, names, "flock")
 
 
 def structural_system(flock: Any) -> control.StateSpace:
@@ -91,11 +91,11 @@ def structural_system(flock: Any) -> control.StateSpace:
         raise ArgumentError("n = 1: expected at least two agents; one has no shape")
     ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
-    kept = (n - 1) * m
-    extend = np.vstack([np.eye(kept), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
-    off = (np.eye(n * m) - unit @ unit.T)[:kept]
+    kept_size = (n - 1) * m
+    extend = np.vstack([np.eye(kept_size), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
+    off = (np.eye(n * m) - unit @ unit.T)[:kept_size]
     lengths, length_names = _lengths(flock)
-    blocks = ((flock.stiffness[:kept] @ extend), (flock.damping[:kept] @ extend))
+    blocks = ((flock.stiffness[:kept_size] @ extend), (flock.damping[:kept_size] @ extend))
     names = (labels("x", n - 1, m) + labels("v", n - 1, m), labels("f", n, m), labels("x", n, m) + length_names)
     return _system(blocks, off, np.vstack([extend, lengths @ extend]), names, "shape")
 

@@ -79,18 +79,18 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
             f"count = {count}: expected fewer modes, 2 count < {free - 2} eigenvalues off the zero modes; "
             "a flock this small has its whole spectrum in `modes`"
         )
-    wanted = min(_FIRST * count, free - 2)
+    count_wanted = min(_FIRST * count, free - 2)
     for _ in range(_ROUNDS):
-        values, vectors, radius = _nearest_zero(problem, wanted)
-        kept = values.imag >= 0.0
-        errors = mode_errors(problem.stiffness, problem.damping, values[kept], vectors[:, kept])
-        modes = problem.named(values[kept], vectors[:, kept], errors, problem.rigid_invariant.translational)
+        values, vectors, radius = _nearest_zero(problem, count_wanted)
+        is_upper = values.imag >= 0.0
+        errors = mode_errors(problem.stiffness, problem.damping, values[is_upper], vectors[:, is_upper])
+        modes = problem.named(values[is_upper], vectors[:, is_upper], errors, problem.rigid_invariant.translational)
         rising = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
-        known = _complete_to(problem, rising.tolist(), radius, count)
-        if not modes[count - 1].decay_rate > known or wanted == free - 2:
+        slow = _complete_to(problem, rising.tolist(), radius, count)
+        if not modes[count - 1].decay_rate > slow or count_wanted == free - 2:
             break
-        wanted = min(2 * wanted, free - 2)
-    return SlowModes(modes[:count], known)
+        count_wanted = min(2 * count_wanted, free - 2)
+    return SlowModes(modes[:count], slow)
 
 
 def _of_components(problem: SecondOrder, count: int) -> tuple[Mode, ...]:

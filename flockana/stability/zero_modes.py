@@ -46,7 +46,7 @@ class Split(NamedTuple):
 def split(stiffness: Any, damping: Any, m: int) -> Split:
     """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
     unit = translations(stiffness.shape[0] // m, m)
-    own, leak, errors = [], 0.0, []
+    own_groups, leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
         size = float(abs(matrix).max()) or 1.0
         errors.append(_ROUNDINGS * EPS * sqrt(stiffness.shape[0]).real * float(abs(matrix).sum(axis=1).max()))
@@ -54,8 +54,8 @@ def split(stiffness: Any, damping: Any, m: int) -> Split:
         diagonal = np.diag(block)
         for image in (matrix @ unit, matrix.T @ unit):
             leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
-        own.append(diagonal)
-    return Split(own[0], own[1], leak, (errors[0], errors[1]))
+        own_groups.append(diagonal)
+    return Split(own_groups[0], own_groups[1], leak, (errors[0], errors[1]))
 
 
 def agent_scales(stiffness: Any, m: int) -> FloatArray:
@@ -128,13 +128,13 @@ def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, 
                 stuck = against.T @ push
                 terms = float((np.abs(against).T @ all_terms).max())
                 _, sizes, turn = np.linalg.svd(stuck)
-                held = int(np.sum(sizes > zero * terms))
-                basis, push = basis @ turn[held:].T, push @ turn[held:].T
+                rank = int(np.sum(sizes > zero * terms))
+                basis, push = basis @ turn[rank:].T, push @ turn[rank:].T
             if push.any():
-                own = block[:, rows].toarray()
-                scale = np.abs(own).sum(axis=1, keepdims=True)
+                own_rows = block[:, rows].toarray()
+                scale = np.abs(own_rows).sum(axis=1, keepdims=True)
                 scale[scale == 0.0] = 1.0
-                basis[rows] = -np.linalg.lstsq(own / scale, push / scale, rcond=zero)[0]
+                basis[rows] = -np.linalg.lstsq(own_rows / scale, push / scale, rcond=zero)[0]
                 basis = basis / np.linalg.norm(basis, axis=0)
         fresh = np.zeros((len(basis), free.shape[1]))
         fresh[rows] = free

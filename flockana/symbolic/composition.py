@@ -41,11 +41,11 @@ def _between_agents(
     for i, j in combinations(range(_N), 2):
         apart, slip = q[j] - q[i], p[j] - p[i]
         square = apart.dot(apart)
-        pull, own = 2 * _HALF_PULL(square) * apart, weight(i, j, square)
-        for forces, force in ((pulls, pull), (u, pull + own * slip)):
+        pull, own_weight = 2 * _HALF_PULL(square) * apart, weight(i, j, square)
+        for forces, force in ((pulls, pull), (u, pull + own_weight * slip)):
             forces[i], forces[j] = forces[i] + force, forces[j] - force
         potential += _OF_SQUARE(square)
-        power -= own * slip.dot(slip)
+        power -= own_weight * slip.dot(slip)
     return pulls, u, potential, power
 
 
@@ -102,7 +102,7 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
     q, p, _ = _state(m)
     leaders = [[vector(f"{name}_{number}", m) for number in "gh"] for name in ("q", "p", "a")]
     q_l, p_l, a_l = ([each[number] for number in _GROUP] for each in leaders)
-    slip = [own - led for own, led in zip(p, p_l, strict=True)]
+    slip = [own_velocity - led for own_velocity, led in zip(p, p_l, strict=True)]
     same = [[int(a == b) for b in _GROUP] for a in _GROUP]
     pairs, u, energy, lost = _between_agents(q, p, lambda i, j, _: K_2 * same[i][j] * _weight(i, j))
     for i in range(_N):

@@ -84,12 +84,12 @@ class ConcreteFlock(Printed):
     def acceleration(self) -> tuple[sp.Matrix, ...]:
         """Input u_i of every agent."""
         total = []
-        for i, own in enumerate(agents := list(zip(self.q, self.p, strict=True))):
+        for i, own_p in enumerate(agents := list(zip(self.q, self.p, strict=True))):
             u_i = sp.zeros(self.m, 1)
             if self.law == "algorithm2":
-                u_i += own_force(*own, *self.target, gains=self.gains)
+                u_i += own_force(*own_p, *self.target, gains=self.gains)
             for other in agents[:i] + agents[i + 1 :]:
-                u_i += pair_force(*own, *other, gains=self.gains)
+                u_i += pair_force(*own_p, *other, gains=self.gains)
             total.append(sp.ImmutableMatrix(u_i))
         return tuple(total)
 

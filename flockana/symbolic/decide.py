@@ -135,11 +135,11 @@ def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: t
     for order, (scale, word) in enumerate(zip(scales, (name, kinks), strict=True)):
         if not word:
             continue
-        least = _SEEN * (scale or 1.0)
+        threshold = _SEEN * (scale or 1.0)
         changes = [abs(side[0][order] - side[1][order]) for side in sides]  # type: ignore[index]
-        if any(change > least for change in changes):
+        if any(change > threshold for change in changes):
             return Fact("unmet", f"{word} has no limit at s = {place:.6g}", witness)
-        if len(sides) == 2 and abs(sides[0][0][order] - sides[1][0][order]) > least:  # type: ignore[index]
+        if len(sides) == 2 and abs(sides[0][0][order] - sides[1][0][order]) > threshold:  # type: ignore[index]
             return Fact("unmet", f"{word} jumps at s = {place:.6g}", witness)
     return Fact("assumed", f"whether {name} is smooth at s = {place:.6g} is open", witness)
 
@@ -173,9 +173,9 @@ def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
         width = whole / 2**halving
         ball = interval(region.left, region.left + width) if side == 0 else interval(region.right - width, region.right)
         with precision(_BITS + halving, order + 1):
-            found = of.series(ball)
-        if found is not None and not found[order].contains(0):
-            sign = 1 if found[order] > 0 else -1
+            series = of.series(ball)
+        if series is not None and not series[order].contains(0):
+            sign = 1 if series[order] > 0 else -1
             return sign * (-1) ** (order * side), width
     return 0, fmpq(0)
 
@@ -204,20 +204,20 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
         where, rest = region.between(stack[-1][0], stack[0][1]), sum(_float(b) - _float(a) for a, b, _ in stack)
         text = f"whether {name} is negative is open from s = {where[0]:.6g} on"
         return (Fact("assumed", text, where, rest),) * 2
-    met = Fact("met", f"{name} is enclosed at every distance")
+    fact = Fact("met", f"{name} is enclosed at every distance")
     if not weak:
-        return met, met
+        return fact, fact
     where, width = region.between(weak[0][0], weak[-1][1]), sum(_float(b) - _float(a) for a, b in weak)
-    return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
+    return fact, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
 
 
 def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
     """Return the certain sign on an interval, by its enclosure or by its ends where it is monotone."""
     ball = interval(left, right)
-    sign, found = of.sign(ball), of.series(ball)
-    if sign == POSITIVE or found is None or found[1].contains(0):
+    sign, series = of.sign(ball), of.series(ball)
+    if sign == POSITIVE or series is None or series[1].contains(0):
         return sign
-    lower = of.series(arb(left if found[1] > 0 else right))
+    lower = of.series(arb(left if series[1] > 0 else right))
     if lower is None or not lower[0] >= 0:
         return sign
     return POSITIVE if lower[0] > 0 else NONNEGATIVE
@@ -262,21 +262,21 @@ def least_on(region: Region, scale: float) -> Least:
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
     """Return a lower bound on an interval, a value in it and its place."""
     middle = (left + right) / 2
-    found, at = of.series(interval(left, right)), of.series(arb(middle))
-    seen = arb.pos_inf() if at is None else at[0].upper()
-    if found is None:
-        return arb.neg_inf(), seen, middle
-    if not found[1].contains(0):
-        end = left if found[1] > 0 else right
+    series, at = of.series(interval(left, right)), of.series(arb(middle))
+    lowest_value = arb.pos_inf() if at is None else at[0].upper()
+    if series is None:
+        return arb.neg_inf(), lowest_value, middle
+    if not series[1].contains(0):
+        end = left if series[1] > 0 else right
         value = of.series(arb(end))
         if value is not None:
             return value[0].lower(), value[0].upper(), end
-    low = found[0].lower()
+    low = series[0].lower()
     if at is not None:
         off = interval(left - middle, right - middle)
         square = (off * off).nonnegative_part()
-        low = low.max((at[0] + at[1] * off + found[2] * square).lower())
-    return low, seen, middle
+        low = low.max((at[0] + at[1] * off + series[2] * square).lower())
+    return low, lowest_value, middle
 
 
 def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
@@ -297,8 +297,8 @@ def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tupl
                 highs.append(total.upper())
         if at_anchor is None:
             at_anchor = total
-        least, most = reduce(arb.min, lows), reduce(arb.min, highs)
-        return (down(least - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
+        minimum, most = reduce(arb.min, lows), reduce(arb.min, highs)
+        return (down(minimum - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
 
 
 def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
@@ -308,13 +308,13 @@ def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | 
     while stack:
         left, right, depth = stack.pop()
         middle, half = (left + right) / 2, (right - left) / 2
-        found, at = of.series(interval(left, right)), of.series(arb(middle))
-        if found is not None and at is not None:
+        series, at = of.series(interval(left, right)), of.series(arb(middle))
+        if series is not None and at is not None:
             whole = sum((2 * at[k] * arb(half) ** (k + 1) / (k + 1) for k in range(0, _TERMS - 1, 2)), arb(0))
-            rest = 2 * arb(half) ** _TERMS / _TERMS * found[_TERMS - 1].abs_upper()
-            crosses = found[0].contains(0) and float((found[0].abs_upper() * arb(2 * half)).upper()) > _EXACT * scale
+            rest = 2 * arb(half) ** _TERMS / _TERMS * series[_TERMS - 1].abs_upper()
+            crosses = series[0].contains(0) and float((series[0].abs_upper() * arb(2 * half)).upper()) > _EXACT * scale
             if float(rest) <= _EXACT * scale and not (crosses and depth < _FINEST):
-                parts.append((whole + arb(0, rest), found[0], arb(2 * half)))
+                parts.append((whole + arb(0, rest), series[0], arb(2 * half)))
                 continue
         if depth >= _FINEST or len(parts) + len(stack) > _PARTS:
             return None

@@ -26,12 +26,12 @@ _T = sp.Symbol("t", real=True)
 @contextmanager
 def precision(bits: int, terms: int = 1) -> Iterator[None]:
     """Set the precision of ball arithmetic, and the length of its series, inside the block."""
-    kept = ctx.prec, ctx.cap
+    saved = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = bits, terms
     try:
         yield
     finally:
-        ctx.prec, ctx.cap = kept
+        ctx.prec, ctx.cap = saved
 
 
 def rational(number: Any) -> fmpq:
@@ -69,35 +69,35 @@ class Enclosed:
 
     def series(self, x: arb) -> list[arb] | None:
         """Return Taylor coefficients valid for every centre in a ball, `ctx.cap` of them; None where not analytic."""
-        found = self._run(x)
-        return None if found is None else _coefficients(found[-1][0])
+        parts = self._run(x)
+        return None if parts is None else _coefficients(parts[-1][0])
 
     def sign(self, x: arb) -> int:
         """Return whether the formula is certainly positive, and certainly nonnegative, on a ball."""
-        found = self._run(x)
-        return OPEN if found is None else found[-1][1]
+        series = self._run(x)
+        return OPEN if series is None else series[-1][1]
 
     def _run(self, x: arb) -> list[tuple[Any, int]] | None:
-        kept = self._constants.setdefault((ctx.prec, ctx.cap), {})
+        constants = self._constants.setdefault((ctx.prec, ctx.cap), {})
         values: list[tuple[Any, int]] = []
         middle, centre = x.mid(), None
         if not x.is_exact() and ctx.cap > 1 and (centre := self._run(middle)) is None:
             return None
         try:
             for k, (operation, arguments, node, varies) in enumerate(self._steps):
-                if not varies and k in kept:
-                    values.append(kept[k])
+                if not varies and k in constants:
+                    values.append(constants[k])
                     continue
-                given = [values[each] for each in arguments]
-                value = operation(x, *(each for each, _ in given))
+                arguments_given = [values[each] for each in arguments]
+                value = operation(x, *(each for each, _ in arguments_given))
                 if centre is not None and (node.is_Add or node.is_Mul):
                     mean = centre[k][0][0] + value[1] * (x - middle)  # by the mean value form
                     value = _with_value(value, value[0].intersection(mean))
                 if not all(map(arb.is_finite, value.coeffs())):
                     return None
-                values.append((value, _sign(node, value, [sign for _, sign in given])))
+                values.append((value, _sign(node, value, [sign for _, sign in arguments_given])))
                 if not varies:
-                    kept[k] = values[-1]
+                    constants[k] = values[-1]
         except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
             return None
         return values
@@ -105,8 +105,8 @@ class Enclosed:
 
 def _coefficients(series: arb_series) -> list[arb]:
     """Return all coefficients of a series, trailing zeros included."""
-    found = series.coeffs()[: ctx.cap]
-    return [*found, *([arb(0)] * (ctx.cap - len(found)))]
+    coefficients = series.coeffs()[: ctx.cap]
+    return [*coefficients, *([arb(0)] * (ctx.cap - len(coefficients)))]
 
 
 def _arguments(node: sp.Expr) -> tuple[sp.Expr, ...]:
@@ -188,8 +188,8 @@ def _power_range(base: arb, whole: int) -> arb:
 def _exp(x: Any) -> Any:
     if _where(x[0] < _LARGEST, x)[0] > -_LARGEST:
         return x.exp()
-    least = arb(0).union(arb(-_LARGEST).max(x[0].upper()).exp().upper())
-    return _with_value(x, arb(0)).exp() * least
+    floor = arb(0).union(arb(-_LARGEST).max(x[0].upper()).exp().upper())
+    return _with_value(x, arb(0)).exp() * floor
 
 
 def _integrated(value: arb, slope: Any, x: Any) -> Any:
@@ -251,15 +251,15 @@ def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
     ball = value[0]
     if ball > 0:
         return POSITIVE
-    known = NONNEGATIVE if ball >= 0 else OPEN
+    sign = NONNEGATIVE if ball >= 0 else OPEN
     if node.is_Add or node.is_Mul:
-        least = min(signs)
-        known = max(known, POSITIVE if node.is_Add and least and max(signs) == POSITIVE else least)
+        lowest_sign = min(signs)
+        sign = max(sign, POSITIVE if node.is_Add and lowest_sign and max(signs) == POSITIVE else lowest_sign)
     elif node.is_Pow and node.exp.is_Rational and (node.exp.p % 2 == 0 or signs[0]):
-        known = max(known, signs[0] or NONNEGATIVE)
+        sign = max(sign, signs[0] or NONNEGATIVE)
     elif node.func is sp.exp or (node.is_Pow and signs[0] == POSITIVE):
-        known = POSITIVE
-    return known
+        sign = POSITIVE
+    return sign
 
 
 class Germ(NamedTuple):
@@ -290,10 +290,10 @@ class _GermVisitor:
 
     def of(self, node: sp.Expr) -> Germ:
         if node not in self._known:
-            found = self._of(node)
-            if not found.factor.is_finite():
+            germ = self._of(node)
+            if not germ.factor.is_finite():
                 raise _UnknownError
-            self._known[node] = found
+            self._known[node] = germ
         return self._known[node]
 
     def _of(self, node: sp.Expr) -> Germ:
@@ -313,8 +313,8 @@ class _GermVisitor:
         return self._function(node.func, self.of(node.args[0]))
 
     def _sum(self, terms: list[Germ]) -> Germ:
-        least = min(each.power for each in terms)
-        return Germ(least, sum((each.factor * self._until(each.power - least) for each in terms), arb(0)))
+        power = min(each.power for each in terms)
+        return Germ(power, sum((each.factor * self._until(each.power - power) for each in terms), arb(0)))
 
     def _until(self, power: Fraction) -> arb:
         """Return the range of t^power, power ≥ 0."""
@@ -338,16 +338,16 @@ class _GermVisitor:
             return Germ(none, _first(Enclosed(of(_T), _T), at))
         if of in (sp.sin, sp.cos):
             return Germ(none, arb(0, 1))
-        least = abs(argument.factor).lower() * (1 / self._until(-argument.power).upper())
+        bound = abs(argument.factor).lower() * (1 / self._until(-argument.power).upper())
         rises = bool(argument.factor > 0)
         if not (rises or argument.factor < 0):
             raise _UnknownError
         if of is sp.exp and not rises:
-            return Germ(none, arb(0).union((-least).exp().upper()))
+            return Germ(none, arb(0).union((-bound).exp().upper()))
         if of in (sp.atan, sp.tanh):
-            limit, value = (arb.pi() / 2, least.atan()) if of is sp.atan else (arb(1), least.tanh())
-            found = value.lower().union(limit.upper())
-            return Germ(none, found if rises else -found)
+            limit, value = (arb.pi() / 2, bound.atan()) if of is sp.atan else (arb(1), bound.tanh())
+            hull = value.lower().union(limit.upper())
+            return Germ(none, hull if rises else -hull)
         raise _UnknownError
 
     def _logarithm(self, argument: Germ) -> Germ:
@@ -362,7 +362,7 @@ class _GermVisitor:
 
 
 def _first(of: Enclosed, at: arb) -> arb:
-    found = of.series(at)
-    if found is None:
+    series = of.series(at)
+    if series is None:
         raise _UnknownError
-    return found[0]
+    return series[0]

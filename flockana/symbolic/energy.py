@@ -190,8 +190,8 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     pair = GenericPair(m, (X, V))
     total, claimed, steps = _pair_steps(pair, HALF, gains)
     (x_i, _), (v_i, _) = pair.q, pair.p
-    own = relative_feedback(x_i, v_i, gains)[0]
-    agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own)))
+    own_part = relative_feedback(x_i, v_i, gains)[0]
+    agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own_part)))
     agent_claimed = -gains.c2_gamma * v_i.dot(v_i)
     names = indexed((X, x_i), (V, v_i))
     energy = sums.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
@@ -203,7 +203,7 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
         *steps,
         Step(
             r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; the feedback on it minus that on the centre is",
-            own,
+            own_part,
         ),
         Step(r"and with $\lambda J + K$ it contributes", agent),
         Step(

@@ -112,11 +112,11 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 def reynolds_form(*, printed: bool = False) -> Derivation:
     """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is."""
     true, stated = gradient_part(), friends_form(printed=printed)
-    moved = friends_form(printed=printed, shift=SHIFT)
+    friends = friends_form(printed=printed, shift=SHIFT)
     steps = (
         Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true),
         Step("What is stated in the stress-weighted means of both:", stated),
-        Step(r"Move all agents by $w$; it becomes", moved),
+        Step(r"Move all agents by $w$; it becomes", friends),
     )
-    residuals = (sp.expand(true - stated), sp.expand(moved - stated))
+    residuals = (sp.expand(true - stated), sp.expand(friends - stated))
     return Derivation(r"Flock centring and collision avoidance, $u_i^g$", steps, stated, residuals)

@@ -134,8 +134,8 @@ class _Reader:
             return self._number(node.value)
         if isinstance(node, ast.Name):
             if node.id not in self.names:
-                known, remedy = ", ".join(sorted(self.names)), f"parameters={{{node.id!r}: ...}}"
-                fault = f"{self.where} has the unknown name {node.id!r}: expected one of {known}"
+                names, remedy = ", ".join(sorted(self.names)), f"parameters={{{node.id!r}: ...}}"
+                fault = f"{self.where} has the unknown name {node.id!r}: expected one of {names}"
                 raise ArgumentError(f"{fault}; give a parameter its value, {remedy}")
             return self.names[node.id]
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
@@ -175,8 +175,8 @@ class _Reader:
             return sp.Integer(value)
         if isinstance(value, float) and isfinite(value):
             return sp.Rational(repr(value))  # 0.1 is 1/10, so that terms cancel exactly, and no exponential overflows
-        given = value if isinstance(value, float) else type(value).__name__
-        raise ArgumentError(f"{self.where}: {given} is no number of a formula; expected a finite one")
+        text = value if isinstance(value, float) else type(value).__name__
+        raise ArgumentError(f"{self.where}: {text} is no number of a formula; expected a finite one")
 
     def _operation(self, node: ast.BinOp, depth: int) -> sp.Expr:
         left, right = self._value(node.left, depth), self._value(node.right, depth)
@@ -213,17 +213,17 @@ class _Reader:
         """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
         nodes, tower, degree = expression_size(value, self._sizes)
         towers = tower, TOWER, "exponentials within each other"
-        for found, most, what in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):
-            if found > most:
-                raise ArgumentError(f"{self.where} has {found} {what}: expected at most {most}, a simpler formula")
+        for count, most, what in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):
+            if count > most:
+                raise ArgumentError(f"{self.where} has {count} {what}: expected at most {most}, a simpler formula")
 
     def _ensure_divisor(self, value: sp.Expr, node: ast.AST) -> None:
         """Raise on a divisor that is 0, or may be."""
         if not value.is_number or value.is_Rational:
             return
         with precision(_DIVISOR_BITS):
-            found = Enclosed(value, sp.Dummy()).series(arb(0))
-        if found is None or found[0].contains(0):
+            series = Enclosed(value, sp.Dummy()).series(arb(0))
+        if series is None or series[0].contains(0):
             divisor = _short(ast.unparse(node))
             raise ArgumentError(f"{self.where}: the divisor {divisor} is 0, or not distinguishable from 0")
 

@@ -117,10 +117,10 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
     weight = PHI_BETA(z) / ROOT
     slope = (PHI_BETA_SLOPE(z) - EPS * PHI_BETA(z) / ROOT) / (2 * ROOT**2)
     braking = WEIGHT_SLOPE(z) / (2 * ROOT)
-    own = sp.eye(m) - one.derivative
-    by_position = -gains.c1_beta * (weight * own + 2 * slope * gap * gap.T)
+    identity = sp.eye(m) - one.derivative
+    by_position = -gains.c1_beta * (weight * identity + 2 * slope * gap * gap.T)
     by_position += gains.c2_beta * (WEIGHT(z) * turn(one) - 2 * braking * slip * gap.T)
-    by_velocity = -gains.c2_beta * WEIGHT(z) * own
+    by_velocity = -gains.c2_beta * WEIGHT(z) * identity
     functions = (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
     names = {f(z): sp.Symbol(f.__name__) for f in functions}  # then it is rational
     force = one.force(gains)

@@ -50,13 +50,13 @@ class _NumericFormula:
     def facts(self) -> PairFacts:
         """Facts on smoothness, sign and least values."""
         weight, inside = self._signs()
-        least, contact = self._energies()
+        minimum, contact = self._energies()
         rest = [least_on(region, self.tallest) for region in self._regions(self._weights)]
         lowest = (min(each.low for each in rest), min(each.high for each in rest))
         if weight.status == "met":
             lowest = (max(lowest[0], 0.0), lowest[1])
         smooth = conjunction([*self._inner(), *self._joints(), *self._end()], _PROOF)
-        return PairFacts(smooth, weight, inside, least, contact, lowest)
+        return PairFacts(smooth, weight, inside, minimum, contact, lowest)
 
     @property
     def _y(self) -> sp.Symbol:
@@ -120,9 +120,9 @@ class _NumericFormula:
         ):
             for k, region in enumerate(self._regions(formulas, split=False)):
                 if k == 0:
-                    width, known = self._clear(region)
+                    width, is_clear = self._clear(region)
                     region = region._replace(left=width)
-                    if not known:
+                    if not is_clear:
                         text = f"whether {what} is smooth near contact is open"
                         yield Fact("assumed", text, (0.0, self.place(width)), float(arb(width)))
                 for fact in smooth_on(region, what, scale, slope, kinks=kinks):
@@ -179,17 +179,17 @@ class _NumericFormula:
 
     def _signs(self) -> tuple[Fact, Fact]:
         """Return facts whether the adjacency is nonnegative, and positive below the range."""
-        found = []
+        signs = []
         for region in self._regions([_factored(each, self._y) for each in self._weights]):
             if region.left == 0 and self._limit(region.exact) is None:
                 fact, width = self._sign_near(region)
-                found.append((fact, fact))
+                signs.append((fact, fact))
                 if fact.status == "assumed":
                     continue
                 region = region._replace(left=width)
-            found.append(sign_on(region, "the adjacency"))
-            found += [(Fact("met"), fact) for fact in self._zeros(region)]
-        weights, insides = zip(*found, strict=True)
+            signs.append(sign_on(region, "the adjacency"))
+            signs += [(Fact("met"), fact) for fact in self._zeros(region)]
+        weights, insides = zip(*signs, strict=True)
         text = "its sign is enclosed at every distance"
         return conjunction(weights, text), conjunction(insides, f"{text} below the range")
 
@@ -207,11 +207,11 @@ class _NumericFormula:
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
-                found, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
+                start, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
                 end = region.enclosed.series(arb(width))
             fault = Fact("unmet", "the adjacency is negative near contact", (0.0, self.place(width)))
-            if found is not None and not found.factor.contains(0):
-                return Fact("met") if found.factor > 0 else fault, width
+            if start is not None and not start.factor.contains(0):
+                return Fact("met") if start.factor > 0 else fault, width
             if falls is None or end is None or falls.factor.contains(0) or end[0].contains(0):
                 continue
             if (falls.factor < 0) == (end[0] > 0):  # it rises to contact from above 0, or falls to it from below
@@ -220,11 +220,11 @@ class _NumericFormula:
 
     def _limit(self, formula: sp.Expr) -> arb | None:
         """Return the value at contact of a formula that is analytic there."""
-        found = Enclosed(formula, self._y)
+        enclosed = Enclosed(formula, self._y)
         with precision(_BITS, 2):
-            if found.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
+            if enclosed.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
                 return None
-            values = found.series(arb(0))
+            values = enclosed.series(arb(0))
         return None if values is None else values[0]
 
     def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -234,9 +234,9 @@ class _NumericFormula:
             regions = list(self._regions(self._main_pieces))
             return least_of_integral(regions, self._point(self._declared("d"), 0), scale)
         first, *rest = regions = list(self._regions(self._main_pieces))
-        contact, least, left = self._contact(first)
-        found = [least, *(least_on(region, scale) for region in (first._replace(left=left), *rest))]
-        low, high = min(each.low for each in found), min(each.high for each in found)
+        contact, minimum, left = self._contact(first)
+        minima = [minimum, *(least_on(region, scale) for region in (first._replace(left=left), *rest))]
+        low, high = min(each.low for each in minima), min(each.high for each in minima)
         return self._sharpened(regions, low, high), contact
 
     def _sharpened(self, regions: list[Region], low: float, high: float) -> tuple[float, float]:
@@ -244,12 +244,12 @@ class _NumericFormula:
         scale = self.strength * self.cut.end
         for value in (region.expression.subs(self._y, end) for region in regions for end in region.ends):
             with precision(_BITS):
-                found = Enclosed(value.xreplace(self._numbers), sp.Dummy()).series(arb(0))
-            if found is None or not abs(float(found[0]) - high) <= 1e-9 * max(abs(high), scale):
+                series = Enclosed(value.xreplace(self._numbers), sp.Dummy()).series(arb(0))
+            if series is None or not abs(float(series[0]) - high) <= 1e-9 * max(abs(high), scale):
                 continue
             rest = [region._replace(expression=_factored(region.expression - value, self._y)) for region in regions]
             if all(sign_on(each, "")[0].status == "met" for each in rest):
-                return down(found[0]), up(found[0])
+                return down(series[0]), up(series[0])
         return low, high
 
     def _contact(self, region: Region) -> tuple[tuple[float, float], Least, fmpq]:
@@ -263,7 +263,7 @@ class _NumericFormula:
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
-                falls, own = germ(slope, y, width), germ(formula, y, width)
+                falls, germ_s = germ(slope, y, width), germ(formula, y, width)
                 end = Enclosed(formula, y).series(arb(width))
             if falls is None or end is None or falls.factor.contains(0):
                 continue
@@ -271,14 +271,16 @@ class _NumericFormula:
             if falls.power <= -1:
                 level = inf if falls.factor < 0 else -inf
                 return (level, level), at_width if level > 0 else Least(-inf, -inf, 0.0), width
-            limit = self._close(formula, falls) or (None if own is None else _bounds(own))
+            limit = self._close(formula, falls) or (None if germ_s is None else _bounds(germ_s))
             if limit is None:
                 continue
             return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
-        if own is not None and (limit := _bounds(own)) is not None:  # of the narrowest, whose slope has no sign known
+        if (
+            germ_s is not None and (limit := _bounds(germ_s)) is not None
+        ):  # of the narrowest, whose slope has no sign known
             with precision(_BITS):
-                power = (arb(width).log() * arb(rational(own.power))).exp()
-                low = down(own.factor * arb(0).union(power) if own.power > 0 else own.factor)
+                power = (arb(width).log() * arb(rational(germ_s.power))).exp()
+                low = down(germ_s.factor * arb(0).union(power) if germ_s.power > 0 else germ_s.factor)
             return limit, Least(min(low, limit[0]), limit[1], 0.0), width
         return (-inf, inf), Least(-inf, inf, 0.0), width
 
@@ -296,8 +298,8 @@ class _NumericFormula:
 
 
 def _value(number: sp.Expr) -> arb:
-    found = Enclosed(number, sp.Dummy()).series(arb(0))
-    return arb.nan() if found is None else found[0]
+    series = Enclosed(number, sp.Dummy()).series(arb(0))
+    return arb.nan() if series is None else series[0]
 
 
 def _bounds(own: Germ) -> tuple[float, float] | None:
@@ -336,9 +338,9 @@ def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> floa
     """Return a bound of a Taylor coefficient on an interval."""
     middle = (left + right) / 2
     with precision(_SLOPE_BITS, order + 1):
-        found, at = of.series(interval(left, right)), of.series(arb(middle))
-        if found is not None and at is not None and found[order].abs_upper() <= 2 * at[order].abs_upper():
-            return up(found[order].abs_upper())
+        series, at = of.series(interval(left, right)), of.series(arb(middle))
+        if series is not None and at is not None and series[order].abs_upper() <= 2 * at[order].abs_upper():
+            return up(series[order].abs_upper())
     if depth >= _SLOPE_HALVINGS:
-        return inf if found is None else up(found[order].abs_upper())
+        return inf if series is None else up(series[order].abs_upper())
     return max(_most(of, order, *ends, depth + 1) for ends in ((left, middle), (middle, right)))

@@ -58,15 +58,15 @@ def _read_pair(potential: str, force: str, adjacency: str, names: tuple[str, ...
     symbols |= {name: EPS if name == "eps" else sp.Symbol(name, real=True) for name in names}
     main = read_formula(force or potential, symbols, where="force" if force else "potential")
     weight = read_formula(adjacency, symbols, where="adjacency")
-    used = main.free_symbols | weight.free_symbols
-    if {S, Z} <= used:
+    symbols_used = main.free_symbols | weight.free_symbols
+    if {S, Z} <= symbols_used:
         raise ArgumentError("the formula is in s and in z: expected the distance s alone, or the σ-norm z alone")
-    in_norm = Z in used
+    in_norm = Z in symbols_used
     if in_norm and "eps" not in names:
         raise ArgumentError("a formula in the σ-norm z needs parameters['eps'], the ε of the norm")
-    if not in_norm and {symbols["r_z"], symbols["d_z"]} & used:
+    if not in_norm and {symbols["r_z"], symbols["d_z"]} & symbols_used:
         raise ArgumentError("r_z and d_z are σ-norms: expected a formula in z, or r and d")
-    idle = sorted(name for name in names if symbols[name] not in used and not (in_norm and name == "eps"))
+    idle = sorted(name for name in names if symbols[name] not in symbols_used and not (in_norm and name == "eps"))
     if idle:
         raise ArgumentError(f"parameter {idle[0]!r} is in no formula: leave it out, or use it")
     return PairFormula(main, weight, Z if in_norm else S, bool(force))
@@ -163,12 +163,12 @@ class PiecewiseFormula:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Derived expressions between consecutive marks."""
-        formula, found = self.formula, []
+        formula, parts = self.formula, []
         for middle in (0.5 * (left + right) for left, right in pairwise(self.marks)):
             main, weight = (self.chosen(part, middle) for part in (formula.main, formula.adjacency))
-            found.append(derive_piece(main, weight, formula.distance, forces=formula.forces))
-            _ensure_derived(found[-1].slope, _CURVATURE)
-        return tuple(found)
+            parts.append(derive_piece(main, weight, formula.distance, forces=formula.forces))
+            _ensure_derived(parts[-1].slope, _CURVATURE)
+        return tuple(parts)
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
         """Return an expression with the piece that holds at a distance."""
@@ -200,10 +200,10 @@ class PiecewiseFormula:
         def at(distance: Any) -> Any:
             with mpmath.workdps(DIGITS):
                 try:
-                    found = 1 * mpmath.mpmathify(compiled(mpmath.mpf(distance), *values))  # of pi alone a number too
+                    value = 1 * mpmath.mpmathify(compiled(mpmath.mpf(distance), *values))  # of pi alone a number too
                 except (ZeroDivisionError, ValueError, OverflowError):
                     return mpmath.nan
-                return found if isinstance(found, mpmath.mpf) else mpmath.nan
+                return value if isinstance(value, mpmath.mpf) else mpmath.nan
 
         return at
 
@@ -213,9 +213,9 @@ def _compiled(expression: sp.Expr, y: sp.Symbol, symbols: tuple[sp.Symbol, ...])
     """Return an expression as a function of y and of its parameters, for mpmath."""
     expression = expression.subs(ROOT, 1 + EPS * Z)
     bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
-    given = {symbol: sp.Dummy() for symbol in symbols}  # a parameter may be named like a function of mpmath
+    symbols_given = {symbol: sp.Dummy() for symbol in symbols}  # a parameter may be named like a function of mpmath
     compiled: Callable[..., Any] = sp.lambdify(
-        [y, *given.values()], bounded.xreplace(given), [_BOUNDED, "mpmath"], dummify=True
+        [y, *symbols_given.values()], bounded.xreplace(symbols_given), [_BOUNDED, "mpmath"], dummify=True
     )
     return compiled
 

@@ -38,8 +38,8 @@ def _derive(bundle: Any, **values: sp.Expr) -> None:
     """Set the fields of a frozen bundle that were not given."""
     _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
     for name, value in values.items():
-        given = getattr(bundle, name)
-        object.__setattr__(bundle, name, value if given is None else exact(name, given))
+        number = getattr(bundle, name)
+        object.__setattr__(bundle, name, value if number is None else exact(name, number))
 
 
 def _require(condition: bool | None, message: str) -> None:

@@ -81,8 +81,8 @@ class FloatCode(PythonCodePrinter):
         return "pi"
 
     def _print_Piecewise(self, pieces: sp.Piecewise) -> str:  # noqa: N802  # sympy's name
-        *chosen, (last, _) = pieces.args
-        head = "".join(f"{self._print(value)} if {self._print(where)} else " for value, where in chosen)
+        *others, (last, _) = pieces.args
+        head = "".join(f"{self._print(value)} if {self._print(where)} else " for value, where in others)
         return f"({head}{self._print(last)})"
 
     _print_sin = _print_cos = _print_tan = _print_exp = _print_log = _print_Function
@@ -105,8 +105,8 @@ def function_text(name: str, arguments: str, before: list[str], expressions: lis
             continue
         names = [f"p{at - len(row) + i}" for i in range(len(row))]
         lines.append(f"{', '.join(names)} = {', '.join(values)}")
-        chosen = names[-1]
+        last_name = names[-1]
         for i in range(len(row) - 2, -1, -1):  # every piece is computed and one chosen: no branch, so it is vectorised
-            chosen = f"{names[i]} if y < m{i} else {chosen if chosen == names[-1] else f'({chosen})'}"
-        lines.append(f"v{k} = {chosen}")
+            last_name = f"{names[i]} if y < m{i} else {last_name if last_name == names[-1] else f'({last_name})'}"
+        lines.append(f"v{k} = {last_name}")
     return "\n".join([f"def {name}({arguments}):", *(f"    {line}" for line in (*lines, f"return {after}"))])

@@ -60,12 +60,12 @@ def theorem6_identity(
     pair = GenericPair(m)
     total = pair.tidy(sp.Add(*pair.energy_rates(gains, copies=copies)))
     dissipation = -gains.c2_alpha * pair.laplacian_form()
-    own, own_claimed = _agent_rates(m, gains, moving)
+    own_rate, own_claimed = _agent_rates(m, gains, moving)
     left = sp.Add(*(GenericObstacle(kind, m).energy_residual(gains) for kind in kinds))
     braking = gains.c2_beta * _over_obstacles(WEIGHT(CLEARANCE[I_, K_]) * BRAKING[I_, K_])
-    rate = pair.lift(total) + over_agents(own) + braking + _over_obstacles(left)
+    rate = pair.lift(total) + over_agents(own_rate) + braking + _over_obstacles(left)
     claimed = pair.lift(dissipation) + over_agents(own_claimed) + braking
-    residual = pair.lift(pair.tidy(total - dissipation)) + over_agents(sp.expand(own - own_claimed))
+    residual = pair.lift(pair.tidy(total - dissipation)) + over_agents(sp.expand(own_rate - own_claimed))
     pull = sigma_norm(sp.Matrix([Q[I_, k] for k in range(1, m + 1)]) - vector("q_r", m), eps=_ONE)
     energy = (
         copies * collective_potential(gains)
@@ -81,7 +81,7 @@ def theorem6_identity(
             r"so the forces cancel, and $c_2^\beta b \langle p_i, \hat p - p_i\rangle$ remains. Left over:",
             left,
         ),
-        Step("One agent and the gamma-agent contribute", own),
+        Step("One agent and the gamma-agent contribute", own_rate),
         Step(r"Together $\dot H$ is", rate),
         Step("and the closed form is", claimed),
     )

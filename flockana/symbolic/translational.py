@@ -124,12 +124,12 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     on_i, on_j = pair.forces(gains)
     ends, centres = sp.Matrix.vstack(x_i, x_j, v_i, v_j), sp.Matrix.vstack(q_c, q_c, p_c, p_c)
     shift = {s: s + c for s, c in zip(ends, centres, strict=True)}
-    own, translational = relative_feedback(x_i, v_i, gains)
+    own_part, translational = relative_feedback(x_i, v_i, gains)
     stated = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
     gradient = pair_potential(x_i, x_j, gains=gains).diff(x_i)
     consensus = gains.c2_alpha * ADJACENCY(sigma_norm(x_j - x_i)) * (v_j - v_i)
     between = (*(on_i + on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
-    residuals = (*map(pair.tidy, between), *(own - stated).expand())
+    residuals = (*map(pair.tidy, between), *(own_part - stated).expand())
     f_ij, f_ji = sp.symbols("f_ij f_ji")
     relative = sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i)))
     steps = (
@@ -139,7 +139,7 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
         Step(
             r"The feedback on agent $i$ minus that on the centre contains none of $q_c, p_c, q_r, p_r$. It is linear, "
             r"and $\sum_i x_i = \sum_i v_i = 0$, so its mean over the agents is 0:",
-            own,
+            own_part,
         ),
         Step(
             r"So the structural dynamics is autonomous: $x' = v$, "
@@ -148,4 +148,4 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
         ),
     )
     name = "Algorithm 2: structural and translational dynamics"
-    return Derivation(name, steps, sp.Tuple(own, translational), residuals)
+    return Derivation(name, steps, sp.Tuple(own_part, translational), residuals)

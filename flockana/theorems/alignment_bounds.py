@@ -64,17 +64,17 @@ class AlignmentRate:
         """The x_M at which ∫φ from `start` is the speed; infinite if there is none."""
         from scipy.optimize import brentq
 
-        asked, low = speed / self._unit, self._w(start)
+        speed_ratio, low = speed / self._unit, self._w(start)
         if speed >= self.beyond(start):
             return inf
         if speed == 0.0:
             return start
         high, step = low, 1.0
-        while self._over(low, high) < asked:
+        while self._over(low, high) < speed_ratio:
             high, step = high + step, 2.0 * step
             if high > _FARTHEST:
                 return inf
-        w = float(brentq(lambda at: self._over(low, at) - asked, low, high, xtol=1e-14, rtol=1e-14))
+        w = float(brentq(lambda at: self._over(low, at) - speed_ratio, low, high, xtol=1e-14, rtol=1e-14))
         return self.weight.length / self.stretch * float(np.sinh(w))
 
     def beyond_enclosed(self, start: Enclosure) -> Enclosure:
@@ -126,9 +126,9 @@ class Guarantee:
 
     def _bounded(self, needs: list[Hypothesis]) -> Claim:
         x, x_m, name = self.over, self.bound, self.names[0].format("")
-        known = x_m.mid > 0.0 and x_m.mid < inf
+        is_finite = x_m.mid > 0.0 and x_m.mid < inf
         k = int(self.x.mid.argmax())
-        margin = 1.0 - x / x_m if known else Enclosure.around(0.0, inf)
+        margin = 1.0 - x / x_m if is_finite else Enclosure.around(0.0, inf)
         return judged("bounded", margin, needs, proof=self.proof).described(
             computed=float(x.mid),
             stated=f"{self.names[0].format('(t)')} <= x_M = {x_m.mid:.6g}",

@@ -64,7 +64,7 @@ def applicable(
     """
     import pandas as pd
 
-    law, used = ensure_any_law(law), ensure_tolerances(tolerances)
+    law, tol = ensure_any_law(law), ensure_tolerances(tolerances)
     t0 = ensure_finite_scalar("t0", t0)
     if (core := first_order(law)) is not None:
         q0, p0 = core.start(t0, q0, p0)
@@ -73,7 +73,7 @@ def applicable(
     law.check_agents(len(q0))
     start = start_of(law, q0, p0, t0)
     items = [catalogue()[name] for name in theorems_about(law, q0, p0, t0)]
-    rows = [row for item in sorted(items, key=lambda item: item.on_motion) for row in _rows(item, start, used)]
+    rows = [row for item in sorted(items, key=lambda item: item.on_motion) for row in _rows(item, start, tol)]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
@@ -107,8 +107,8 @@ def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, .
         needs, claims = item.examine(start, used)
     except FlockanaError as why:  # of a start alone it has no answer
         return [_row(item, name, "needs a run", detail=str(why)) for name in item.claims]
-    shown = next((need for need in needs if need.on_motion and need.status != "met"), None)
-    return [_judge(item, claim, shown) for claim in claims]
+    need_shown = next((need for need in needs if need.on_motion and need.status != "met"), None)
+    return [_judge(item, claim, need_shown) for claim in claims]
 
 
 def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tuple[Any, ...]:
@@ -123,9 +123,9 @@ def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tupl
     if shown is not None:
         unsure = "assumed" if shown.status == "assumed" else "needs a run"
         return _row(item, claim.name, unsure, shown, proof=claim.proof, by=claim.by)
-    known = not any(need.on_motion for need in claim.needs)
+    is_known = not any(need.on_motion for need in claim.needs)
     proved, disproved = claim.status == "verified" and claim.proof, claim.status == "refuted" and claim.disproof
-    status = "needs a run" if not known else "met" if proved else "disproved" if disproved else "needs a run"
+    status = "needs a run" if not is_known else "met" if proved else "disproved" if disproved else "needs a run"
     margins = {float(x.margin): x for x in claim.needs if x.margin is not None}
     need = margins[min(margins)] if margins else None
     return _row(item, claim.name, status, need, proof=claim.proof or claim.disproof, by=claim.by)

@@ -77,11 +77,11 @@ def theorem(name: str | Theorem) -> Theorem:
 
 def _printed_as(name: str) -> Theorem:
     """Return the theorem that its source prints under a name such as "Theorem 3"."""
-    wanted = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
-    found = [x for x in catalogue().values() if x.id[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        listed = "; ".join(f"{x.id} ({x.source})" for x in found)
+    pattern = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
+    matches = [x for x in catalogue().values() if x.id[0].islower() and pattern.search(re.split(r";| \(", x.source)[0])]
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        listed = "; ".join(f"{x.id} ({x.source})" for x in matches)
         raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
     raise UnknownNameError("theorem", name, theorems())

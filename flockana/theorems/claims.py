@@ -123,10 +123,10 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
     needs, about
         As in `judged`.
     """
-    known = {need.status for need in needs}
-    if "unmet" in known:
+    statuses = {need.status for need in needs}
+    if "unmet" in statuses:
         return "vacuous"
-    return status if "assumed" not in known or (status == "verified" and about == "run") else "inconclusive"
+    return status if "assumed" not in statuses or (status == "verified" and about == "run") else "inconclusive"
 
 
 def counted(name: str, most: int, certain: int, possible: int, needs: Needs = (), **fields: Any) -> Claim:
@@ -291,12 +291,12 @@ def statement_of(check: Callable[..., Any]) -> str:
 def _from_table(name: str, claims: Iterable[str], fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a theorem has from its row of ``errata.csv``, if it has one, and which claims are corrections."""
     row, right = erratum_of(name), {"corrected"}
-    known: dict[str, Any] = {}
+    fields_known: dict[str, Any] = {}
     if row is not None:
-        known = {"title": printed(name), "source": f"{row.printer}, {row.where}", "references": row.references}
-        known["source"] += ", corrected" if fields.get("author") == "corrected" else ""
+        fields_known = {"title": printed(name), "source": f"{row.printer}, {row.where}", "references": row.references}
+        fields_known["source"] += ", corrected" if fields.get("author") == "corrected" else ""
         right |= {row.right_claim[0]} if row.sort != "confirmed" else set()
-    return known | {"corrected": tuple(sorted({*claims} & right - {*fields.get("ours", ())}))}
+    return fields_known | {"corrected": tuple(sorted({*claims} & right - {*fields.get("ours", ())}))}
 
 
 def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
@@ -318,9 +318,9 @@ def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
     >>> theorem.statement
     'All agents stay where they are.'
     """
-    known = _from_table(name, fields.get("claims", ()), fields)
+    table_fields = _from_table(name, fields.get("claims", ()), fields)
     return lambda check: Theorem(
-        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **known, **fields}
+        id=name, kind="trajectory", check=check, **{"statement": statement_of(check), **table_fields, **fields}
     )
 
 
@@ -351,11 +351,11 @@ def erratum(
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
     each = {claim: status for status, claims in expected.items() for claim in claims.split()}
-    known = _from_table(name, each, fields)
+    table_fields = _from_table(name, each, fields)
 
     def made(check: Callable[[Tolerances], list[Claim]]) -> Theorem:
         judge: dict[str, Any] = {"kind": "fixed", "check": lambda tolerances: ([], check(tolerances))}
-        item = Theorem(id=name, **{"statement": statement_of(check), **known, **judge, **fields})
+        item = Theorem(id=name, **{"statement": statement_of(check), **table_fields, **judge, **fields})
         by_author = overall(status for claim, status in each.items() if item.by(claim) == item.author)
         return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})
 

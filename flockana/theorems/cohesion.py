@@ -45,19 +45,19 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
     energy = seen.energy[0] - (0.0 if law.alpha is None else meeting(seen).floor)
     allowed = stacked([bound(energy, gain, unit) for gain in gains[pulled]])
     if law.moving:
-        reached = seen.distances_from_centre.max(axis=0)[pulled]
-        reached = Enclosure(reached.lo, reached.mid, np.maximum(reached.hi, radius_over(seen).hi.max()))
+        distance = seen.distances_from_centre.max(axis=0)[pulled]
+        distance = Enclosure(distance.lo, distance.mid, np.maximum(distance.hi, radius_over(seen).hi.max()))
     else:
-        reached = farthest(seen, law.target.position(float(seen.t[0])))[pulled]
-    margin = allowed - reached
+        distance = farthest(seen, law.target.position(float(seen.t[0])))[pulled]
+    margin = allowed - distance
     worst, whose = margin.worst_index, "the centre of mass" if law.moving else "the γ-agent"
     agent = int(pulled[worst])
     return judged(name, margin, needs, proof=proof).described(
-        computed=float(reached.mid[worst]),
+        computed=float(distance.mid[worst]),
         stated=f"agent {agent} stays within {allowed.mid[worst]:.5g} of {whose}",
         witness={"agent": agent},
         detail=f"of {pulled.size} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "
-        f"{reached.mid[worst]:.4g} from {whose}, and H(0) allows {allowed.mid[worst]:.4g}",
+        f"{distance.mid[worst]:.4g} from {whose}, and H(0) allows {allowed.mid[worst]:.4g}",
     )
 
 

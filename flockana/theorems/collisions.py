@@ -128,10 +128,10 @@ def energy_within_accuracy(seen: Observed, k: int) -> float:
         apart, width = lengths(run.q[k][j] - run.q[k][i]), place[i] + place[j]
         where = np.maximum(apart + width * np.linspace(-1.0, 1.0, 33)[:, None], 0.0)
         best = law.alpha.energy(apart)
-        least = np.abs(law.alpha.energy(np.full_like(apart, law.alpha.length)) - best)
+        energy_excess = np.abs(law.alpha.energy(np.full_like(apart, law.alpha.length)) - best)
         change = np.abs(law.alpha.energy(where.ravel()).reshape(where.shape) - best).max(axis=0)
         holds_least = np.abs(apart - law.alpha.length) <= width
-        off += float(law.gains.c1_alpha) * float(np.where(holds_least, np.maximum(change, least), change).sum())
+        off += float(law.gains.c1_alpha) * float(np.where(holds_least, np.maximum(change, energy_excess), change).sum())
     return off if np.isfinite(off) else float("inf")
 
 
@@ -140,8 +140,8 @@ def energy_at_end(seen: Observed) -> Enclosure:
     best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
     rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
     allowed = energy_within_accuracy(seen, -1)
-    known = DOUBT * abs(best - other) + seen.floors.work + rounding + allowed
-    return Enclosure.around(best, np.inf if seen.doubt else known)
+    allowance = DOUBT * abs(best - other) + seen.floors.work + rounding + allowed
+    return Enclosure.around(best, np.inf if seen.doubt else allowance)
 
 
 def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
@@ -180,19 +180,19 @@ def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothes
 
 def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None) -> Claim:
     """Return the claim that no two agents ever coincide: a lower bound of all distances is positive at all times."""
-    closest, least = seen.run.closest_approach(), least_distance(seen)
-    pair, margin = closest.pair, least - _noise(seen, tolerances)
-    text = f"no two agents come nearer than {least.lo:.4g}"
+    closest, distance = seen.run.closest_approach(), least_distance(seen)
+    pair, margin = closest.pair, distance - _noise(seen, tolerances)
+    text = f"no two agents come nearer than {distance.lo:.4g}"
     if not margin.lo > 0.0:
         margin = Enclosure(-np.inf, margin.mid, np.inf)  # in the plane nearness is no contact
-        text = f"the least distance is between {least.lo:.4g} and {least.hi:.4g}"
+        text = f"the least distance is between {distance.lo:.4g} and {distance.hi:.4g}"
         if certain := passed(seen, tolerances):
             pair = max(certain, key=lambda each: certain[each])
             margin = Enclosure.of(-certain[pair])
             by = f"passing each other by at least {certain[pair]:.4g}"
             text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
     return judged(name, margin, needs, proof=proof).described(
-        computed=float(least.mid),
+        computed=float(distance.mid),
         stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",
@@ -204,23 +204,23 @@ def distinct_pairs(
 ) -> Claim:
     """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
     c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
-    least, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
-    bites = condition("k < n(n-1)/2", least < pairs, float(pairs - least - 1))
+    fewest, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
+    bites = condition("k < n(n-1)/2", fewest < pairs, float(pairs - fewest - 1))
     certain, possible = passed(seen, tolerances), set().union(*near(seen, tolerances))
     refuted = len(certain) > most
     counted_ones = set(certain) if refuted else possible
     first = [c for c in contacts_of(seen.run, tolerances) if (c.i, c.j) in counted_ones]
     return counted(
         name,
-        most if refuted else least,
+        most if refuted else fewest,
         len(certain),
         pairs if seen.doubt else max(len(possible), len(certain)),
         [*needs, bites],
         computed=len(counted_ones),
-        stated=f"at most {least} of {pairs} pairs collide, as H(0) = {energy.mid / c_star:.4g} c*",
+        stated=f"at most {fewest} of {pairs} pairs collide, as H(0) = {energy.mid / c_star:.4g} c*",
         witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in first],
         disproof=disproof,
-        detail=f"{len(certain)} distinct pairs certainly collide and {len(possible)} may; printed: at most {least}"
+        detail=f"{len(certain)} distinct pairs certainly collide and {len(possible)} may; printed: at most {fewest}"
         + ("; that is every pair, so nothing is claimed" if bites.status == "unmet" else ""),
     )
 

@@ -167,11 +167,11 @@ def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
         return [need], [undecided(each, need.detail, [need]) for each in _NAMES]
     linear, why = _terminal(seen)
     stable = linear is not None and bool(linear.modes) and linear.stable
-    given = [condition(name, stable, detail=why, decided="enclosed")]
+    conditions = [condition(name, stable, detail=why, decided="enclosed")]
     if linear is None or not stable:
-        return given, []
+        return conditions, []
     try:
         rates = decay(linear, name=f"n = {seen.n}, last state")
     except ArgumentError as error:  # it has no shape, or hardly any damping
-        return given, [undecided(name, f"no rate was measured: {error}") for name in _NAMES]
-    return given, _agreement([rates], tolerances)
+        return conditions, [undecided(name, f"no rate was measured: {error}") for name in _NAMES]
+    return conditions, _agreement([rates], tolerances)

@@ -114,11 +114,11 @@ def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float) 
     basin, run, unit = case.bound.basin, seen.given, case.unit
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
     distances = [basin.above(run.q[k] / unit, run.p[k] / unit)[0] for k in some]  # upper bounds
-    reached = unit * max(map(float, distances))
+    distance = unit * max(map(float, distances))
     error = float(np.linalg.norm(seen.shape_error[some], axis=1).max())
-    margin = Enclosure(allowed - reached - error, allowed - reached, np.maximum(allowed, allowed - reached))
+    margin = Enclosure(allowed - distance - error, allowed - distance, np.maximum(allowed, allowed - distance))
     by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"
-    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached)
+    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=distance)
 
 
 @run_theorem(

@@ -110,8 +110,8 @@ class Enclosure:
         exact = ((self.lo == 0.0) & (self.hi == 0.0)) | ((x.lo == 0.0) & (x.hi == 0.0))
         lo, hi = np.minimum.reduce(ends), np.maximum.reduce(ends)
         sign = ((self.lo >= 0.0) & (x.lo >= 0.0)) | ((self.hi <= 0.0) & (x.hi <= 0.0))
-        made = _outward(lo, _product(self.mid, x.mid), hi, exact=exact, keep_zero=False)
-        return Enclosure(np.where(sign, np.maximum(made.lo, 0.0), made.lo), made.mid, made.hi)
+        product = _outward(lo, _product(self.mid, x.mid), hi, exact=exact, keep_zero=False)
+        return Enclosure(np.where(sign, np.maximum(product.lo, 0.0), product.lo), product.mid, product.hi)
 
     __rmul__ = __mul__
 
@@ -124,8 +124,8 @@ class Enclosure:
                 1.0 / x.mid,
                 np.where(crosses & (x.hi > 0.0), np.inf, 1.0 / x.lo),
             )
-            made, mid = self * inverse, np.divide(self.mid, x.mid)
-        return Enclosure(made.lo, mid, made.hi)
+            quotient, mid = self * inverse, np.divide(self.mid, x.mid)
+        return Enclosure(quotient.lo, mid, quotient.hi)
 
     def __rtruediv__(self, other: Real) -> Enclosure:
         return Enclosure.of(other) / self
@@ -190,8 +190,8 @@ class Enclosure:
         terms = self.mid.size if axis is None else self.mid.shape[axis]
         sizes = np.maximum(np.abs(self.lo), np.abs(self.hi)).sum(axis=axis)
         with np.errstate(invalid="ignore", over="ignore"):
-            made = Enclosure(*(end.sum(axis=axis) for end in (self.lo, self.mid, self.hi)))
-            return made.widened(terms * np.finfo(float).eps * sizes)
+            total = Enclosure(*(end.sum(axis=axis) for end in (self.lo, self.mid, self.hi)))
+            return total.widened(terms * np.finfo(float).eps * sizes)
 
     def largest_so_far(self) -> Enclosure:
         """Return the largest entry up to each, along the first axis."""
@@ -200,8 +200,8 @@ class Enclosure:
 
 def stacked(enclosures: Any) -> Enclosure:
     """Return several enclosures along a new first axis."""
-    given = [Enclosure.of(x) for x in enclosures]
-    return Enclosure(*(np.stack([getattr(x, end) for x in given]) for end in ("lo", "mid", "hi")))
+    terms = [Enclosure.of(x) for x in enclosures]
+    return Enclosure(*(np.stack([getattr(x, end) for x in terms]) for end in ("lo", "mid", "hi")))
 
 
 def _product(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -21,8 +21,8 @@ from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Traj
 
 def proved(run: Any, proof: str = "energy-identities") -> str | None:
     """Return the id of the proof of this law's energy identity, for walls, spheres and common gains; else None."""
-    known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
-    return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None
+    is_known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
+    return proof if is_known and not run.law.gains.per_agent and type(run.law) is not Composition else None
 
 
 def balance(
@@ -64,8 +64,8 @@ def cancelling(run: Trajectory) -> FloatArray:
 def _damps_only(run: Trajectory) -> bool:
     """Whether dH/dt is a sum of squares outside of walls, spheres and capsules, the γ-agent being at rest or absent."""
     # ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
-    target, known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
-    return known and (
+    target, is_known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
+    return is_known and (
         target is None or not any(np.any(target.state(t)[1]) or np.any(target.rate(t)) for t in run.t.tolist())
     )
 
@@ -137,17 +137,17 @@ def never_rises(
 
 def stays_outside(run: Observed) -> Hypothesis:
     """The hypothesis that no agent enters an obstacle: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
-    name, least = "no agent enters an obstacle", run.run.clearance()
+    name, room = "no agent enters an obstacle", run.run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
     off = float((run.shape_error.max(axis=1) + run.centre_error).max(initial=0.0))
     rounding = 64.0 * EPS * float(np.abs(run.run.q).max()) + off
-    where = f"(agent {least.agent} at obstacles[{least.obstacle}], t = {least.time:.4g})"
-    if least.lower > rounding:
-        return Hypothesis(name, "met", least.lower, f"clearance at least {least.lower:.4g} {where}", decided="enclosed")
-    status: HypothesisStatus = "unmet" if least.reached < -rounding else "assumed"
-    text = f"clearance {least.reached:.4g} {where}, and {least.lower:.4g} at least"
-    return Hypothesis(name, status, least.lower if status == "assumed" else least.reached, text, decided="enclosed")
+    where = f"(agent {room.agent} at obstacles[{room.obstacle}], t = {room.time:.4g})"
+    if room.lower > rounding:
+        return Hypothesis(name, "met", room.lower, f"clearance at least {room.lower:.4g} {where}", decided="enclosed")
+    status: HypothesisStatus = "unmet" if room.reached < -rounding else "assumed"
+    text = f"clearance {room.reached:.4g} {where}, and {room.lower:.4g} at least"
+    return Hypothesis(name, status, room.lower if status == "assumed" else room.reached, text, decided="enclosed")
 
 
 def smooth_where_needed(run: Observed) -> list[Hypothesis]:

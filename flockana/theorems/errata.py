@@ -88,8 +88,8 @@ def _read_table(path: Path) -> Iterator[Erratum]:
             raise ArgumentError(f"{cells[0]}: {len(cells)} columns, expected {_COLUMNS}")
         name, printer, where, printed, is_, right, right_is, sort, in_paper = cells
         claims = (printed, _claim(is_), right, _claim(right_is))
-        known = tuple(references.removeprefix("#").split())
-        yield Erratum(name, printer, where, *claims, sort, in_paper, known)  # type: ignore[arg-type]  # checked by itself
+        numbers = tuple(references.removeprefix("#").split())
+        yield Erratum(name, printer, where, *claims, sort, in_paper, numbers)  # type: ignore[arg-type]  # checked by itself
 
 
 def _order(item: Erratum) -> tuple[bool, str, int]:

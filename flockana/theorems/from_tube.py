@@ -107,11 +107,11 @@ def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | No
     from flint import arb
 
     tube = case.tube
-    least, certain = tube.min_distance(), met(tube)
-    pair, margin = least.pair, arb(min(least.lower, 1e300)) if least.lower > 0.0 else arb(0, 1)
+    distance, certain = tube.min_distance(), met(tube)
+    pair, margin = distance.pair, arb(min(distance.lower, 1e300)) if distance.lower > 0.0 else arb(0, 1)
     if tube.status != "complete":
         margin = arb(0, 1)  # of what comes after its end nothing is known
-    text = f"no two agents come nearer than {least.lower:.6g}, {case.until}"
+    text = f"no two agents come nearer than {distance.lower:.6g}, {case.until}"
     if certain:
         pair = min(certain, key=lambda each: certain[each])
         margin, text = arb(-1), f"agents {pair[0]} and {pair[1]} certainly meet before t = {certain[pair]:.6g}"
@@ -120,9 +120,9 @@ def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | No
         name,
         margin,
         list(needs),
-        computed=least.lower,
+        computed=distance.lower,
         stated=f"no two agents meet, {when}",
-        witness={"pair": pair, "time": certain.get(pair, least.time)},
+        witness={"pair": pair, "time": certain.get(pair, distance.time)},
         proof=proof,
         detail=text,
     )

@@ -108,12 +108,12 @@ def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatAr
 
 def consistent(run: Trajectory) -> Hypothesis:
     """Return the hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it reports."""
-    name, known = "dq_r/dt = p_r", run.law.target.consistent
-    seen = _agrees(run, name, "p_r", lambda t: run.law.target.state(t)[1])
-    if known is None or (known is False and seen.status == "unmet"):
-        return seen
-    detail = "by the closed form of its path" if known else "p_r is another velocity, by the closed form of its path"
-    return Hypothesis(name, "met" if known else "unmet", seen.margin, detail, seen.error)
+    name, fact = "dq_r/dt = p_r", run.law.target.consistent
+    agreement = _agrees(run, name, "p_r", lambda t: run.law.target.state(t)[1])
+    if fact is None or (fact is False and agreement.status == "unmet"):
+        return agreement
+    detail = "by the closed form of its path" if fact else "p_r is another velocity, by the closed form of its path"
+    return Hypothesis(name, "met" if fact else "unmet", agreement.margin, detail, agreement.error)
 
 
 def declared_rate_is_true(run: Trajectory) -> Hypothesis:

@@ -52,8 +52,8 @@ def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
 
 def _listed(claims: Iterable[Claim]) -> str:
     """Each claim in short with its status; vacuous ones only where all are."""
-    given = tuple(claims)
-    counted = [claim for claim in given if claim.status != "vacuous"] or list(given[:1])
+    claims_given = tuple(claims)
+    counted = [claim for claim in claims_given if claim.status != "vacuous"] or list(claims_given[:1])
     return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted))
 
 
@@ -70,9 +70,9 @@ def overall(statuses: Iterable[Status]) -> Status:
     >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])
     ('refuted', 'verified', 'vacuous')
     """
-    given = set(statuses)
+    statuses_given = set(statuses)
     order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
-    return next((status for status in order if status in given), "vacuous")
+    return next((status for status in order if status in statuses_given), "vacuous")
 
 
 def plain(value: Any) -> Any:

@@ -83,17 +83,17 @@ def law_is(
         if composed and type(run.law) is Composition:
             terms = ", ".join(type(term).__name__ for term in run.law.terms)
             return condition("a composition of terms is applied", True, detail=terms)
-        law, known = run.law, type(run.law) in laws
+        law, is_known = run.law, type(run.law) in laws
         welcome = (FormulaInteraction,) if formulas or composed else ()
         other = [
             f"{member} is {type(getattr(law, member)).__name__}"
             for member, kind in _MEMBERS.items()
             if hasattr(law, member) and type(getattr(law, member)) not in (kind, *welcome)
         ]
-        detail = ", ".join([law.title, *(other if known else [])])
-        if one_gain and known and not other and law.gains.per_agent:
+        detail = ", ".join([law.title, *(other if is_known else [])])
+        if one_gain and is_known and not other and law.gains.per_agent:
             return common_gains(run)
-        return condition(f"{name} is applied", known and not other, detail=detail)
+        return condition(f"{name} is applied", is_known and not other, detail=detail)
 
     return applied_to
 
@@ -126,9 +126,9 @@ def smooth_pair(run: Observed) -> Hypothesis:
         A run of a law with a pair interaction.
     """
     law = run.law
-    read = {entry.function: entry for entry in law.functions if entry.stiffness != 0.0 or entry.function is None}
-    facts = [_fact_of(function, "smooth", entry.name) for function, entry in read.items()]
-    if law.pair is not None and law.pair not in read:
+    entry_of = {entry.function: entry for entry in law.functions if entry.stiffness != 0.0 or entry.function is None}
+    facts = [_fact_of(function, "smooth", entry.name) for function, entry in entry_of.items()]
+    if law.pair is not None and law.pair not in entry_of:
         facts.append(law.pair.facts.smooth)
     fact = facts[0] if len(facts) == 1 else conjunction(facts, "so is each function")
     return hypothesis_from_fact("the pair law is C¹ and vanishes at its range", fact)
@@ -143,10 +143,10 @@ def weight_nonnegative(run: Observed) -> Hypothesis:
         A run of a law that may have a pair law and a net of its own.
     """
     name = "a_ij >= 0 at every distance"
-    read = [entry for entry in run.law.functions if entry.damping != 0.0 or entry.function is None]
-    if not read:
+    entries = [entry for entry in run.law.functions if entry.damping != 0.0 or entry.function is None]
+    if not entries:
         return Hypothesis(name, "met", detail="no velocities are averaged")
-    facts = [_fact_of(entry.function, "weight", entry.name) for entry in read]
+    facts = [_fact_of(entry.function, "weight", entry.name) for entry in entries]
     return hypothesis_from_fact(name, facts[0] if len(facts) == 1 else conjunction(facts, "so is each function"))
 
 
@@ -167,10 +167,10 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
         How each is written, by its name in `Gains`; common to all agents.
     """
     values = {text: float(getattr(run.law.gains, name)) for name, text in gains.items()}
-    least = min(values.values())
+    smallest = min(values.values())
     detail = ", ".join(f"{text} = {value:g}" for text, value in values.items())
     remedy = "raise " + " and ".join(text for text, value in values.items() if not value > 0.0)
-    return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail, remedy=remedy)
+    return condition(" and ".join(f"{text} > 0" for text in values), smallest > 0.0, smallest, detail, remedy=remedy)
 
 
 def common_gains(run: Observed | Tube) -> Hypothesis:
@@ -195,8 +195,8 @@ def has_lattice(run: Observed) -> Hypothesis:
     run : Observed
         The run.
     """
-    known = run.law.lattice is not None
-    return condition("the law has a scale d and a range r", known, detail=run.law.title)
+    is_known = run.law.lattice is not None
+    return condition("the law has a scale d and a range r", is_known, detail=run.law.title)
 
 
 def alpha_gain(run: Observed) -> list[Hypothesis]:

@@ -38,8 +38,8 @@ class Certificate:
 
 def best_of(certificates: Iterable[Certificate]) -> Certificate:
     """Return the certificate with the largest margin; an undecided one if there is none."""
-    given = [each for each in certificates if not isnan(each.margin)]
-    return max(given, key=lambda each: each.margin - each.error, default=Certificate(-1.0, ""))
+    certificates_given = [each for each in certificates if not isnan(each.margin)]
+    return max(certificates_given, key=lambda each: each.margin - each.error, default=Certificate(-1.0, ""))
 
 
 def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
@@ -90,8 +90,8 @@ def decays_to_zero(
 ) -> Claim:
     """Return the claim that a series of a run tends to 0: `of` is its symbol, `start` the name of its first value."""
     t = seen.t
-    shown = evidence(t, series, of) if of else ""
-    return limit_claim(name, needs, certificates, evidence=shown, **fields).described(
+    text = evidence(t, series, of) if of else ""
+    return limit_claim(name, needs, certificates, evidence=text, **fields).described(
         computed=float(series[-1]),
         witness={"time": float(t[-1])} | ({start: float(series[0])} if start else {}),
         detail=f"{what} goes from {series[0]:.3g} to {series[-1]:.3g} at t = {t[-1]:g}",

@@ -45,10 +45,10 @@ def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
 def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, float, float]]:
     """Return (name, relative error, error) of each series at the sample after sample k."""
     scales = run.scales
-    least = {"q": scales.length, "p": scales.speed, "u": scales.force}
+    floors = {"q": scales.length, "p": scales.speed, "u": scales.force}
     for name, values in _recompute(run, k, steps, 0.0).items():
-        sample = (getattr(run, name) if name in least else run.extra[name])[k + 1]
-        size = least.get(name, 0.0) + float(np.abs(values).max(initial=0.0))
+        sample = (getattr(run, name) if name in floors else run.extra[name])[k + 1]
+        size = floors.get(name, 0.0) + float(np.abs(values).max(initial=0.0))
         same = (sample == values) | (np.isnan(sample) & np.isnan(values))
         difference = float(np.abs(sample - values).max(where=~same, initial=0.0))
         yield name, difference / size if size else difference, difference
@@ -74,9 +74,9 @@ def paired_orbit(run: Trajectory) -> Pair:
     pairs = [_nudged_orbits(run, steps, memory)]
     if has_ball_orbit(run.law):
         balls = enclose_orbit(run.law, float(run.t[0]), run.q[0], run.p[0], steps.tolist())
-        known = np.arange(len(steps)) < balls.known
-        q, p = (np.where(known[:, None, None], x, y) for x, y in ((balls.q, run.q), (balls.p, run.p)))
-        off = [np.where(known[:, None], lengths(x), np.inf) for x in (balls.q_off, balls.p_off)]
+        is_known = np.arange(len(steps)) < balls.known
+        q, p = (np.where(is_known[:, None, None], x, y) for x, y in ((balls.q, run.q), (balls.p, run.p)))
+        off = [np.where(is_known[:, None], lengths(x), np.inf) for x in (balls.q_off, balls.p_off)]
         best = replace(run, q=q, p=p)
         beside = replace(run, q=np.nextafter(q, np.inf), p=np.nextafter(p, np.inf))
         pairs.append(Pair(best, beside, _known_errors(run.t, off[0], off[1]), enclosed=balls.known == len(steps)))
@@ -92,9 +92,9 @@ def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
         for way in (1.0, -1.0):
             q = run.q[0] + way * _NUDGE * max(float(np.abs(run.q[0]).max()), scales.length) * signs[0]
             p = run.p[0] + way * _NUDGE * max(float(np.abs(run.p[0]).max()), scales.speed) * signs[1]
-            held = run.law.start(q, p) if begins else {key: run.extra[key][0].copy() for key in memory}
+            memory_before = run.law.start(q, p) if begins else {key: run.extra[key][0].copy() for key in memory}
             states = _visited(
-                run.law, float(run.t[0]) + run.law.dt * np.arange(float(steps[-1])), q, p, held, steps[1:]
+                run.law, float(run.t[0]) + run.law.dt * np.arange(float(steps[-1])), q, p, memory_before, steps[1:]
             )
             extra = {key: np.concatenate([run.extra[key][:1], states[3][key]]) for key in run.extra}
             qs, ps, us = (np.concatenate([getattr(run, x)[:1], y]) for x, y in zip("qpu", states[:3], strict=True))
@@ -110,11 +110,13 @@ def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, 
     """Return states after some steps, in as many blocks as the law makes at once."""
     blocks: list[Any] = []
     for first in range(0, len(times), law.steps_at_once):
-        own = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
+        rows = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
         count = min(law.steps_at_once, len(times) - first)
-        *made, held = law.visit(times[first : first + count], q, p, memory, np.union1d(own, [count]))
-        q, p, memory = made[0][-1], made[1][-1], {name: each[-1].copy() for name, each in held.items()}
-        blocks.append([*(each[: len(own)] for each in made), {name: each[: len(own)] for name, each in held.items()}])
+        *samples, after = law.visit(times[first : first + count], q, p, memory, np.union1d(rows, [count]))
+        q, p, memory = samples[0][-1], samples[1][-1], {name: each[-1].copy() for name, each in after.items()}
+        blocks.append(
+            [*(each[: len(rows)] for each in samples), {name: each[: len(rows)] for name, each in after.items()}]
+        )
     joined = [np.concatenate([block[k] for block in blocks]) for k in range(3)]
     return (*joined, {name: np.concatenate([block[3][name] for block in blocks]) for name in memory})
 
@@ -133,6 +135,6 @@ def _recompute(run: Trajectory, k: int, steps: int, nudge: float) -> dict[str, F
     memory = {name: series[k].copy() for name, series in run.extra.items()}
     start = run.q[k] * (1.0 + nudge), run.p[k].copy()
     times = float(run.t[k]) + run.law.dt * np.arange(float(steps))
-    found = run.law.visit(times, *start, memory, np.array([steps]))
-    series = dict(zip("qpu", found[:3], strict=True)) | dict(found[3])
+    samples = run.law.visit(times, *start, memory, np.array([steps]))
+    series = dict(zip("qpu", samples[:3], strict=True)) | dict(samples[3])
     return {name: np.asarray(values[-1], float) for name, values in series.items()}

@@ -21,22 +21,22 @@ def meeting(run: Trajectory | Observed) -> PairEnergies:
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
     if gain == 0.0:
         return PairEnergies(0.0, 0.0)
-    (least, _), (top, most) = _potential_bounds(pair)
+    (lowest, _), (top, most) = _potential_bounds(pair)
     if most == -np.inf:
         return PairEnergies(0.0, -np.inf)  # a pair that meets has less energy than any bound
-    return PairEnergies(gain * (top - least), gain * least * (run.n * (run.n - 1) // 2))
+    return PairEnergies(gain * (top - lowest), gain * lowest * (run.n * (run.n - 1) // 2))
 
 
 def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return bounds of the least potential and of the potential at contact; if unproved, values at two distances."""
-    least, contact = pair.facts.least, pair.facts.contact
-    if np.isfinite(least[0]) and contact[0] > -np.inf:
-        return least, contact
+    lowest, contact = pair.facts.least, pair.facts.contact
+    if np.isfinite(lowest[0]) and contact[0] > -np.inf:
+        return lowest, contact
     with np.errstate(all="ignore"):
         ends = pair.energy(np.array([0.0, pair.length]))
     top = contact[0] if contact[0] > -np.inf or contact[1] == -np.inf else float(np.nan_to_num(ends[0], nan=-np.inf))
-    seen = least[0] if np.isfinite(least[0]) else float(min(pair.far_potential, np.nanmin(ends)))
-    return (seen, seen), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
+    floor = lowest[0] if np.isfinite(lowest[0]) else float(min(pair.far_potential, np.nanmin(ends)))
+    return (floor, floor), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
 
 
 def above_least(run: Trajectory | Observed, energy: Enclosure) -> Enclosure:

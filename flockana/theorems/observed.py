@@ -133,8 +133,8 @@ class Observed(ResultCache):
 
     def window(self, start: float, end: float) -> Observed:
         """Return the part of the run within some times, with what is known of its error there."""
-        given, run, other = (each.window(start, end) for each in (self.given, self.run, self.other))
-        return replace(self, given=given, run=run, other=other)
+        given_run, run, other = (each.window(start, end) for each in (self.given, self.run, self.other))
+        return replace(self, given=given_run, run=run, other=other)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return the largest half width from one law time before each interval to one after; of a map, within it."""
@@ -157,8 +157,8 @@ class Observed(ResultCache):
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
         """Return both runs in another frame that keeps all distances between agents."""
-        given, run, other = (change(each) for each in (self.given, self.run, self.other))
-        return replace(self, given=given, run=run, other=other)
+        given_run, run, other = (change(each) for each in (self.given, self.run, self.other))
+        return replace(self, given=given_run, run=run, other=other)
 
     # observables ---------------------------------------------------------------------------------------------------
 

@@ -23,7 +23,7 @@ _FINE = 8  # times finer than usual the flow is integrated
 @cache
 def claims_on_steps() -> Mapping[str, tuple[str, Callable[[Observed], int]]]:
     """Return, by theorem, what holds of a scheme's run and from which sample on, as its module's `STEPS` says."""
-    return {name: said for module in theorem_modules() for name, said in getattr(module, "STEPS", {}).items()}
+    return {name: meaning for module in theorem_modules() for name, meaning in getattr(module, "STEPS", {}).items()}
 
 
 def scheme_note(item: Theorem) -> str:
@@ -75,12 +75,12 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     led, rough = (np.array([law.hamiltonian(*row) for row in zip(t, *end, strict=True)]) for end in ends)
     change, defect = np.diff(energy), energy[1:] - led
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
-    own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
+    text = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
     rises, most = int((change > 0.0).sum()), max(float(change.max()), 0.0)
     falls = judged("steps-fall", Enclosure.around(tolerances.energy - change / unit, rounding), needs).described(
         computed=float(change.max()) / unit,
         stated=f"H rises by no more than {tolerances.energy:g} of the largest |H| from sample to sample",
-        detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {own}",
+        detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {text}",
     )
     lost = energy[:-1] - led
     within = judged(
@@ -88,6 +88,6 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     ).described(
         computed=float(lost.min()) / unit,
         stated="H(t + dt) - H(t) <= the scheme's defect: H at the end of the step less H where the law's flow leads",
-        detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {own}",
+        detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {text}",
     )
     return [replace(claim, by="flockana") for claim in (falls, within)]

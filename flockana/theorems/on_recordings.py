@@ -170,10 +170,10 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     seen = Observed.of(run)
     p = np.broadcast_to(follow.p, rec.q.shape)
     zeros = np.zeros(rec.q.shape)
-    given = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
-    if seen.doubt or len(run.t) != len(rec.t) or doubt_about(given):
-        doubt = seen.doubt or doubt_about(given) or "the run ended"
-        return ObservedRecording(given, run, seen.other, seen.errors, doubt)
+    trajectory = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
+    if seen.doubt or len(run.t) != len(rec.t) or doubt_about(trajectory):
+        doubt = seen.doubt or doubt_about(trajectory) or "the run ended"
+        return ObservedRecording(trajectory, run, seen.other, seen.errors, doubt)
     place, (apart, slip) = _widths(rec)[0], (rec.q - run.q, p - run.p)
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:
@@ -183,11 +183,13 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     times, end = seen.errors.t, float(place[-1].max())
     if law.is_map:
         of_orbit = [x + y for x, y in zip(seen.errors[1:], off, strict=True)]
-        return ObservedRecording(given, run, seen.other, Errors(rec.t, *of_orbit), place=end)
+        return ObservedRecording(trajectory, run, seen.other, Errors(rec.t, *of_orbit), place=end)
     after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
     before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)
     widened = [x + np.maximum(y[before], y[after]) for x, y in zip(seen.errors[1:], off, strict=True)]
-    return ObservedRecording(given, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end)
+    return ObservedRecording(
+        trajectory, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end
+    )
 
 
 def _weighed(known: Known, rec: Recording, first: Hypothesis) -> Known:

@@ -23,7 +23,7 @@ class TubeEvidence(Evidence):
         self.tube.ensure_unedited()
         if self.basin is not None:
             if not isinstance(self.basin, Basin):
-                given = format_value(self.basin)
-                raise ArgumentError(f"basin = {given}: expected a basin, as certify(...) returns it, or None")
+                basin_text = format_value(self.basin)
+                raise ArgumentError(f"basin = {basin_text}: expected a basin, as certify(...) returns it, or None")
             self.basin.ensure_unedited()
         return item.examine(self.tube, self.basin, tolerances, check=item.enclosed)

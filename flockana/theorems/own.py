@@ -43,8 +43,8 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
     'verified'
     """
     if not isinstance(name, str) or not name or not callable(margin):
-        given = f"{format_value(name)}, {format_value(margin)}"
-        raise ArgumentError(f"claim({given}): expected a name and a function of a run")
+        texts = f"{format_value(name)}, {format_value(margin)}"
+        raise ArgumentError(f"claim({texts}): expected a name and a function of a run")
 
     text = statement or name
     return Theorem(name, text, text, "own claim", "trajectory", OwnCheck(name, margin, text), references=())
@@ -68,14 +68,14 @@ class OwnCheck:
 
     def of_run(self, run: Trajectory) -> Claim:
         """Return the claim by the least margin of one run."""
-        given = self.margin(run)
+        margin = self.margin(run)
         try:
-            plain = np.asarray(given)
+            plain = np.asarray(margin)
             values = np.atleast_1d(plain.astype(np.float64))
         except (TypeError, ValueError):
             values = plain = np.array([np.nan])
         if values.size == 0 or np.isnan(values).any() or plain.dtype == bool:
-            shown = "true or false" if plain.dtype == bool else format_value(given)
+            shown = "true or false" if plain.dtype == bool else format_value(margin)
             text = f"the margin of {self.name!r} is {shown}: expected a number, or one for each sample"
             raise ArgumentError(f"{text}, that is at least 0 where the claim holds, such as limit - value")
         if len(values) == len(run.t):  # also one for each agent or pair: the least at each sample

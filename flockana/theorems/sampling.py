@@ -56,8 +56,8 @@ def stretch_between(seen: Observed) -> FloatArray:
     """Return by how much any distance may leave the range of its two end values in each interval, shape (T − 1,)."""
     if seen.is_map:
         return np.zeros(len(seen.t) - 1)
-    (speed, force, off), h, least = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
-    low = np.maximum(np.minimum(least[:-1], least[1:]), np.finfo(float).tiny)
+    (speed, force, off), h, min_distance = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
+    low = np.maximum(np.minimum(min_distance[:-1], min_distance[1:]), np.finfo(float).tiny)
     with np.errstate(over="ignore"):
         stretch: FloatArray = _slack(low, low, h, 2.0 * speed, 2.0 * force) + 2.0 * off
     return stretch
@@ -92,13 +92,13 @@ def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
     at_samples = seen.distances(i, j).min()
     if seen.is_map or len(seen.t) == 1:
         return at_samples
-    least = []
+    distances = []
     for _, points, off in polygons(seen.run):
         apart = points[j] - points[i]
         ways = apart.mean(axis=1, keepdims=True)
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), np.finfo(float).tiny)
-        least.append((np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min())
-    between = seen.run.over_intervals(np.minimum, np.array(least)) - 2.0 * seen.between_error
+        distances.append((np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min())
+    between = seen.run.over_intervals(np.minimum, np.array(distances)) - 2.0 * seen.between_error
     low = max(min(float(between.min()), float(at_samples.lo)), 0.0)
     return Enclosure(low, at_samples.mid, at_samples.hi)
 
@@ -170,9 +170,9 @@ def _nets_between(seen: Observed) -> Nets:
         low, high = ends.min(axis=0), ends.max(axis=0)
         slack = _slack(low, r, h[k], 2.0 * speed[k], 2.0 * force[k]) + error
         if (unsure := (low - slack < r) & (high + slack >= r)).any():  # those two do not move as fast as the fastest
-            own = _relative(run, range(first[k], first[k + 1]), pairs[unsure])
-            own[0][:] += 2.0 * seen.between_speed_error[k]
-            slack[unsure] = np.minimum(slack[unsure], _slack(low[unsure], r, h[k], *own) + error)
+            own_paths = _relative(run, range(first[k], first[k + 1]), pairs[unsure])
+            own_paths[0][:] += 2.0 * seen.between_speed_error[k]
+            slack[unsure] = np.minimum(slack[unsure], _slack(low[unsure], r, h[k], *own_paths) + error)
         near = low - slack < r
         rows.append(_row(run, k, pairs[near], (high + slack < r)[near]))
     return _nets(rows)
@@ -212,8 +212,8 @@ def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
         giant = run.n * float(run.metric("giant_share")[k])
         return round(number), round(number), round(giant), round(giant), count, 0
-    least, most = (np.bincount(components(run.n, linked)) for linked in (pairs[certain], pairs))
-    return least.size, most.size, int(least.max()), int(most.max()), count, len(pairs) - count
+    fewest, most = (np.bincount(components(run.n, linked)) for linked in (pairs[certain], pairs))
+    return fewest.size, most.size, int(fewest.max()), int(most.max()), count, len(pairs) - count
 
 
 def _nets(rows: list[tuple[float, ...]]) -> Nets:

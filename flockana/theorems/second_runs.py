@@ -80,10 +80,10 @@ def _longest_step(run: Trajectory) -> float | None:
     """Return the longest step that the second run may take; None if it is free."""
     steps, _ = steps_of(run)
     most = max(_MOST_STEPS, _TIMES * len(steps))
-    asked = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / most)
-    method, given = run.stats.get("method"), run.stats.get("max_step") or np.inf
-    own = np.inf if "rtol" not in run.stats or method in _LOW_ORDER else _SHARE * float(steps.max())
-    bound = min(asked, own, given)
+    longest = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / most)
+    method, run_method = run.stats.get("method"), run.stats.get("max_step") or np.inf
+    own_limit = np.inf if "rtol" not in run.stats or method in _LOW_ORDER else _SHARE * float(steps.max())
+    bound = min(longest, own_limit, run_method)
     return bound if np.isfinite(bound) else None
 
 

@@ -43,8 +43,8 @@ class NeededSteps(NamedTuple):
     @property
     def bound(self) -> float:
         """Step that would resolve the law wherever its features are known; infinite if all steps do."""
-        asked = self.longest[self.missed]
-        return float(asked[asked > 0.0].min(initial=np.inf))
+        steps_missed = self.longest[self.missed]
+        return float(steps_missed[steps_missed > 0.0].min(initial=np.inf))
 
 
 def unknown_parts(law: Any) -> tuple[str, ...]:
@@ -163,16 +163,16 @@ def unresolved(run: Trajectory, place: float) -> str:
     law: Any = run.law
     if unknown := unknown_parts(law):
         return f"how fast {unknown[0]} changes is not known, and so whether steps resolve it"
-    needed = demand_of(run, place)
-    if not (missed := needed.missed).size:
+    demand = demand_of(run, place)
+    if not (missed := demand.missed).size:
         return ""
-    k = int(missed[np.argmin(needed.longest[missed])])
-    feature = law.features()[needed.part[k]]
-    where = f"at t = {needed.t[k]:.4g} a pair is at distances where"
+    k = int(missed[np.argmin(demand.longest[missed])])
+    feature = law.features()[demand.part[k]]
+    where = f"at t = {demand.t[k]:.4g} a pair is at distances where"
     if feature.of == "time":
         where = "at all times"
     elif not _has_slopes(feature):
-        where = f"at t = {needed.t[k]:.4g}"
-    if needed.longest[k] == 0.0:
+        where = f"at t = {demand.t[k]:.4g}"
+    if demand.longest[k] == 0.0:
         return f"{where} the slope of {feature.name} has no bound"
-    return f"{where} {feature.name} asks for steps of {needed.longest[k]:.2g} at most; the step is {needed.step[k]:.2g}"
+    return f"{where} {feature.name} asks for steps of {demand.longest[k]:.2g} at most; the step is {demand.step[k]:.2g}"

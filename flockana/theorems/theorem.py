@@ -170,9 +170,9 @@ class Theorem:
                 further, stated = (check or self.check)(*case)
                 hypotheses, claims = [*hypotheses, *further], list(stated)
         if (missed := unmet(hypotheses)) is not None:
-            known = {"name": missed.name, "detail": missed.detail, "unmet": does_not_hold(missed.name)}
-            text, made = self.reason.format(**known).removesuffix(": "), {claim.name for claim in claims}
-            left_out = (name for name in self.claims if name not in made)
+            words = {"name": missed.name, "detail": missed.detail, "unmet": does_not_hold(missed.name)}
+            text, names = self.reason.format(**words).removesuffix(": "), {claim.name for claim in claims}
+            left_out = (name for name in self.claims if name not in names)
             claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
         owners = (self.by(claim.name) if claim.by == "source" else claim.by for claim in claims)
         return tuple(hypotheses), tuple(replace(claim, by=by) for claim, by in zip(claims, owners, strict=True))

@@ -100,28 +100,28 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
-    used = ensure_tolerances(tolerances)
+    tol = ensure_tolerances(tolerances)
     if isinstance(name, Sequence) and not isinstance(name, str):
         items = [theorem(each) for each in name]
         if trajectory is None and law is not None:
             trajectory, law, q0, p0, t_span = _run(None, law, q0, p0, t_span), None, None, None, None
         parts: Any = {"basin": basin, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
-        return Verdicts(verify(each, trajectory, tolerances=used, subject=subject, **parts) for each in items)
+        return Verdicts(verify(each, trajectory, tolerances=tol, subject=subject, **parts) for each in items)
     case = {"trajectory": trajectory, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
     is_recording = _is("recording", trajectory)
     if is_recording and any(each is not None for each in (basin, q0, p0, t_span, q)):
         raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
     item = None if name is None else theorem(name)
     evidence = _recording_evidence(case) if is_recording else _choose_evidence(item, case, basin)
-    return evidence.judge_all(used, subject) if item is None else evidence.judge(item, used, subject)
+    return evidence.judge_all(tol, subject) if item is None else evidence.judge(item, tol, subject)
 
 
 def ensure_tolerances(tolerances: Any) -> Tolerances:
     """Return tolerances, the usual ones for None; raise on anything else."""
-    used = Tolerances() if tolerances is None else tolerances
-    if not isinstance(used, Tolerances):
+    tolerances_used = Tolerances() if tolerances is None else tolerances
+    if not isinstance(tolerances_used, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
-    return used
+    return tolerances_used
 
 
 def _recording_evidence(case: dict[str, Any]) -> Evidence:
@@ -150,13 +150,13 @@ def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> 
 
 def _ensure_given(item: Theorem, **case: Any) -> None:
     """Raise unless exactly what a theorem is checked on is given."""
-    given = {name for name, value in case.items() if value is not None}
+    names = {name for name, value in case.items() if value is not None}
     motion = {"law", "q0", "p0", "t_span"}
-    start = given & motion if {"law", "q0"} <= given else motion
-    needed = {"trajectory": ({"trajectory"}, start), "configuration": ({"q", "d", "r"},), "fixed": (set(),)}[item.kind]
-    if given not in needed:
-        options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
-        raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
+    start = names & motion if {"law", "q0"} <= names else motion
+    demand = {"trajectory": ({"trajectory"}, start), "configuration": ({"q", "d", "r"},), "fixed": (set(),)}[item.kind]
+    if names not in demand:
+        options = " or ".join(", ".join(sorted(option)) or "nothing" for option in demand)
+        raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(names)) or 'nothing'}")
 
 
 def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
@@ -171,8 +171,8 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
     if not isinstance(trajectory, Trajectory):
         if isinstance(trajectory, NotEvidence):
             raise ArgumentError(trajectory.advice)
-        given = format_value(trajectory)
-        raise ArgumentError(f"trajectory = {given}: expected a Trajectory, such as scenario('collapse').run()")
+        text = format_value(trajectory)
+        raise ArgumentError(f"trajectory = {text}: expected a Trajectory, such as scenario('collapse').run()")
     return trajectory
 
 

@@ -82,9 +82,9 @@ class Leaders(Term):
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         q_l, p_l, a_l = self.led(t)
         slip, power = p - p_l, 0.0
-        for own in self.members:
-            matched, dissipation = self.pair.forces(q[own], p[own], stiffness=0.0, damping=self.damping)
-            u[own] += matched
+        for group in self.members:
+            matched, dissipation = self.pair.forces(q[group], p[group], stiffness=0.0, damping=self.damping)
+            u[group] += matched
             power -= self.damping * dissipation
         u -= self._pins * (self.pull * (q - q_l) + self.drag * slip)
         power -= self.drag * float(np.sum(self._pins * slip * slip))
@@ -98,9 +98,9 @@ class Leaders(Term):
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         (i, j), group = pair_list(q, self.pair.range), np.array(self.group)
-        own = group[i] == group[j]
+        same_group = group[i] == group[j]
         by_position, by_velocity = self.pair.jacobian(
-            q, p, stiffness=0.0, damping=self.damping, pairs=[(i[own], j[own])]
+            q, p, stiffness=0.0, damping=self.damping, pairs=[(i[same_group], j[same_group])]
         )
         pins = block_diagonal(self._pins[:, :, None] * np.eye(q.shape[1]))
         return by_position - self.pull * pins, by_velocity - self.drag * pins

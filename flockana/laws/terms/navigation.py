@@ -101,8 +101,8 @@ class Navigation(Term):
     def _form(self) -> TermKernel | None:
         """Compiled form of a target whose path is harmonic; else None."""
         path = self.target.harmonic
-        own = overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state"))
-        return None if path is None or not own else self._along(path)
+        is_own = overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state"))
+        return None if path is None or not is_own else self._along(path)
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         return self._form

@@ -54,8 +54,8 @@ class ObstacleTerm(Term):
 
     def features(self) -> tuple[Feature, ...]:
         """Return the layer around the obstacles in which repulsion and braking fall to 0."""
-        known = type(self.field.beta) is BetaInteraction
-        return (Feature("the obstacles' repulsion", "agents", self.field.beta.d if known else None),)
+        is_beta = type(self.field.beta) is BetaInteraction
+        return (Feature("the obstacles' repulsion", "agents", self.field.beta.d if is_beta else None),)
 
     @property
     def invariance(self) -> Invariance:

@@ -96,10 +96,12 @@ class Compiled(NamedTuple):
         view
             The frame (start, origin, drift) that forces are seen from.
         """
-        reach, own = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
+        reach, agents = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
         slabs = empty_cuts(n).size - 2
         room = np.empty((2, m)), np.empty((2 * slabs, BLOCK), np.uint64), np.empty((3 * slabs, BLOCK))
-        return System(*self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), own, *room)
+        return System(
+            *self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), agents, *room
+        )
 
     def in_threads(self, system: System) -> System:
         """Return a system with functions for several threads.

@@ -56,48 +56,48 @@ def named_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p, u and read_as among arrays by name, or of a long table whose columns they are."""
     arrays = _without_shells(arrays)
-    given = {} if columns is None else dict(columns)
-    if (frame := _long_table(arrays, given, dt)) is not None:
+    stated = {} if columns is None else dict(columns)
+    if (frame := _long_table(arrays, stated, dt)) is not None:
         frame.attrs["where"] = where
-        return table_arrays(frame, given or None, dt, clock)
+        return table_arrays(frame, stated or None, dt, clock)
     order = None if axes is None else order_of(axes)
-    arrays, joined = with_joined_axes(arrays, given, order, where)
-    given = {kind: name for kind, name in given.items() if kind not in joined}
-    lower = {str(name).lower(): name for name in arrays if name not in given.values()}
-    found, read_as = dict[str, Any](), []
+    arrays, joined = with_joined_axes(arrays, stated, order, where)
+    stated = {kind: name for kind, name in stated.items() if kind not in joined}
+    lower = {str(name).lower(): name for name in arrays if name not in stated.values()}
+    filed, read_as = dict[str, Any](), []
     for kind, names in _NAMES.items():
-        known = [lower[each] for each in names if each in lower]
-        if kind not in given and len(known) > 1:
+        spellings = [lower[each] for each in names if each in lower]
+        if kind not in stated and len(spellings) > 1:
             raise ArgumentError(
-                f"{where}: {', '.join(map(repr, known))} may each be {kind}: expected columns={{{kind!r}: ...}}"
+                f"{where}: {', '.join(map(repr, spellings))} may each be {kind}: expected columns={{{kind!r}: ...}}"
             )
-        name = given.get(kind, known[0] if known else None)
-        if kind in given and name not in list(arrays):
+        name = stated.get(kind, spellings[0] if spellings else None)
+        if kind in stated and name not in list(arrays):
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
-            found[kind] = real_array(arrays[name], kind, where)
-            read_as.append(f"{kind} from {joined.get(name, repr(name))} {found[kind].shape}")
-    shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
-    if "q" not in found:
+            filed[kind] = real_array(arrays[name], kind, where)
+            read_as.append(f"{kind} from {joined.get(name, repr(name))} {filed[kind].shape}")
+    listing = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
+    if "q" not in filed:
         raise ArgumentError(
-            f'{where} holds {shown}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
+            f'{where} holds {listing}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
     if order is not None:
-        found |= {k: turned(found[k], order, k, where) for k in "qpu" if k in found and k not in joined}
+        filed |= {k: turned(filed[k], order, k, where) for k in "qpu" if k in filed and k not in joined}
         read_as.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
-    q = found["q"]
+    q = filed["q"]
     if q.ndim != 3:
         raise ArgumentError(
-            f"{where}: {shown}: expected positions of shape (T, n, m); say which axis is which by axes=, such as "
+            f"{where}: {listing}: expected positions of shape (T, n, m); say which axis is which by axes=, such as "
             'axes=("time", "axis") of one agent, or ("time", "agent") on a line'
         )
     step, rate = _interval(lower, arrays, dt, where)
-    if "t" not in found and step is None:
-        raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
-    if "t" in found and dt is not None:
+    if "t" not in filed and step is None:
+        raise ArgumentError(f"{where} holds {listing} and no times: expected t, or dt=, the interval between samples")
+    if "t" in filed and dt is not None:
         raise ArgumentError(f"{where} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
-    t = found["t"].reshape(-1) if "t" in found else (step or 0.0) * np.arange(len(q))  # MATLAB has no vectors
-    if "t" not in found:
+    t = filed["t"].reshape(-1) if "t" in filed else (step or 0.0) * np.arange(len(q))  # MATLAB has no vectors
+    if "t" not in filed:
         read_as.append(rate or "t from the samples times dt")
     if len(t) != len(q):
         orders = [] if joined else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
@@ -109,16 +109,16 @@ def named_arrays(
             f"{where}: q of shape {q.shape} has {q.shape[2]} axes if read as (T, n, m): expected 1 to 3; name them by "
             'axes=, such as axes=("time", "axis", "agent")'
         )
-    if order is None and ("t" not in found or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
+    if order is None and ("t" not in filed or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
         choice = '"agent time"' if joined else " or axes=".join(possible_orders(q, [1, 0]))
         raise ArgumentError(
             f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
             f"be the time or the agent: expected axes={choice}, which decides"
         )
-    read = {given.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in found}
+    read = {stated.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed}
     idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and rank(arrays[x]) > 1]
     read_as += [f"not read: {', '.join(idle)}"] if idle else []
-    return found | {"t": t, "read_as": tuple(read_as)}
+    return filed | {"t": t, "read_as": tuple(read_as)}
 
 
 def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | None, where: str) -> tuple[Any, str]:
@@ -244,8 +244,8 @@ def _npy_array(file: Any) -> dict[str, Any]:
     """Return the array of an npy file; dictionaries in an array of objects are unpickled without running code."""
     file.seek(0)
     version = np.lib.format.read_magic(file)
-    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-    if not read(file)[2].hasobject:
+    reader = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    if not reader(file)[2].hasobject:
         file.seek(0)
         return {"q": np.load(file, allow_pickle=False)}
     content = np.asarray(_PlainUnpickler(file).load(), dtype=object)
@@ -307,12 +307,12 @@ def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
             arrays[str(name)] = np.asarray(array)
     if "space" not in dataset.sizes:
         return arrays
-    kept = {name: x for name, x in arrays.items() if name in ("time", "position", "velocity", "acceleration")}
+    parts = {name: x for name, x in arrays.items() if name in ("time", "position", "velocity", "acceleration")}
     fps = dataset.attrs.get("fps")
     if dataset.attrs.get("time_unit") == "frames":
-        kept.pop("time", None)
-    if "time" not in kept and fps is not None:
-        kept["fps"] = np.asarray(fps)
+        parts.pop("time", None)
+    if "time" not in parts and fps is not None:
+        parts["fps"] = np.asarray(fps)
     people = next((name for name in ("individuals", "individual") if name in dataset.coords), None)
     ids = None if people is None else tuple(str(x) for x in np.atleast_1d(dataset[people].values))
-    return kept | ({} if ids is None else {"ids": ids})
+    return parts | ({} if ids is None else {"ids": ids})

@@ -79,19 +79,19 @@ def read_dump(
 
     The dimension is passed to `ensure_fits` before places are unwrapped; `wrapped` ones may stay so.
     """
-    found = _snapshots(path)
-    columns = found[0].columns
-    if dt is None and any(each.time is None for each in found):
+    snapshots = _snapshots(path)
+    columns = snapshots[0].columns
+    if dt is None and any(each.time is None for each in snapshots):
         raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
-    if dt is not None and not needed and not any(each.time is None for each in found):
+    if dt is not None and not needed and not any(each.time is None for each in snapshots):
         raise ArgumentError(f"{path} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
-    t = np.array([each.step * (dt or 0.0) if each.time is None else each.time for each in found])
+    t = np.array([each.step * (dt or 0.0) if each.time is None else each.time for each in snapshots])
     if not (np.diff(t) > 0.0).all():
         k = int(np.argmin(np.diff(t)))
         raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
     size = _dimension(columns, m, path)
     ensure_fits(size)
-    arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path, wrapped) for each in found])}
+    arrays = {"t": t, "ids": columns["id"], "q": np.stack([_places(each, size, path, wrapped) for each in snapshots])}
     for kind, name in (("p", "v"), ("u", "f")):
         if f"{name}x" in columns or kind in needed:
             axes = [f"{name}{axis}" for axis in AXES[:size]]
@@ -99,8 +99,8 @@ def read_dump(
                 raise ArgumentError(
                     f"{path} has the columns {', '.join(columns)}: expected {' '.join(axes)} among them"
                 )
-            arrays[kind] = np.stack([np.stack([each.columns[axis] for axis in axes], axis=1) for each in found])
-    return arrays | {"steps": found[-1].step - found[0].step}
+            arrays[kind] = np.stack([np.stack([each.columns[axis] for axis in axes], axis=1) for each in snapshots])
+    return arrays | {"steps": snapshots[-1].step - snapshots[0].step}
 
 
 def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
@@ -127,10 +127,10 @@ def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatAr
     images = [k for k in range(3) if f"i{AXES[k]}" in columns]
     lost = [k for k in snapshot.box.crossed(wrapped) if k not in images]
     if lost and not may_stay:
-        known = "is periodic" if snapshot.box.periodic else "may be periodic"
+        condition = "is periodic" if snapshot.box.periodic else "may be periodic"
         faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
         raise ArgumentError(
-            f"{path}: the box {known} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
+            f"{path}: the box {condition} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
             f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
             "dump them, run LAMMPS with `boundary s s s`, or give read_recording box=, the periods"
         )
@@ -142,20 +142,20 @@ def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatAr
 def _snapshots(path: Path) -> list[Snapshot]:
     """Return the snapshots of a dump, all of the same agents."""
     with opened(path, "a text dump of LAMMPS") as file, TextIOWrapper(file, "utf-8") as text:
-        found = list(_parsed(text, path))
-    if not found:
+        snapshots = list(_parsed(text, path))
+    if not snapshots:
         raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
-    ids = found[0].columns["id"]
-    for before, after in pairwise(found):
+    ids = snapshots[0].columns["id"]
+    for before, after in pairwise(snapshots):
         if after.step <= before.step:
             raise FileError(f"{path}: step {after.step} follows step {before.step}; expected rising steps")
-    for k, snapshot in enumerate(found):
-        if snapshot.columns.keys() != found[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
+    for k, snapshot in enumerate(snapshots):
+        if snapshot.columns.keys() != snapshots[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
             raise FileError(
                 f"{path}: snapshot {k} has {len(snapshot.columns['id'])} agents or columns that are not those of the "
                 f"first ({len(ids)}); were agents lost? expected the same agents throughout"
             )
-    return found
+    return snapshots
 
 
 def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
@@ -218,9 +218,9 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: S
     bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
     cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
     if len(lines) < rows or bad is not None or cut:
-        shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
+        text = "the end of the file" if bad is None else repr(bad.strip()[:60])
         size = "" if width is None else f"{width} "
-        raise FileError(f"{path}: {shown} where {rows} lines of {size}numbers were expected; was it cut off?")
+        raise FileError(f"{path}: {text} where {rows} lines of {size}numbers were expected; was it cut off?")
     for row in cells:
         for k in words:
             row[k] = "nan"

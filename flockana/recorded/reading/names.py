@@ -62,32 +62,32 @@ def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | Non
     ArgumentError
         If a column is not there, or what is not stated may be read in two ways; the message has both.
     """
-    given = _ensure_given(columns or {}, names, where)
-    taken = {x for k, v in given.items() if k != "agents" for x in (v if isinstance(v, list | tuple) else [v])}
+    stated = _ensure_given(columns or {}, names, where)
+    taken = {x for k, v in stated.items() if k != "agents" for x in (v if isinstance(v, list | tuple) else [v])}
     texts = [name for name in names if name not in taken]
     described = {name: words_of(name) for name in texts}
-    time, passed = _time_of(texts, described, where) if not {"t", "frame"} & given.keys() else (given.get("t"), [])
-    frame = given.get(
-        "frame", next((x for x in texts if is_frame(described[x][0])), None) if "t" not in given else None
+    time, passed = _time_of(texts, described, where) if not {"t", "frame"} & stated.keys() else (stated.get("t"), [])
+    frame = stated.get(
+        "frame", next((x for x in texts if is_frame(described[x][0])), None) if "t" not in stated else None
     )
-    used = {*passed, *(time if isinstance(time, tuple) else [time]), frame}
-    agents = [given["id"]] if "id" in given else [x for x in texts if x not in used and is_agent(described[x][0])]
-    known = {x: word for x in texts if x not in used and x not in agents and (word := coordinate(*described[x]))}
+    spent = {*passed, *(time if isinstance(time, tuple) else [time]), frame}
+    agents = [stated["id"]] if "id" in stated else [x for x in texts if x not in spent and is_agent(described[x][0])]
+    words = {x: word for x in texts if x not in spent and x not in agents and (word := coordinate(*described[x]))}
     units = {x: unit for x in names if (unit := words_of(x)[1]) is not None}
-    shown = ", ".join(map(str, list(names)[:12])) + (", ..." if len(names) > 12 else "")
-    groups = by_owner(known, where)
-    if "q" in given:
-        layout = Layout(time, frame, None, _stated(given), {})
+    listing = ", ".join(map(str, list(names)[:12])) + (", ..." if len(names) > 12 else "")
+    groups = by_owner(words, where)
+    if "q" in stated:
+        layout = Layout(time, frame, None, _stated(stated), {})
     else:
-        layout = _arranged(groups, given.get("agents"), agents, texts, where, shown)
-        layout = replace(layout, long={**layout.long, **{k: v for k, v in _stated(given).items() if layout.long}})
+        layout = _arranged(groups, stated.get("agents"), agents, texts, where, listing)
+        layout = replace(layout, long={**layout.long, **{k: v for k, v in _stated(stated).items() if layout.long}})
     first = None if layout.wide or not agents else agents[0]
-    read = {*_flat(layout), *used, *agents}
-    idle = [f"{x!r}" for x in names if x not in read]
+    columns_read = {*_flat(layout), *spent, *agents}
+    idle = [f"{x!r}" for x in names if x not in columns_read]
     notes = layout.notes + ((f"not read: {', '.join(idle[:12])}{', ...' if len(idle) > 12 else ''}",) if idle else ())
     notes += (f"not read: {', '.join(repr(x) for x in passed)}, the time of receipt",) if passed else ()
-    twist = next((x for x in names if x in read and "twist" in words_of(x)[0]), None)
-    if twist is not None and any(word.kind == "orientation" for word in known.values()):
+    twist = next((x for x in names if x in columns_read and "twist" in words_of(x)[0]), None)
+    if twist is not None and any(word.kind == "orientation" for word in words.values()):
         notes += (f"{twist!r} is taken along the axes of positions; where it is along a robot's own, name q alone",)
     return replace(
         layout, time=time, frame=frame, agent=first, rivals=tuple(agents[1:]) if first else (), units=units, notes=notes
@@ -108,8 +108,8 @@ def _ensure_given(columns: Mapping[str, Any], names: Sequence[Any], where: str) 
     if unknown := set(columns) - {*_KNOWN}:
         raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected {', '.join(_KNOWN)}")
     kinds = _stated(columns)
-    asked = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
-    lacking = [x for x in asked if x not in list(names)]
+    requests = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
+    lacking = [x for x in requests if x not in list(names)]
     if lacking:
         raise ArgumentError(f"{where} has no column {lacking[0]!r}: expected one of {', '.join(map(str, names))}")
     if "q" in kinds and (any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3):
@@ -119,8 +119,8 @@ def _ensure_given(columns: Mapping[str, Any], names: Sequence[Any], where: str) 
 
 
 def _two_readings(where: str, names: Sequence[Any], one: str, other: str, remedy: str) -> ArgumentError:
-    shown = ", ".join(repr(x) for x in list(names)[:6])
-    return ArgumentError(f"{where}: {shown} may be {one}, or {other}: expected {remedy}, which decides")
+    listing = ", ".join(repr(x) for x in list(names)[:6])
+    return ArgumentError(f"{where}: {listing} may be {one}, or {other}: expected {remedy}, which decides")
 
 
 def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> tuple[Any, list[str]]:
@@ -159,10 +159,10 @@ def by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kin
             kind = "orientation"
         if word.axis == "w":
             continue
-        own = groups.setdefault(word.owner, {})
-        if (rival := own.get(kind, {}).get(word.axis)) is not None and kind in MEANINGS:
+        group = groups.setdefault(word.owner, {})
+        if (rival := group.get(kind, {}).get(word.axis)) is not None and kind in MEANINGS:
             raise _rivals(where, rival, name, kind, word.axis)
-        own.setdefault(kind, {})[word.axis] = name
+        group.setdefault(kind, {})[word.axis] = name
     for kinds in groups.values():
         _settle(kinds, where)
     return groups
@@ -201,12 +201,12 @@ def _arranged(
     """Return a long or a wide layout: one vector, or one for each agent."""
     placed = {owner: kinds for owner, kinds in groups.items() if "q" in kinds}
     if stated is not None:
-        wanted = {str(name): tuple(words_of(name)[0]) for name in stated}
-        lacking = [name for name, owner in wanted.items() if owner not in placed]
+        wanted_words = {str(name): tuple(words_of(name)[0]) for name in stated}
+        lacking = [name for name, owner in wanted_words.items() if owner not in placed]
         if lacking:
             raise ArgumentError(f"{where}: no positions of {lacking[0]!r} are among the columns {shown}")
         return Layout(
-            None, None, None, {}, _alike({name: placed[owner] for name, owner in wanted.items()}, where, shown)
+            None, None, None, {}, _alike({name: placed[owner] for name, owner in wanted_words.items()}, where, shown)
         )
     if not placed:
         raise _no_positions(names, groups, where, shown)
@@ -280,8 +280,8 @@ def ordered_axes(kinds: Kinds, where: str, shown: str) -> dict[str, list[str]]:
     """Columns of each kind in the order of their axes; raise where one is missing."""
     size = 1 + max(AXES.index(axis) for axis in kinds["q"])
     for kind in (k for k in MEANINGS if k in kinds):
-        own = max(size, 1 + max(AXES.index(axis) for axis in kinds[kind]))
+        axis_count = max(size, 1 + max(AXES.index(axis) for axis in kinds[kind]))
         letter = {"q": "", "p": "v", "u": "a"}[kind]
-        if lacking := [letter + axis for axis in AXES[:own] if axis not in kinds[kind]]:
+        if lacking := [letter + axis for axis in AXES[:axis_count] if axis not in kinds[kind]]:
             raise ArgumentError(f"{where} has the columns {shown}: expected {', '.join(lacking)} too, or fewer axes")
     return {kind: [kinds[kind][axis] for axis in AXES[:size]] for kind in MEANINGS if kind in kinds}

@@ -40,15 +40,15 @@ def table_arrays(
             f'by frames with columns={{"frame": {layout.frame or "..."!r}}}'
         )
     layout = _of_dimension(layout, m, where)
-    t, said = _times(frame, layout, dt, clock, where)
+    t, remark = _times(frame, layout, dt, clock, where)
     layout = _with_agents(frame, layout, t, where)
     factors, texts = _factors(layout, where)
-    notes = [*said, *frame.attrs.get("notes", ()), *texts]
+    notes = [*remark, *frame.attrs.get("notes", ()), *texts]
     if layout.wide:
         arrays = _wide(frame, layout.wide, _counted(frame, t, dt, layout, where))
     elif layout.agent is not None and t is not None:
-        t, moved = _instants(t, jitter)
-        notes += [moved] if moved else []
+        t, shift = _instants(t, jitter)
+        notes += [shift] if shift else []
         arrays = _long(frame, layout, t, where)
     elif layout.agent is not None:
         arrays = _one_instant(frame, layout)
@@ -127,7 +127,7 @@ def _described(layout: Layout, dt: float | None) -> list[str]:
 def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
     """Return factors by which velocities and accelerations come into the units of positions and times, and a note."""
     units, kinds = layout.units or {}, [layout.long] if layout.long else [*layout.wide.values()]
-    own: dict[str, Unit] = {}
+    by_name: dict[str, Unit] = {}
     for kind in MEANINGS:
         columns = [x for each in kinds for x in each.get(kind, ())]
         spelt = {(units[x].length, units[x].factor, units[x].power): units[x] for x in columns if x in units}
@@ -137,19 +137,19 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
                 "one unit; convert them, or drop the units from the header"
             )
         if spelt:
-            own[kind] = next(iter(spelt.values()))
+            by_name[kind] = next(iter(spelt.values()))
     time = units.get(layout.time) if isinstance(layout.time, str) else None
     factors, texts = {}, []
     for kind, power in (("p", 1), ("u", 2)):
-        if kind in own and "q" in own and own[kind].power == power:
-            if (own[kind].length == "px") != (own["q"].length == "px"):
+        if kind in by_name and "q" in by_name and by_name[kind].power == power:
+            if (by_name[kind].length == "px") != (by_name["q"].length == "px"):
                 continue
-            text = own[kind].text
-            clock = Unit(f"the time of {text}", "", own[kind].second, 0) if time is None else time
-            factor = own[kind].factor / own["q"].factor * clock.factor**power
+            text = by_name[kind].text
+            clock = Unit(f"the time of {text}", "", by_name[kind].second, 0) if time is None else time
+            factor = by_name[kind].factor / by_name["q"].factor * clock.factor**power
             if abs(factor - 1.0) > 1e-9:
                 factors[kind] = factor
-                texts.append(f"{kind} times {factor:.4g}, from {text} to {own['q'].text} and {clock.text}")
+                texts.append(f"{kind} times {factor:.4g}, from {text} to {by_name['q'].text} and {clock.text}")
     return factors, texts
 
 
@@ -202,8 +202,8 @@ def _times(
             k = int(np.argmax(np.isnan(t)))
             raise FileError(f"{row_name(frame, k)}, column {layout.time!r}: no time; expected one in every row")
         unit = (layout.units or {}).get(layout.time)
-        for least, factor, text in _EPOCHS if unit is None else ():
-            if least <= t.min() <= t.max() < 1e3 * least and series.dtype.kind in "iu":
+        for smallest, factor, text in _EPOCHS if unit is None else ():
+            if smallest <= t.min() <= t.max() < 1e3 * smallest and series.dtype.kind in "iu":
                 exact = series.to_numpy()
                 return (exact - exact.min()) * factor, [f"t counts {text} since 1970: in seconds from the first"]
         return t, []

@@ -118,11 +118,11 @@ def numbers(frame: Any, column: str) -> Any:
     if series.dtype.kind not in "fiu":
         values = pd.to_numeric(series, errors="coerce")
         refused = (series.notna() & values.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
-    found = values.to_numpy(dtype=np.float64)
-    refused = refused | np.isinf(found)
+    parsed = values.to_numpy(dtype=np.float64)
+    refused = refused | np.isinf(parsed)
     if refused.any():
         raise _bad_cell(frame, int(np.argmax(refused)), column)
-    return found
+    return parsed
 
 
 def row_name(frame: Any, k: int) -> str:

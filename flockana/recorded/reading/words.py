@@ -126,7 +126,7 @@ def coordinate(words: list[str], unit: Unit | None) -> Word | None:
     word = words[at[0]]
     kind, axis = _FUSED.get(word, ("", word))
     others = words[: at[0]] + words[at[0] + 1 :]
-    roles = [next((role for role, known in _ROLES.items() if each in known), "") for each in others]
+    roles = [next((role for role, words_of_role in _ROLES.items() if each in words_of_role), "") for each in others]
     rank = next((role for role in ("other", "orientation", "u", "p") if role in roles), kind or "q")
     if others == ["p"] or others == ["q"]:  # p_x: velocities here, positions elsewhere; q_x: of a quaternion, perhaps
         rank = others[0] + "?"

@@ -8,19 +8,19 @@ from flockana.scenarios.checks import SOURCE
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
     """Return the ids in the report by reference; a theorem checked on several runs leads to the first."""
-    found: dict[str, str] = {}
+    link: dict[str, str] = {}
     for page in pages:
         if isinstance(page, ScenarioPage):
-            found[f"scenario:{page.name}"] = scenario_id(page.name)
+            link[f"scenario:{page.name}"] = scenario_id(page.name)
         for verdict in (finding.verdict for finding in page.findings):
-            shown = verdict_id(page.subject, verdict.theorem)
+            anchor = verdict_id(page.subject, verdict.theorem)
             if verdict.theorem == SOURCE:
-                found |= {f"report:{page.subject}/{claim.name}": shown for claim in verdict.claims}
+                link |= {f"report:{page.subject}/{claim.name}": anchor for claim in verdict.claims}
                 continue
-            found.setdefault(f"{'erratum' if is_erratum(verdict.theorem) else 'theorem'}:{verdict.theorem}", shown)
+            link.setdefault(f"{'erratum' if is_erratum(verdict.theorem) else 'theorem'}:{verdict.theorem}", anchor)
             for claim in verdict.claims:
-                found.setdefault(f"claim:{verdict.theorem}/{claim.name}", shown)
-    return found
+                link.setdefault(f"claim:{verdict.theorem}/{claim.name}", anchor)
+    return link
 
 
 def verdict_id(subject: str, theorem: str) -> str:

@@ -49,8 +49,8 @@ class Row:
         if not self.place or not self.what:
             raise ArgumentError(f"a row says {self.place!r}, {self.what!r}: expected a place and what stands there")
         if self.standing not in get_args(Standing):
-            known = ", ".join(get_args(Standing))
-            raise ArgumentError(f"{self.place}: {self.what}: standing = {self.standing!r}, expected one of {known}")
+            standings = ", ".join(get_args(Standing))
+            raise ArgumentError(f"{self.place}: {self.what}: standing = {self.standing!r}, expected one of {standings}")
         if self.standing == "absent" and self.held_by:
             raise ArgumentError(f"{self.place}: {self.what}: absent, and held by {self.held_by[0]}; call it weaker")
         if self.standing == "held" and not self.held_by:
@@ -92,13 +92,13 @@ def read_table(path: str | os.PathLike[str]) -> Source:
 
 
 def _rows(name: str, lines: list[str]) -> Iterator[Row]:
-    seen: dict[tuple[str, str], int] = {}
+    row_numbers: dict[tuple[str, str], int] = {}
     for number, line in enumerate(lines, 3):
         try:
             row = _row(line)
         except ArgumentError as error:
             raise ArgumentError(f"{name}, line {number}: {error}") from None
-        if (first := seen.setdefault((row.place, row.what), number)) != number:
+        if (first := row_numbers.setdefault((row.place, row.what), number)) != number:
             raise ArgumentError(f"{name}, line {number}: the same as line {first}; leave one out")
         yield row
 

@@ -30,9 +30,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     strong = condition("α >= 1", alpha >= 1.0, alpha - 1.0, f"α = {alpha:g}", remedy="raise α to 1")
     weak = condition("α < 1", alpha < 1.0, 1.0 - alpha, f"α = {alpha:g}")
     several = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
-    least = least_distance(seen) if seen.n > 1 else Enclosure.of(np.inf)
-    apart = judged("apart", least, [strong], proof="singular-alignment").described(
-        computed=float(least.mid), stated="no two agents ever meet", detail=f"the least distance is {least.mid:.6g}"
+    room = least_distance(seen) if seen.n > 1 else Enclosure.of(np.inf)
+    apart = judged("apart", room, [strong], proof="singular-alignment").described(
+        computed=float(room.mid), stated="no two agents ever meet", detail=f"the least distance is {room.mid:.6g}"
     )
     some = judged("some-start", Enclosure.of(0.0), [weak, several], about="all", proof="singular-alignment").described(
         stated="from some distinct start two agents meet"
@@ -53,8 +53,8 @@ def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int |
     import sympy as sp
 
     strength, length, alpha, start, speed = map(sp.Rational, (*factor, x, w))
-    known = speed + 2 * strength * length**alpha * start ** (1 - alpha) / (1 - alpha)
-    return 0 if known.is_zero else 1 if known.is_positive else -1 if known.is_negative else None
+    value = speed + 2 * strength * length**alpha * start ** (1 - alpha) / (1 - alpha)
+    return 0 if value.is_zero else 1 if value.is_positive else -1 if value.is_negative else None
 
 
 def _sides(seen: Observed, x: float, w: float, integral: float) -> tuple[Hypothesis, Hypothesis]:
@@ -122,11 +122,11 @@ def _meet(seen: Observed, needs: Needs, x: float, excess: float, factor: float) 
 def _apart(seen: Observed, needs: Needs, x: float, level: float) -> Claim:
     """Return the claim that the distance stays at least min(x(0), x_∞), x_∞^(1−α) = level."""
     limit = max(level, 0.0) ** (1.0 / (1.0 - seen.law.weight.decay))
-    least, end = least_distance(seen), float(np.ptp(seen.run.q[-1]))
-    margin = least / min(x, limit) - 1.0 if limit > 0.0 else least
+    distance, end = least_distance(seen), float(np.ptp(seen.run.q[-1]))
+    margin = distance / min(x, limit) - 1.0 if limit > 0.0 else distance
     return judged("apart", margin, needs, proof=_PAIR).described(
-        computed=float(least.mid),
+        computed=float(distance.mid),
         stated=f"x never is below {min(x, limit):.6g}, and tends to {limit:.6g}",
         witness={"time": float(seen.t[-1])},
-        detail=f"the least distance is {least.mid:.6g}, the last {end:.6g}",
+        detail=f"the least distance is {distance.mid:.6g}, the last {end:.6g}",
     )

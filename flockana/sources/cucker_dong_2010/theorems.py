@@ -45,7 +45,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     level = level.widened(64.0 * n * EPS * np.abs(level.mid)).clip(0.0)
     start = level[0]
     bound = ((push * far / (2.0 * start)) + 1.0).sqrt() * far
-    least = least_distance(seen)
+    distance = least_distance(seen)
     phi = AlignmentRate(law.weight, n * law.weight.strength, np.sqrt(2.0))
     guarantee = Guarantee(seen, phi, seen.spread, spread_over(seen).max(), level, _PROOF, ("‖x{}‖", "E{}"))
     slow = guarantee.hypothesis("E(0) < n∫a(√2 s) from ‖x(0)‖ on")
@@ -55,10 +55,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         judged("functional", 1.0 - level.max() / start, needs, proof=_PROOF).described(
             computed=float(level.mid.max()), stated=f"E never exceeds E(0) = {start.mid:.6g}"
         ),
-        judged("apart", least / bound - 1.0, needs, proof=_PROOF).described(
-            computed=float(least.mid),
+        judged("apart", distance / bound - 1.0, needs, proof=_PROOF).described(
+            computed=float(distance.mid),
             stated=f"no two agents are nearer than {bound.mid:.6g}, δ = {far:g}",
-            detail=f"the least distance is {least.mid:.6g}",
+            detail=f"the least distance is {distance.mid:.6g}",
         ),
         *bounded,
         limit_claim("flock", [*needs, slow], proof=_PROOF).described(

@@ -47,17 +47,17 @@ def _claim(name: str, words: str, step: DiscreteLaw, q: FloatArray) -> Claim:
     """Compare the step with the margin; where the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.continuous
     rest = q if isinstance(law, MinimalFlocking) else find_equilibrium(law, q).q
-    found, dt = sampling_margin(step, rest), step.dt
-    if found.certified:
-        margin, error = found.times(dt) - 1.0, CLOSE
+    bound, dt = sampling_margin(step, rest), step.dt
+    if bound.certified:
+        margin, error = bound.times(dt) - 1.0, CLOSE
     else:
         worst = linearise(step, rest).modes[0]
         margin, error = worst.decay_per_step, worst.error
     return spectral(name, margin, error).described(
-        computed={"n": len(rest), "dt": dt, "margin": found.period, "margin over dt": found.times(dt)},
+        computed={"n": len(rest), "dt": dt, "margin": bound.period, "margin over dt": bound.times(dt)},
         stated=f"at dt = {dt:g} every mode of the flock at its equilibrium decays",
-        witness={"lost at z": str(found.first and found.first.multiplier)},
-        detail=f"{words}: dt = {dt:g}, stable up to {found.period:.4g}, {found.times(dt):.3g} times dt",
+        witness={"lost at z": str(bound.first and bound.first.multiplier)},
+        detail=f"{words}: dt = {dt:g}, stable up to {bound.period:.4g}, {bound.times(dt):.3g} times dt",
     )
 
 

@@ -113,7 +113,7 @@ class GaziPassino(VelocityLaw):
 
         (n, m), (away, pull, bend) = q.shape, self._pulls(q)
         blocks = pull[:, :, None, None] * np.eye(m) + 2.0 * bend[:, :, None, None] * away[..., None] * away[:, :, None]
-        own = np.arange(n)
-        blocks[own, own] = 0.0
-        blocks[own, own] = -blocks.sum(axis=1)
+        agents = np.arange(n)
+        blocks[agents, agents] = 0.0
+        blocks[agents, agents] = -blocks.sum(axis=1)
         return csr_array(blocks.swapaxes(1, 2).reshape(n * m, n * m))

@@ -14,19 +14,19 @@ _SAMPLES = 271  # every other of the project's 540 iterations
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the figures of any flock, and rank(A)/n over time."""
     run = trajectory
-    shown = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
-    nets = [links(run.q[k], run.law.pair.range) for k in shown]
+    picks = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
+    nets = [links(run.q[k], run.law.pair.range) for k in picks]
     curves = []
     for typeset, name in ((False, "rank(A)/n"), (True, "rank(A)/n as typeset")):
         curves.append(Curve(np.array([printed_rank_connectivity(run.n, net, typeset=typeset) for net in nets]), name))
-    curves.append(Curve(run.metric("connectivity")[shown], "C = rank(L)/(n − 1)"))
+    curves.append(Curve(run.metric("connectivity")[picks], "C = rank(L)/(n − 1)"))
     return (
         *flock_pictures(run),
         Picture(
             "The project's connectivity rank(A)/n of the adjacency matrix, with a zero diagonal and as its code is "
             "typeset (a unit diagonal but for the last agent), beside C = rank(L)/(n − 1), which is 1 exactly when the "
             "net is connected (erratum E8).",
-            panels([Chart("connectivity, three ways", run.t[shown], curves)]),
+            panels([Chart("connectivity, three ways", run.t[picks], curves)]),
         ),
     )
 

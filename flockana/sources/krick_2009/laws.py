@@ -48,8 +48,8 @@ class DistanceFormation(VelocityLaw):
     functions = ()  # polynomials of positions, which steps of any length resolve
 
     def __post_init__(self) -> None:
-        given = list(self.edges) if isinstance(self.edges, Iterable) else self.edges
-        object.__setattr__(self, "edges", ensure_net("edges", given))  # sorted, and the lengths with them
+        edges = list(self.edges) if isinstance(self.edges, Iterable) else self.edges
+        object.__setattr__(self, "edges", ensure_net("edges", edges))  # sorted, and the lengths with them
         normalise(self, per_agent, "lengths")
         normalise(self, ensure_positive, "gain")
         if not self.edges:
@@ -57,8 +57,10 @@ class DistanceFormation(VelocityLaw):
         if np.ndim(self.lengths) and np.size(self.lengths) != len(self.edges):
             raise ArgumentError(f"{np.size(self.lengths)} lengths of {len(self.edges)} links: expected one for each")
         if np.ndim(self.lengths):
-            known = {tuple(sorted(map(int, edge))): d for edge, d in zip(given, np.ravel(self.lengths), strict=True)}
-            object.__setattr__(self, "lengths", tuple(float(known[edge]) for edge in self.edges))
+            length_of = {
+                tuple(sorted(map(int, edge))): d for edge, d in zip(edges, np.ravel(self.lengths), strict=True)
+            }
+            object.__setattr__(self, "lengths", tuple(float(length_of[edge]) for edge in self.edges))
 
     @property
     def scales(self) -> Scales:
@@ -92,8 +94,8 @@ class DistanceFormation(VelocityLaw):
         q : ndarray, shape (n, m)
         """
         i, j, z = self._links(q)
-        whole, own = np.zeros((len(z), *q.shape)), np.arange(len(z))
-        whole[own, j], whole[own, i] = z, -z
+        whole, agents = np.zeros((len(z), *q.shape)), np.arange(len(z))
+        whole[agents, j], whole[agents, i] = z, -z
         return whole.reshape(len(z), q.size)
 
     def velocity(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102

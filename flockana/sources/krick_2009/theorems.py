@@ -22,14 +22,14 @@ def _near(law: DistanceFormation, q: FloatArray) -> tuple[Hypothesis, float, flo
     """Return the hypothesis σ² > 4 √Δ ‖e‖ of a start, its error ‖e‖ and its least singular value σ."""
     rows, e = law.rows(q), float(np.linalg.norm(law.errors(q)))
     values, size = np.linalg.svd(rows, compute_uv=False), float(np.linalg.norm(rows))
-    least = float(values[-1]) if len(rows) <= rows.shape[1] else 0.0
+    smallest = float(values[-1]) if len(rows) <= rows.shape[1] else 0.0
     share = 4.0 * sqrt(float(np.bincount(np.ravel(law.edges)).max()))
-    sigma = Enclosure.around(least, 64.0 * max(rows.shape) * EPS * size).clip(0.0)
+    sigma = Enclosure.around(smallest, 64.0 * max(rows.shape) * EPS * size).clip(0.0)
     blur = 64.0 * len(rows) * EPS * (e + size * size + float(np.sum(np.square(law.lengths))))
     room = (sigma.square() - share * Enclosure.around(e, blur)) / float(np.max(law.lengths)) ** 2
-    text = f"σ² = {least**2:.6g}, 4 √Δ ‖e‖ = {share * e:.6g}"
+    text = f"σ² = {smallest**2:.6g}, 4 √Δ ‖e‖ = {share * e:.6g}"
     name = "σ² > 4 √Δ ‖e‖: independent links, near their lengths"
-    return positive_room(name, room, text, remedy="start nearer, or remove links that depend on others"), e, least
+    return positive_room(name, room, text, remedy="start nearer, or remove links that depend on others"), e, smallest
 
 
 def _collinear(q: FloatArray) -> Hypothesis:
@@ -82,8 +82,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     law, q = seen.law, seen.run.q
     near, e, sigma = _near(law, q[0])
     off = Enclosure.around(np.linalg.norm(q.mean(axis=1) - q[0].mean(axis=0), axis=1), seen.centre_error)
-    moved = np.linalg.norm(q - q[0], axis=2).max(axis=1)
-    moved = Enclosure.around(moved, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
+    moves = np.linalg.norm(q - q[0], axis=2).max(axis=1)
+    moves = Enclosure.around(moves, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
     limit = e / sigma if sigma > 0.0 else np.inf
     left = float(seen.run.metric("length_error")[-1])
     ended = f"the largest error of a squared length is {left:.3g} at the end"
@@ -97,12 +97,12 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
             computed=left, stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=ended
         ),
         judged(
-            "nearby", (limit - moved) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
+            "nearby", (limit - moves) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
             [near], proof=_PROOF,
         ).described(
-            computed=float(moved.mid.max()),
+            computed=float(moves.mid.max()),
             stated=f"no agent is farther than {limit:.6g} from its start",
-            detail=f"an agent moves by {moved.mid.max():.6g} at most",
+            detail=f"an agent moves by {moves.mid.max():.6g} at most",
         ),
     ]  # fmt: skip
     return [], claims

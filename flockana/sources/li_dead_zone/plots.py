@@ -32,9 +32,9 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, ax: Axes | None = None)
         x = np.linspace(np.nextafter(left, far), np.nextafter(right, 0.0), _SAMPLES)
         ax.plot(x, -interaction.force(x), color=BLUE, linestyle="-")
     for jump in interaction.jumps():
-        taken = -float(interaction.force(jump.distance))
+        least_force = -float(interaction.force(jump.distance))
         for value in (jump.below, jump.above):
-            face = BLUE if abs(value - taken) <= 1e-9 * interaction.contact_force else "white"
+            face = BLUE if abs(value - least_force) <= 1e-9 * interaction.contact_force else "white"
             ax.plot(jump.distance, value, "o", color=BLUE, markerfacecolor=face, markersize=5, zorder=3)
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     for name, place in (("d₁", interaction.d1), ("d₂", interaction.d2), ("r", interaction.r)):
@@ -65,10 +65,10 @@ def _led(
     axes: Any = configuration(q, p, r=contact, ax=ax, title=f"t = {t:.4g}")
     places = in_plane(np.array([leader.position(t) for leader in law.leaders]))
     x, size = in_plane(q), float(np.clip(900.0 / len(q), 3.0, 26.0))
-    for number, (own, place) in enumerate(zip(law.ties.members, places, strict=True)):
+    for number, (members, place) in enumerate(zip(law.ties.members, places, strict=True)):
         colour = _GROUPS[number % len(_GROUPS)]
-        rings = [INK if i in law.pinned else colour for i in own.tolist()]
-        axes.scatter(*x[own].T, s=1.6 * size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
+        rings = [INK if i in law.pinned else colour for i in members.tolist()]
+        axes.scatter(*x[members].T, s=1.6 * size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
         star(axes, place[None, :], color=colour)
     framed: Axes = frame_space(axes, np.vstack([x, places]), trajectory.m)
     return framed

@@ -38,8 +38,8 @@ def ensure_steps(name: str, value: Any, least: int, count: int) -> tuple[int, ..
     """Return one whole number for each net, each at least `least`."""
     steps = np.asarray(value)
     if steps.shape != (count,) or steps.dtype.kind not in "iu" or (steps < least).any():
-        wanted = f"{count} whole numbers >= {least}, one for each net"
-        raise ArgumentError(f"{name} = {format_value(value)}: expected {wanted}")
+        expectation = f"{count} whole numbers >= {least}, one for each net"
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {expectation}")
     return tuple(steps.tolist())
 
 
@@ -89,10 +89,10 @@ class NetAveraging(DiscreteLaw):
     def __post_init__(self) -> None:
         normalise(self, ensure_averages, "nets")
         normalise(self, ensure_positive, "dt")
-        for name, least in (("lengths", 1), ("growth", 0)):
-            given = getattr(self, name)
-            steps = [least] * len(self.nets) if given is None else given
-            object.__setattr__(self, name, ensure_steps(name, steps, least, len(self.nets)))
+        for name, minimum in (("lengths", 1), ("growth", 0)):
+            value = getattr(self, name)
+            steps = [minimum] * len(self.nets) if value is None else value
+            object.__setattr__(self, name, ensure_steps(name, steps, minimum, len(self.nets)))
 
     def net_at(self, step: int) -> int:
         """Return which net acts in a step, counted from 0.

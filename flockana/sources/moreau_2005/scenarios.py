@@ -29,8 +29,8 @@ def _net(name: str, title: str, law: NetAveraging, expected: dict[str, Status], 
         q = np.array([[0.0], [0.0], [1.0]]) if any(law.growth) else plane
         return q, np.zeros_like(q)
 
-    known = expected | (verified if any(law.growth) else vacuous)("growing-windows")
-    return entry(name, title, source, law, draw, float(steps), known, references=("moreau-2005", "flockana"))
+    statuses = expected | (verified if any(law.growth) else vacuous)("growing-windows")
+    return entry(name, title, source, law, draw, float(steps), statuses, references=("moreau-2005", "flockana"))
 
 
 SCENARIOS = {

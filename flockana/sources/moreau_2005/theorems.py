@@ -54,9 +54,9 @@ def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
 
 
 def _hull(seen: Observed, needs: Needs) -> Claim:
-    least, most = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
-    out = np.flatnonzero(((np.diff(least, axis=0) < 0.0) | (np.diff(most, axis=0) > 0.0)).any(axis=1))
-    spread = (most - least).max(axis=1)
+    minimum, most = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
+    out = np.flatnonzero(((np.diff(minimum, axis=0) < 0.0) | (np.diff(most, axis=0) > 0.0)).any(axis=1))
+    spread = (most - minimum).max(axis=1)
     return by_count("hull", out.size, needs, proof=_PROOF).described(
         computed=float(spread[-1]),
         stated="along no axis the greatest place ever rises, or the least falls",
@@ -87,8 +87,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     from every start. No agent ever leaves the extent of the places before. If all nets together have no such root, some
     start never agrees. Where the root is an agent who hears nobody all come to it: a leader.
     """
-    least = min(min(np.diag(np.array(net))) for net in seen.law.nets)
-    keeps = condition("each agent keeps a share of its own place", least > 0.0, least, f"least w_ii = {least:g}")
+    floor = min(min(np.diag(np.array(net))) for net in seen.law.nets)
+    keeps = condition("each agent keeps a share of its own place", floor > 0.0, floor, f"least w_ii = {floor:g}")
     windows, rootless = windows_rooted(seen.law)
     some = judged("some-start", Enclosure.of(0.0), [rootless], about="all", proof=_PROOF)
     return [], [

@@ -54,8 +54,8 @@ def _other(run: Trajectory) -> Trajectory:
 @report("push", "a tenfold push below 0.05 keeps agents apart")
 def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the push keeps agents farther apart; vacuous where it never acts."""
-    own = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
-    if not own:  # then the run is the same with the push and without it
+    contact_times = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
+    if not contact_times:  # then the run is the same with the push and without it
         closest = run.closest_approach().distance
         detail = f"the push never acts: no two agents come closer than {closest:.3g}"
         return Claim("push", "vacuous", computed=closest, stated=f"< {MIN_DISTANCE:g} without the push", detail=detail)
@@ -67,8 +67,8 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
     blur = sum(each.distance - each.lower for each in near) + ROUNDING * float(np.abs(run.q).max())
     apart = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
     detail = (
-        f"{len(own)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} without the "
-        f"push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
+        f"{len(contact_times)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} "
+        f"without the push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
     )
     return finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
 

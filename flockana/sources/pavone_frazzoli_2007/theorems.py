@@ -31,13 +31,13 @@ def _motion(seen: Observed, tolerances: Tolerances) -> list[Claim]:
     """Return the claims that the centroid stays, and that the motion is the sum of the modes of its start."""
     law: CyclicPursuit = seen.law
     z = seen.run.q @ np.array([1.0, 1j])
-    known = np.fft.ifft(np.fft.fft(z[0] - z[0].mean()) * np.exp(np.outer(seen.t - seen.t[0], law.eigenvalues(seen.n))))
-    size = float(max(np.abs(known).max(), np.abs(z[0] - z[0].mean()).max())) or 1.0
+    motion = np.fft.ifft(np.fft.fft(z[0] - z[0].mean()) * np.exp(np.outer(seen.t - seen.t[0], law.eigenvalues(seen.n))))
+    size = float(max(np.abs(motion).max(), np.abs(z[0] - z[0].mean()).max())) or 1.0
     rounding = 64.0 * seen.n * EPS * float(np.abs(z).max() + law.gain * (seen.t[-1] - seen.t[0]) * size)
     off = {
         "centroid": Enclosure.around(np.abs(z.mean(axis=1) - z[0].mean()), seen.centre_error + rounding),
         "motion": Enclosure.around(
-            np.abs(z - z.mean(axis=1, keepdims=True) - known).max(axis=1), seen.shape_error.max(axis=1) + rounding
+            np.abs(z - z.mean(axis=1, keepdims=True) - motion).max(axis=1), seen.shape_error.max(axis=1) + rounding
         ),
     }
     stated = {"centroid": "the centroid stays", "motion": "the motion is Σ_j c_j e^{λ_j t} v_j, c of the start"}

@@ -47,8 +47,8 @@ def informed_shares(
         raise ArgumentError(f"majority = {majority!r}: expected a share, 0 <= majority < 1")
     share = runs["followers"].transpose("informed", "seed").values
     x = np.asarray(runs["informed"].values, dtype=np.float64) / agents
-    known = np.isfinite(share)  # a run that failed has none
-    counts, of = (share > majority).sum(axis=1), known.sum(axis=1)
+    is_finite = np.isfinite(share)  # a run that failed has none
+    counts, of = (share > majority).sum(axis=1), is_finite.sum(axis=1)
     low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, of, level=_CONFIDENCE))
     middle = counts / np.maximum(of, 1)
     axes = ensure_axes(ax)

@@ -88,26 +88,26 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     gains, path = run.law.gains, run.law.target
     omega = 2.0 * pi * path.frequency
     lag = path.radius * omega**2 / abs(gains.c1_gamma - omega**2 + 1j * omega * gains.c2_gamma)
-    found = float(np.linalg.norm(run.q[-1].mean(axis=0) - path.position(float(run.t[-1]))))
-    off = abs(found / lag - 1.0)
-    detail = f"the centre of mass ends {found:.6g} from the leader, where the transfer function says {lag:.6g}"
-    return finding(1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
+    distance = float(np.linalg.norm(run.q[-1].mean(axis=0) - path.position(float(run.t[-1]))))
+    off = abs(distance / lag - 1.0)
+    detail = f"the centre of mass ends {distance:.6g} from the leader, where the transfer function says {lag:.6g}"
+    return finding(1e-6 - off, detail, computed=distance, stated=lag, error=ROUNDING)
 
 
 def _varying(name: str, title: str, *, feedforward: bool) -> Builder:
     expected = verified("energy", "cohesion")
     law: Any = Algorithm2(target=_CIRCLE)
-    told = "; its acceleration is not told."
+    remark = "; its acceleration is not told."
     if feedforward:
         expected |= verified("su-varying", "su-varying:centre", "su-varying:velocities", "su-varying:distance")
         expected |= verified("collision-energy:below")
         law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, feedforward=True)
-        told = " and are told its acceleration."
+        remark = " and are told its acceleration."
     else:
         expected |= vacuous("su-varying") | verified("source")
     source = (
         "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
-        f"radius 20{told}"
+        f"radius 20{remark}"
     )
     draw, reports = partial(_near_lattice, n=12, noise=0.2), () if feedforward else (_lag,)
     return entry(name, title, source, law, draw, 40.0, expected, reports, references=_REFERENCES)

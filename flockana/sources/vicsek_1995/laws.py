@@ -197,11 +197,11 @@ def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     """The mean angle of each agent and its neighbours, kept among these where rounding would put it outside."""
     (i, j), n = pairs.T, heading.size
     total = heading + np.bincount(i, heading[j], n) + np.bincount(j, heading[i], n)
-    least, most = heading.copy(), heading.copy()
+    lower, most = heading.copy(), heading.copy()
     for one, other in ((i, j), (j, i)):
-        np.minimum.at(least, one, heading[other])
+        np.minimum.at(lower, one, heading[other])
         np.maximum.at(most, one, heading[other])
-    return np.clip(total / _sizes(pairs, n), least, most)
+    return np.clip(total / _sizes(pairs, n), lower, most)
 
 
 def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:

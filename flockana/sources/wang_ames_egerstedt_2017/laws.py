@@ -93,8 +93,8 @@ class SafetyFilter(WrappingLaw):
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = self.law.flow(t, q, p)[0]
         i, j = np.triu_indices(len(q), 1)
-        _, along, least = self.barriers(q, p)
-        lack = least - np.sum(along * (u[i] - u[j]), axis=1)
+        _, along, lowest = self.barriers(q, p)
+        lack = lowest - np.sum(along * (u[i] - u[j]), axis=1)
         if (lack <= 0.0).all():
             return u, float("nan")
         if np.isnan(lack).any():  # two agents at one place

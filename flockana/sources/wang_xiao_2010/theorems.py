@@ -27,9 +27,9 @@ def _rate(law: FiniteTimeAlignment, n: int) -> Enclosure:
         laplacian[i, j] = laplacian[j, i] = -1.0
     laplacian -= np.diag(laplacian.sum(axis=1))
     second = np.linalg.eigvalsh(laplacian)
-    least = Enclosure.around(float(second[1]), 16.0 * n * EPS * float(second[-1]))
+    rate = Enclosure.around(float(second[1]), 16.0 * n * EPS * float(second[-1]))
     factor = law.gain * law.speed ** (1.0 - law.exponent)  # (b^(1/power))^power
-    return least.rising(lambda value: np.maximum(value, 0.0) ** power).scaled_out(16.0 * EPS) * factor
+    return rate.rising(lambda value: np.maximum(value, 0.0) ** power).scaled_out(16.0 * EPS) * factor
 
 
 @run_theorem(

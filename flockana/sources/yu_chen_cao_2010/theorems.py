@@ -16,9 +16,9 @@ _MOST = 30  # agents of which equality is decided with rationals
 
 def gains_positive(law: NetConsensus) -> Hypothesis:
     """Return the hypothesis α, β > 0."""
-    least = min(law.position, law.velocity)
+    smallest = min(law.position, law.velocity)
     text = f"α = {law.position:g}, β = {law.velocity:g}"
-    return condition("α > 0 and β > 0", least > 0.0, least, text, remedy="raise both above 0")
+    return condition("α > 0 and β > 0", smallest > 0.0, smallest, text, remedy="raise both above 0")
 
 
 def threshold_exceeded(law: NetConsensus) -> Hypothesis:
@@ -34,8 +34,8 @@ def threshold_exceeded(law: NetConsensus) -> Hypothesis:
         return condition(name, bool(ratio > bound), margin, text, remedy=_MORE)
     if len(law.weights) > _MOST:
         return Hypothesis(name, "assumed", margin, f"{text}; equal to 30 digits")
-    met = stable_off_agreement(laplacian, law.position, law.velocity)
-    return condition(name, met, margin, f"{text}, decided exactly", remedy=_MORE)
+    is_exceeded = stable_off_agreement(laplacian, law.position, law.velocity)
+    return condition(name, is_exceeded, margin, f"{text}, decided exactly", remedy=_MORE)
 
 
 def _consensus(seen: Observed, needs: Needs) -> Claim:

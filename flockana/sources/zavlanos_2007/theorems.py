@@ -38,11 +38,11 @@ def longest_link(seen: Observed) -> Enclosure:
 
 def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
     """The claim that no link is longer than `most`: by a bound of the path, refuted by a sample alone."""
-    reached = longest_link(seen)
-    return judged(name, (most - reached) / seen.law.r, needs, proof=_PROOF).described(
-        computed=float(reached.mid),
+    longest = longest_link(seen)
+    return judged(name, (most - longest) / seen.law.r, needs, proof=_PROOF).described(
+        computed=float(longest.mid),
         stated=stated,
-        detail=f"the longest link is {reached.mid:.4g} at a sample and at most {reached.hi:.4g} between; "
+        detail=f"the longest link is {longest.mid:.4g} at a sample and at most {longest.hi:.4g} between; "
         f"r = {seen.law.r:g}",
     )
 

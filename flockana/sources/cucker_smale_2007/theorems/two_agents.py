@@ -66,9 +66,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
     slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
     fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
-    far, least, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
+    far, smallest, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
     bounded = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
-    parts = f"their relative speed is {end:.6g} at the end and never below {least:.6g}"
+    parts = f"their relative speed is {end:.6g} at the end and never below {smallest:.6g}"
     match = "the two match, and their distance tends to a known one"
     return needs, [
         _invariant(seen, psi, x, w, needs, tolerances),

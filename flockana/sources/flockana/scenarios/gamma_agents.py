@@ -20,9 +20,9 @@ _DRIFT = 4.0  # by which the copies of the two halves differ from the true veloc
 
 @report("consistent", "p_r is the true velocity of q_r")
 def _velocity_is_true(run: Trajectory, tolerances: Tolerances) -> Claim:
-    found = consistent(run)
-    margin = 0.5 if found.status == "met" else -0.5
-    off = -float(found.margin or 0.0)
+    condition = consistent(run)
+    margin = 0.5 if condition.status == "met" else -0.5
+    off = -float(condition.margin or 0.0)
     return finding(margin, f"mean dq_r/dt is p_r to {off:.2g}", computed=off, stated="dq_r/dt = p_r")
 
 
@@ -35,10 +35,10 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     predicted = place + speed * t
     if k > 0.0:  # critically damped, b² = 4k
         predicted = (place + (speed + 0.5 * b * place) * t) * np.exp(-0.5 * b * t)
-    found = copies.state(float(run.t[-1]))[0]
-    found = found - found.mean(axis=0)
-    off, size = float(np.abs(found - predicted).max()), run.scales.length
-    apart = float(np.linalg.norm(found, axis=1).max())
+    centre = copies.state(float(run.t[-1]))[0]
+    centre = centre - centre.mean(axis=0)
+    off, size = float(np.abs(centre - predicted).max()), run.scales.length
+    apart = float(np.linalg.norm(centre, axis=1).max())
     detail = f"copies end up to {apart:.3g} from their mean, as the linear theory says to {off:.1g}"
     return finding(1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d", error=ROUNDING)
 
@@ -51,10 +51,10 @@ def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     away, slip = run.q[0].mean(axis=0) - places, run.p[0].mean(axis=0) - speeds
     rate, t = 0.5 * float(law.gains.c2_gamma), float(run.t[-1] - run.t[0])
     predicted = (away + (slip + rate * away) * t) * np.exp(-rate * t)
-    found = run.q[-1].mean(axis=0) - law.copies.state(float(run.t[-1]))[0].mean(axis=0)
-    off = float(np.abs(found - predicted).max()) / run.scales.length
+    offset = run.q[-1].mean(axis=0) - law.copies.state(float(run.t[-1]))[0].mean(axis=0)
+    off = float(np.abs(offset - predicted).max()) / run.scales.length
     detail = (
-        f"the centre of mass ends {float(np.linalg.norm(found)):.2g} from the mean of the copies, as a critically "
+        f"the centre of mass ends {float(np.linalg.norm(offset)):.2g} from the mean of the copies, as a critically "
         f"damped follower does to {off:.1g} d"
     )
     return finding(

@@ -68,8 +68,8 @@ def _following() -> list[Claim]:
 def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     law, run = seen.law, seen.run
     energy = seen.series(lambda run: list(map(partial(law.law.energy, 0.0), run.q, run.p)), floor=seen.floors.work)
-    own, rise = seen.series(_own_energy, floor=seen.floors.work), energy[-1] - energy[0]
-    climbed, size = rises(own), float(own.mid[0])
+    own_energy, rise = seen.series(_own_energy, floor=seen.floors.work), energy[-1] - energy[0]
+    climbed, size = rises(own_energy), float(own_energy.mid[0])
     swerve = seen.series(lambda run: np.abs(run.p[:, 1, 0] - speed), floor=seen.floors.speed)
     slip = seen.series(lambda run: np.abs(run.p[:, 0, 0] - run.p[:, 1, 0]), floor=2.0 * seen.floors.speed)[-1]
     length = seen.distances([0], [1])[-1, 0] / law.alpha.d
@@ -85,9 +85,9 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
             computed=float(climbed.mid.max()),
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
-            witness={"from": size, "to": float(own.mid[-1])},
+            witness={"from": size, "to": float(own_energy.mid[-1])},
             detail=f"the energy of the follower, relative to its leader, goes from {size:.4g} to "
-            f"{float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way",
+            f"{float(own_energy.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way",
         ),
         judged(
             "leader",

@@ -45,18 +45,18 @@ class _Limit(NamedTuple):
 
 
 def _limit(law: Algorithm1, n: int, seed: int) -> _Limit:
-    found = gradient_flow(law, random_disc(n, seed, d=law.alpha.length))
-    labels = components(n, links(found.q, law.alpha.range))
-    groups = [np.ascontiguousarray(found.q[labels == label]) for label in range(labels.max() + 1)]
+    descent = gradient_flow(law, random_disc(n, seed, d=law.alpha.length))
+    labels = components(n, links(descent.q, law.alpha.range))
+    groups = [np.ascontiguousarray(descent.q[labels == label]) for label in range(labels.max() + 1)]
     parts = tuple((q, terminal_state(law, q, 0.0 * q)) for q in groups if len(q) > 1)
-    return _Limit(parts, found.converged)
+    return _Limit(parts, descent.converged)
 
 
 def _certain_strain(law: Algorithm1 | Algorithm2, q: FloatArray) -> Enclosure:
     """Largest |link − d|/d at the strict minimum beside a state; unbounded where none is certified."""
     basin, strain = attraction(law, q, 0.0 * q), terminal_state(law, q, 0.0 * q).strain
-    known = basin.certificate.certain
-    return Enclosure.around(strain, sqrt(2.0) * basin.distance / law.alpha.length if known else inf)
+    is_certain = basin.certificate.certain
+    return Enclosure.around(strain, sqrt(2.0) * basin.distance / law.alpha.length if is_certain else inf)
 
 
 def _is_lattice(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> bool | None:
@@ -114,16 +114,16 @@ def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
 
 def _smallest(tolerances: Tolerances) -> Claim:
     """The smallest known strained minimum of distinct agents, verified anew from its file."""
-    known = smallest_strained()
-    end = terminal_state(known.law, known.q, 0.0 * known.q)
-    margin = tolerances.lattice - _certain_strain(known.law, known.q)
+    strain = smallest_strained()
+    end = terminal_state(strain.law, strain.q, 0.0 * strain.q)
+    margin = tolerances.lattice - _certain_strain(strain.law, strain.q)
     return judged("smallest", margin, about="all", disproof="strained-thirteen").described(
-        computed={"strain": end.strain, "curvature": known.curvature, "agents": len(known.q)},
+        computed={"strain": end.strain, "curvature": strain.curvature, "agents": len(strain.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
-        witness=known.q,
-        detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
-        f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
-        f"agents at least {least_with_coincidence(known.law.alpha)} are needed",
+        witness=strain.q,
+        detail=f"{len(strain.q)} distinct agents in a connected strict minimum with {len(strain.links)} links, off d "
+        f"by up to {100.0 * end.strain:.2g} %; least curvature {strain.curvature:.3g} of the largest. With coincident "
+        f"agents at least {least_with_coincidence(strain.law.alpha)} are needed",
     )
 
 

@@ -49,12 +49,12 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
     off = (z - alpha.d_alpha) ** 2
     ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
-    least = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
-    return of_state("printed", least, error, about="all", proof="collisions").described(
-        computed=least,
+    slope = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
+    return of_state("printed", slope, error, about="all", proof="collisions").described(
+        computed=slope,
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
         witness="ψ_α/(z - d_α)² at 2001 lengths; the sign of ψ_α follows from that of φ_α",
-        detail=f"the implication holds: ψ_α is at least {least:.2g} (z - d_α)², and V does not rise",
+        detail=f"the implication holds: ψ_α is at least {slope:.2g} (z - d_α)², and V does not rise",
     )
 
 
@@ -77,8 +77,8 @@ def _none(alpha: AlphaInteraction) -> Claim:
     n = least_infeasible_size(alpha)
     shortest, longest = bound_range(alpha)
     table = {
-        name: {m: [lattice_reach(own, m), least_infeasible_size(own, m)] for m in (1, 2, 3)}
-        for name, own in _SETS.items()
+        name: {m: [lattice_reach(own_set, m), least_infeasible_size(own_set, m)] for m in (1, 2, 3)}
+        for name, own_set in _SETS.items()
     }
     return of_state(
         "vacuous",
@@ -120,9 +120,9 @@ def _together(alpha: AlphaInteraction) -> Claim:
 def _barrier(alpha: AlphaInteraction) -> Claim:
     """Return the claim that min{V : two agents coincide} is above c*, by a lower bound; a search shows by how much."""
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
-    least = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
+    room = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())
-    return of_state("barrier", least, _error(alpha, max(_SIZES))).described(
+    return of_state("barrier", room, _error(alpha, max(_SIZES))).described(
         computed={n: {"together": barrier.together, "ground": barrier.lowest} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         witness="minimised from many starts, an upper bound; the margin is that of a lower bound, which counts pairs",

@@ -59,16 +59,16 @@ def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
     """Return the number of fragments of a size, and of those that are not planar; exact, in whole numbers."""
-    known: dict[tuple[tuple[int, int], ...], bool] = {}
+    answers: dict[tuple[tuple[int, int], ...], bool] = {}
     total = bad = 0
     for sites in fragments(size):
         total += 1
         edges = site_links(sites)
         if len(edges) < 9:  # K3,3 has nine links, K5 ten
             continue
-        if edges not in known:
-            known[edges] = is_planar(size, edges)
-        bad += not known[edges]
+        if edges not in answers:
+            answers[edges] = is_planar(size, edges)
+        bad += not answers[edges]
     return total, bad
 
 

@@ -49,26 +49,26 @@ def _gains(run: Observed) -> Hypothesis:
     gains = run.law.gains
     if gains.per_agent:
         return Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
-    least = min(gains.c1_alpha, gains.c1_gamma)
-    return condition("c1α > 0 and c1γ > 0", least > 0.0, least)
+    gain = min(gains.c1_alpha, gains.c1_gamma)
+    return condition("c1α > 0 and c1γ > 0", gain > 0.0, gain)
 
 
 def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Return the claim as printed: decided by the strain of the strict minimum that the flock is certain to stay at."""
     caught = final_basin(seen)
-    room, known = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
+    room, is_certain = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
     ratio = seen.law.gains.c1_gamma / seen.law.gains.c1_alpha
     lengths = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
     return limit_claim(
         "printed",
         needs,
-        [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known else [],
-        escape=Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None,
+        [Certificate(float(room.lo), caught.certificate.text, 0.0)] if is_certain else [],
+        escape=Certificate(float(-room.hi), caught.certificate.text, 0.0) if is_certain else None,
         computed=end.strain,
         stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
         witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
         detail=f"with c1γ/c1α = {ratio:.3g} the last state has {'no links' if isnan(end.strain) else lengths}"
-        + ("" if known else f"; {caught.certificate.text}"),
+        + ("" if is_certain else f"; {caught.certificate.text}"),
     )
 
 

@@ -46,8 +46,8 @@ def _state() -> Claim:
     """The corrected form against the law itself on the same agents, here and moved."""
     alpha, q = _three()
     bound = 64.0 * EPS * (1.0 + _SHIFT) * alpha.strength * 2.0
-    moved = [q + w for w in (0.0, _SHIFT * alpha.d)]
-    worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in moved]))
+    states = [q + w for w in (0.0, _SHIFT * alpha.d)]
+    worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in states]))
     return of_state("state", bound - worst, 0.0).described(
         computed=worst,
         stated=f"the law's own force, to rounding ({bound:.2g})",

@@ -100,19 +100,21 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
         if printed
         else "as a continuous system, over the same 4.851 time units"
     )
-    own = (speed, away) == (1.0, 0.0)
-    changed = "" if own else f" Ours: the γ-agent at {speed:g} times its speed, the flock {away:g} radii to the right."
+    paper = (speed, away) == (1.0, 0.0)
+    changed = (
+        "" if paper else f" Ours: the γ-agent at {speed:g} times its speed, the flock {away:g} radii to the right."
+    )
     name = f"msn-case{case}{'-printed' if printed else ''}"
     title = f"MSN project, case {case}. {_TITLES[case]}{' (its own discretisation)' if printed else ''}"
     source = (
         f"MSN project, case {case}, {how}. n = 100 in an area of {side:g} by {side:g} at rest, d = 15, r = 18, "
         f"ε = 0.1, h = 0.1, a = b = 3. {_SOURCE[case]} The seed is ours.{changed}"
     )
-    expected = _expected(case, printed=printed) if own else verified("source:circle")
+    expected = _expected(case, printed=printed) if paper else verified("source:circle")
     reports = in_source_units(lambda: continuous.scales, REPORTS[case])
     more: dict[str, Any] = {
         "references": _REFERENCES,
-        "shipped": {} if not own or (printed and case >= 3) else _SHIPPED.get(case, {}),
+        "shipped": {} if not paper or (printed and case >= 3) else _SHIPPED.get(case, {}),
     }
     more["instants"] = tuple(i * DT for i in CAPTURES)
     return Scenario(name, title, source, law, q, np.zeros_like(q), (0.0, end), seed, expected, reports, **more)

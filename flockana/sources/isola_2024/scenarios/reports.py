@@ -128,9 +128,9 @@ def _smaller(name: str, text: str) -> Report:
 def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report outliers in speed after iteration 50, when the net has long been connected."""
     late = run.window(50 * DT, float(run.t[-1]))
-    own = lengths(late.p).max(axis=1)
+    norms = lengths(late.p).max(axis=1)
     flock = float(np.linalg.norm(late.p.mean(axis=1), axis=1).mean())
-    ratio, k = float(own.max()) / flock, int(np.argmax(own))
+    ratio, k = float(norms.max()) / flock, int(np.argmax(norms))
     apart = float((late.metric("connectivity") < 1.0).mean())
     text = (
         f"after iteration 50 the fastest agent reaches {ratio:.3g} times the flock's mean speed (t = {late.t[k]:.3g}); "

@@ -29,8 +29,8 @@ def _symbolic_excess(v: str) -> tuple[str, bool]:
 
     q, p, u, dt, s = sp.symbols("q p u dt s")
     exact = q + sp.integrate(p + u * s, (s, 0, dt))
-    used = {"start": p, "end": p + u * dt}[v]
-    excess = sp.expand(q + used * dt + u * dt**2 / 2 - exact)
+    velocity_used = {"start": p, "end": p + u * dt}[v]
+    excess = sp.expand(q + velocity_used * dt + u * dt**2 / 2 - exact)
     return str(excess), excess == 0
 
 

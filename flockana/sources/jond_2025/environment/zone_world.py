@@ -151,12 +151,12 @@ class ZoneWorld(ShortRepr):
         flat, start, end = (x.reshape(-1, q.shape[2]) for x in (q, q[taken], q[taken + 1]))
         at, on_way = np.full(q.shape[:2], np.inf), np.full((len(taken), q.shape[1]), np.inf)
         for o in self.obstacles:
-            found = o.clearance(flat).reshape(at.shape)
+            rows = o.clearance(flat).reshape(at.shape)
             if isinstance(o, Sphere):
                 bound = ball_clearance_along(o, start, end)
             else:
-                bound = o.clearance_along(start, end, (found[taken].ravel(), found[taken + 1].ravel()))
-            at, on_way = np.minimum(at, found), np.minimum(on_way, bound.reshape(on_way.shape))
+                bound = o.clearance_along(start, end, (rows[taken].ravel(), rows[taken + 1].ravel()))
+            at, on_way = np.minimum(at, rows), np.minimum(on_way, bound.reshape(on_way.shape))
         return at, on_way
 
     def check_start(self, q: FloatArray) -> None:

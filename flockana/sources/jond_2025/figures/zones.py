@@ -55,8 +55,8 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
     """Return the curves of greatest, median and least distance of two agents."""
-    least, _, median, _, greatest = pair_distance_profile(run.q).T
-    return Curve(greatest, "greatest"), Curve(median, "median"), Curve(least, "least")
+    smallest, _, median, _, greatest = pair_distance_profile(run.q).T
+    return Curve(greatest, "greatest"), Curve(median, "median"), Curve(smallest, "least")
 
 
 def _middle(run: Trajectory) -> int:

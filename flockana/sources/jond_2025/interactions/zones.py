@@ -74,8 +74,8 @@ class ZoneRadii(ShortRepr):
         bad = ~((r <= c) & (c < a) & ((a < s) | (not watched)))
         if bad.any():
             i = int(np.argmax(bad))
-            found = f"r = {r[i]:g}, c = {c[i]:g}, a = {a[i]:g}" + (f", s = {s[i]:g}" if watched else "")
-            raise ArgumentError(f"{found}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
+            text = f"r = {r[i]:g}, c = {c[i]:g}, a = {a[i]:g}" + (f", s = {s[i]:g}" if watched else "")
+            raise ArgumentError(f"{text}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return (r, c, a, s) of n agents, each of shape (n,)."""

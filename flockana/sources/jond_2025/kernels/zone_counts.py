@@ -20,19 +20,19 @@ def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> F
     counts = np.zeros((len(q), 3))
     for at, count in zip(q, counts, strict=True):
         i, j, d = _pairs(at, float(a.max()))
-        for own in (i, j):
-            zone = np.add(d > r[own], d > c[own], dtype=np.int64)
-            count += np.bincount(zone[d <= a[own]], minlength=3)
+        for agent in (i, j):
+            zone = np.add(d > r[agent], d > c[agent], dtype=np.int64)
+            count += np.bincount(zone[d <= a[agent]], minlength=3)
     return counts / q.shape[1]
 
 
 def fragments(q: FloatArray, a: FloatArray) -> npt.NDArray[np.int64]:
     """(components, agents in the largest) over time, (T, 2); two agents are linked if one attracts the other."""
-    found = np.zeros((len(q), 2), np.int64)
-    for at, count in zip(q, found, strict=True):
+    counts = np.zeros((len(q), 2), np.int64)
+    for at, count in zip(q, counts, strict=True):
         (i, j, d), parent = _pairs(at, float(a.max())), np.arange(q.shape[1], dtype=np.int32)
         linked = d <= np.maximum(a[i], a[j])
         unite(parent, i[linked], j[linked])
         sizes = np.bincount(labelled(parent))
         count[:] = sizes.size, sizes.max()
-    return found
+    return counts

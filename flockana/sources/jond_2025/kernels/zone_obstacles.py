@@ -176,8 +176,8 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         inside = apart < radius
         if apart == 0.0 or apart == radius:
             continue
-        met = moving and zone_meets_ball(along, across, depth, half, radius, literal)
-        if inside or (apart - radius <= c if buffer else met):
+        is_met = moving and zone_meets_ball(along, across, depth, half, radius, literal)
+        if inside or (apart - radius <= c if buffer else is_met):
             # b points away from the centre where the agent is inside
             sign = -1.0 if inside else 1.0
             factor = sign * push(abs(apart - radius), c, inside, choices) / apart
@@ -189,7 +189,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
 @kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one term for each wall that the zone reaches, or for the nearest of them."""
-    buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf
+    buffer, nearest, close = choices.obstacle_zone == 1, choices.walls == 1, inf
     axis, force = -1, 0.0
     for k in range(x.size):
         for side in range(2):
@@ -205,7 +205,7 @@ def _walls(x, h, moving, depth, half, c, box, choices, out):
             term = push(abs(distance), c, beyond, choices) * toward
             if not nearest:
                 out[k] += term
-            elif distance < least:
-                least, axis, force = distance, k, term
+            elif distance < close:
+                close, axis, force = distance, k, term
     if axis >= 0:
         out[axis] += force

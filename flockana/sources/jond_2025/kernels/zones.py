@@ -256,8 +256,8 @@ def behave(i, near, flock, step, rules, out):
         own2 += estimate[i, k] ** 2
     if own2 > 0.0:
         for k in range(m):
-            wanted = settings.desired_speed * estimate[i, k] / sqrt(own2)
-            out[SPEED, k] = w_s * (wanted - estimate[i, k])
+            wanted_velocity = settings.desired_speed * estimate[i, k] / sqrt(own2)
+            out[SPEED, k] = w_s * (wanted_velocity - estimate[i, k])
     return nearest
 
 
@@ -354,10 +354,10 @@ def run(flock, first, rules, steps):
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     near = np.empty(n, np.int64)
     further = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
-    for taken in range(steps):
-        step, cells = first + taken, sort_into_cells(q, reach.max() + further)
+    for count in range(steps):
+        step, cells = first + count, sort_into_cells(q, reach.max() + further)
         _take_step(flock, u, step, cells, near, rules, out, total)
-        for k, own in enumerate((q, p, u, heading, estimate)):
-            states[k, taken] = own
-        reaches[taken], aliens[taken] = reach, alien
+        for k, row in enumerate((q, p, u, heading, estimate)):
+            states[k, count] = row
+        reaches[count], aliens[count] = reach, alien
     return states[0], states[1], states[2], states[3], states[4], reaches, aliens

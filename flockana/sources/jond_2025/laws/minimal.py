@@ -156,8 +156,8 @@ class MinimalFlocking(Law):
         sizes = self._sizes
         if len(set(sizes.values())) > 1:
             raise ArgumentError(f"{sizes}: expected tables of equal length, one entry for each agent")
-        if sizes and self._named > (least := min(sizes.values())):
-            raise ArgumentError(f"edges name agent {self._named - 1}: expected agents below {least}, as in {sizes}")
+        if sizes and self._named > (smallest := min(sizes.values())):
+            raise ArgumentError(f"edges name agent {self._named - 1}: expected agents below {smallest}, as in {sizes}")
 
     def _check_means(self) -> None:
         """Raise where the weights of a mean over agents are all zero."""
@@ -333,12 +333,12 @@ class MinimalFlocking(Law):
         ratio, identity = rho[:, None, None] / length, np.eye(m)
         stiffness = mu[:, None, None] * ((1.0 - ratio) * identity + ratio * bearing * bearing.transpose(0, 2, 1))
         rows, columns = (m * head[:, None] + np.arange(m))[:, :, None], (m * tail[:, None] + np.arange(m))[:, None, :]
-        own = (m * head[:, None] + np.arange(m))[:, None, :]
+        place = (m * head[:, None] + np.arange(m))[:, None, :]
 
         def summed(blocks: FloatArray) -> Any:
             """Return Σ over edges of a block at (i, j) and its negative at (i, i)."""
             entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
-            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, own)]
+            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, place)]
             indices = np.concatenate(at[:2]), np.concatenate(at[2:])
             return coo_array((entries, indices), shape=(n * m, n * m)).tocsr()
 

@@ -227,8 +227,8 @@ class ZoneFlocking(DiscreteLaw):
 
     def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
         """Return the memory without parts that are not needed."""
-        needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
-        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
+        needs = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
+        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needs[name]}
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one step (Algorithm 1 of the paper), unchecked.
@@ -243,8 +243,8 @@ class ZoneFlocking(DiscreteLaw):
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         flock, first = self._state(q, p, memory)
-        qs, ps, us, *own = compiled.run(flock, first, self._rules(*q.shape), steps)
-        headings, estimates, reach, aliens = own
+        qs, ps, us, *rest = compiled.run(flock, first, self._rules(*q.shape), steps)
+        headings, estimates, reach, aliens = rest
         numbers = np.arange(first + 1.0, first + steps + 0.5)
         return qs, ps, us, {"heading": headings, "estimate": estimates} | self._needed_memory(reach, numbers, aliens)
 
@@ -263,8 +263,8 @@ class ZoneFlocking(DiscreteLaw):
         """
         q, p = checks.ensure_state(q, p)
         self.check_dimension(q.shape[1])
-        known = self.start(q, p) if memory is None else memory
-        components = compiled.behaviours(*self._state(q, p, known), self._rules(*q.shape))
+        state = self.start(q, p) if memory is None else memory
+        components = compiled.behaviours(*self._state(q, p, state), self._rules(*q.shape))
         return dict(zip(BEHAVIOURS, components, strict=True))
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
@@ -293,11 +293,11 @@ class ZoneFlocking(DiscreteLaw):
 
         @cache
         def measured() -> tuple[FloatArray, FloatArray]:
-            taken = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
-            every, ways = self.world.clearances(q, taken)
+            short = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
+            every, ways = self.world.clearances(q, short)
             at = every.min(axis=1)
             on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
-            on_way[taken + 1] = ways.min(axis=1)
+            on_way[short + 1] = ways.min(axis=1)
             return at, on_way
 
         return {
@@ -324,8 +324,8 @@ class ZoneFlocking(DiscreteLaw):
         unknown = {"reach": self.radii.arrays(len(q))[2], "alien": np.empty((0, q.shape[1])), "step": 0}
         whole: dict[str, Any] = unknown | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
-        own = (np.array(whole[name], float) for name in names)
-        return compiled.Flock(np.array(q), np.array(p), *own), int(whole["step"])
+        arrays = (np.array(whole[name], float) for name in names)
+        return compiled.Flock(np.array(q), np.array(p), *arrays), int(whole["step"])
 
     def _zones(self, n: int) -> compiled.Zones:
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
@@ -334,8 +334,8 @@ class ZoneFlocking(DiscreteLaw):
         """Return the numbers of the compiled step."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
         chance = self.noise.weights, self.noise.velocities
-        own = self.dt, self.desired_speed, self.u_max, self.v_max
-        settings = compiled.Settings(*own, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
+        numbers = self.dt, self.desired_speed, self.u_max, self.v_max
+        settings = compiled.Settings(*numbers, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
         choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
         world = self.world.arrays(m, buffer=self.obstacle_zone == "buffer")
         return compiled.Rules(self._zones(n), settings, choices, world)

@@ -54,7 +54,7 @@ def zones(
     k = nearest_sample(trajectory.t, time)
     q, heading = trajectory.q[k], trajectory.extra["heading"][k]
     axes = ensure_axes(ax, m=m)
-    seen = [q, _corners(law.world, m)]
+    corners = [q, _corners(law.world, m)]
     if m == 2:
         _world(axes, law.world, buffer=law.obstacle_zone == "buffer")
         if law.obstacle_zone == "triangle":
@@ -68,11 +68,11 @@ def zones(
         axes.quiver(*q.T, *heading.T, length=law.radii.reach[1], color=BLUE, linewidth=0.8)
     if "alien" in trajectory.extra:
         aliens = trajectory.extra["alien"][k]
-        seen.append(aliens)
+        corners.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
     write_title(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
-    return frame_space(axes, np.vstack(seen), m)
+    return frame_space(axes, np.vstack(corners), m)
 
 
 @draw_sample.register(ZoneFlocking)
@@ -92,12 +92,12 @@ def _(law: Any, trajectory: Trajectory) -> FloatArray:
 
 def _corners(world: ZoneWorld, m: int) -> FloatArray:
     """Return points that must be in view: obstacles and box."""
-    seen = [np.empty((0, m))]
+    corners = [np.empty((0, m))]
     for solid in world.obstacles:
-        seen.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
+        corners.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
     if world.box is not None:
-        seen += [np.array([world.box.low]), np.array([world.box.high])]
-    return np.vstack(seen)
+        corners += [np.array([world.box.low]), np.array([world.box.high])]
+    return np.vstack(corners)
 
 
 def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
@@ -171,9 +171,9 @@ def zone_controls(trajectory: Trajectory, ax: Any) -> None:
 @over_time("least distance (length)")
 def zone_safety(trajectory: Trajectory, ax: Any) -> str | None:
     """Draw the distance of the flock from obstacles (bounded between the steps too), walls and aliens."""
-    shown = [("obstacle_clearance_bound", "obstacle", BLUE, "-"), ("wall_distance", "wall", GREEN, "-.")]
-    shown.append(("alien_distance", "alien", VERMILLION, "--"))
-    if not _measured(ax, trajectory, shown):
+    curves = [("obstacle_clearance_bound", "obstacle", BLUE, "-"), ("wall_distance", "wall", GREEN, "-.")]
+    curves.append(("alien_distance", "alien", VERMILLION, "--"))
+    if not _measured(ax, trajectory, curves):
         return "nothing to keep clear of"
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
     return None
@@ -191,9 +191,9 @@ def _measured(ax: Any, trajectory: Trajectory, styles: Iterable[tuple[str, str, 
     """Draw the run's measures among (name, label, colour, dash); return whether there is one."""
     _law(trajectory)
     metrics = trajectory.metrics()
-    found = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in styles if name in metrics]
-    curves(ax, trajectory.t, found, width=1.1)
-    return bool(found)
+    lines = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in styles if name in metrics]
+    curves(ax, trajectory.t, lines, width=1.1)
+    return bool(lines)
 
 
 def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, others: Any = ()) -> None:

@@ -100,9 +100,9 @@ def _repeats(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _unpredictable(run: Trajectory, tolerances: Tolerances) -> Claim:
     other = replace(run.law, noise=replace(run.law.noise, seed=run.law.noise.seed + 1))
     end = rerun(run, other).q[-1]
-    moved = float(np.linalg.norm(end - run.q[-1], axis=1).max()) / float(np.max(run.law.radii.a))
-    text = f"with another seed of the noise an agent ends {moved:.3g} a from where it ends here"
-    return finding(moved - _MOVED, text, computed=moved, stated="less predictable motions")
+    distance = float(np.linalg.norm(end - run.q[-1], axis=1).max()) / float(np.max(run.law.radii.a))
+    text = f"with another seed of the noise an agent ends {distance:.3g} a from where it ends here"
+    return finding(distance - _MOVED, text, computed=distance, stated="less predictable motions")
 
 
 def _two_fragments(seed: int) -> Start:

@@ -45,17 +45,17 @@ GAP = ZoneWorld((_SLAB,), BOX)
 
 def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
     """Return the values of a series after a time; NaN for a run that ended before."""
-    kept = values[run.t > since - 0.5 * run.law.dt]
-    return kept if kept.size else np.array([np.nan])
+    is_late = values[run.t > since - 0.5 * run.law.dt]
+    return is_late if is_late.size else np.array([np.nan])
 
 
 @report("distances", "the agents stay more than 1.5 m apart throughout")
 def distances(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that no two agents come nearer than 1.5 m."""
-    least = run.metric("min_distance")
-    k = int(np.argmin(least))
-    text = f"the least distance is {least[0]:.3g} at the start and {least[k]:.3g} at worst, at t = {run.t[k]:.3g}"
-    return finding(least[k] - SAFE, text, computed=float(least[k]), stated="> 1.5", witness=float(run.t[k]))
+    near = run.metric("min_distance")
+    k = int(np.argmin(near))
+    text = f"the least distance is {near[0]:.3g} at the start and {near[k]:.3g} at worst, at t = {run.t[k]:.3g}"
+    return finding(near[k] - SAFE, text, computed=float(near[k]), stated="> 1.5", witness=float(run.t[k]))
 
 
 @report("coordination", "perfect order of the directions within 2 s, and kept")

@@ -74,11 +74,11 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
         "identity-corrected": (D_in * q, -D_in * factors * D.T * p),
         "34": (separation, -D_in * (sp.eye(len(edges)) - factors) * D.T * p),
     }
-    found = {}
+    table = {}
     for name, (left, right) in forms.items():
         steps = (Step("By its sums:", left), Step("As a product of matrices:", right))
-        found[name] = Derivation(f"Separation, {name}", steps, right, tuple(sp.expand(left - right)))
-    return found
+        table[name] = Derivation(f"Separation, {name}", steps, right, tuple(sp.expand(left - right)))
+    return table
 
 
 def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
@@ -117,15 +117,15 @@ def symmetric_part(children: int) -> Derivation:
     edges = [(0, 1), *((1, 2 + k) for k in range(children))]
     edge_laplacian = incidence_matrix(edges).T * receiver_matrix(edges)
     symmetric = (edge_laplacian + edge_laplacian.T) / 2
-    least = 1 - sp.sqrt(children) / 2
+    eigenvalue = 1 - sp.sqrt(children) / 2
     expected = (LAMBDA - 1) ** (children - 1) * ((LAMBDA - 1) ** 2 - sp.Rational(children, 4))
     left = sp.expand(symmetric.charpoly(LAMBDA).as_expr() - expected)
     steps = (
         Step(r"The symmetric part of $D^T D_{in}$:", symmetric),
         Step("Its characteristic polynomial:", expected),
-        Step("Its least eigenvalue, negative from five children on:", least),
+        Step("Its least eigenvalue, negative from five children on:", eigenvalue),
     )
-    return Derivation("The edge Laplacian of a tree is not positive definite", steps, least, (left,))
+    return Derivation("The edge Laplacian of a tree is not positive definite", steps, eigenvalue, (left,))
 
 
 def spacing_spectrum(m: int) -> Derivation:

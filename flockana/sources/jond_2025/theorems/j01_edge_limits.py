@@ -34,8 +34,10 @@ def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
     trees = []
     for k in range(int(label.max()) + 1):
         agents = np.flatnonzero(label == k)
-        own = {int(agent): number for number, agent in enumerate(agents)}
-        law = MinimalFlocking(edges=tuple((own[j], own[i]) for j, i in edges if j in own), spacing=seen.law.spacing)
+        place = {int(agent): number for number, agent in enumerate(agents)}
+        law = MinimalFlocking(
+            edges=tuple((place[j], place[i]) for j, i in edges if j in place), spacing=seen.law.spacing
+        )
         case = tree_case(law, len(agents))
         assert case is not None
         trees.append((case, End(*(part[agents] for part in seen.end))))
@@ -52,7 +54,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     lengths, trees = np.linalg.norm(edge_vectors(seen.end.q, law.edges or ()), axis=1), _trees(seen)
     certificates = [settles(*tree) for tree in trees]
     settled, keeping = sum(each.certain for each in certificates), [kept(*tree) for tree in trees]
-    vanished, (least, most) = sum(not keeps > 0.0 for keeps in keeping), interval(settled, _TREES)
+    vanished, (fewest, most) = sum(not keeps > 0.0 for keeps in keeping), interval(settled, _TREES)
     case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
     return [
         judged("printed", Enclosure.of(-max(keeping)), about="all", disproof="bearing-distance-printed").described(
@@ -63,10 +65,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
         limit_claim("corrected", [], [min(certificates, key=lambda certificate: certificate.margin)]).described(
-            computed={"trees": settled, "interval": [least, most]},
+            computed={"trees": settled, "interval": [fewest, most]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
             detail=f"{settled} of {_TREES} random trees tend to edges of length αr and equal velocities; share "
-            f"at least {least:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
+            f"at least {fewest:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]

@@ -45,20 +45,20 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # The ends of an undirected path of three want their edges at length 1, the middle at 2: both become 5/3.
     law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))
-    wanted, off = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
+    lengths_wanted, off = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
     worst, rate = float(off.mid.max()), _rate(law)
     return [
         judged(
             "printed",
-            -0.5 * abs(Enclosure.of(wanted[1]) - wanted[0]),  # no edge is nearer to both
+            -0.5 * abs(Enclosure.of(lengths_wanted[1]) - lengths_wanted[0]),  # no edge is nearer to both
             about="all",
-            computed={"wanted by the ends": wanted[0], "wanted by the middle": wanted[1]},
+            computed={"wanted by the ends": lengths_wanted[0], "wanted by the middle": lengths_wanted[1]},
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",
             witness={"graph": "frozen undirected path of three"},
             disproof=_PROOF,
             detail=(
                 "the two agents of an edge desire different lengths if their degrees differ: whatever its length, it "
-                f"differs from one of the two by {0.5 * abs(wanted[1] - wanted[0]):g} or more"
+                f"differs from one of the two by {0.5 * abs(lengths_wanted[1] - lengths_wanted[0]):g} or more"
             ),
         ),
         judged("runaway", tolerances.lattice - off).described(

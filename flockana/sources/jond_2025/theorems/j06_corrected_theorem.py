@@ -18,9 +18,9 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
     q, p = rng.uniform(-2.0, 2.0, (5, m)), rng.uniform(-0.5, 0.5, (5, m))
     seen = observed(law, q, p, (0.0, 80.0))
     verdict = Verdict(corrected.id, *with_resolution(*corrected.examine(seen, tolerances), seen))
-    said = [claim.status for claim in verdict.claims]
-    wrong, zeros = said.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
-    return counted(f"{name}-{m}", 0, wrong, wrong + said.count("inconclusive")).described(
+    statuses = [claim.status for claim in verdict.claims]
+    wrong, zeros = statuses.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
+    return counted(f"{name}-{m}", 0, wrong, wrong + statuses.count("inconclusive")).described(
         computed={claim.name: claim.status for claim in verdict.claims},
         stated=f"every claim of zone-1-corrected, with {4 * (m - 1)} zero modes",
         witness={"edges": _TREE, "q(0)": q.tolist(), "p(0)": p.tolist()},

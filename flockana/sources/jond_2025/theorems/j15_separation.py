@@ -46,7 +46,7 @@ def _sliding() -> Claim:
 
 def _pair() -> list[Claim]:
     rows = {f"w^ls = {w:g}, g_c = {g:g}": [_C * w / (w + g), _rest(w, g)] for w, g in _CASES}
-    error = float(np.max([abs(stated - found) for stated, found in rows.values()]))
+    error = float(np.max([abs(stated - value) for stated, value in rows.values()]))
     printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
         of_map("printed", printed / _C - 1.0, _ROUNDING).described(
@@ -85,13 +85,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     it is r or more, g_c <= w^ls (c/r - 1). A stronger cohesion, which is off at distances up to r, makes the pair slide
     at r. (Before that agents come closer still: J12.)
     """
-    least = [min_distance(run.q[-1]) for run in runs_from_random_starts(ZoneFlocking(_RADII), separated_start)]
+    distances = [min_distance(run.q[-1]) for run in runs_from_random_starts(ZoneFlocking(_RADII), separated_start)]
     return [
         *_pair(),
         always(
             "flock",
-            [distance >= _C for distance in least],
-            f"after 20 s ten agents are c apart ({np.median(least):.3g} m in the median)",
+            [distance >= _C for distance in distances],
+            f"after 20 s ten agents are c apart ({np.median(distances):.3g} m in the median)",
             f"a settled flock keeps its agents c = {_C:g} m apart",
-        ).described(witness={"least distance by seed": least}),
+        ).described(witness={"least distance by seed": distances}),
     ]

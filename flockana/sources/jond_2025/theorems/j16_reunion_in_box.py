@@ -35,8 +35,8 @@ def _at_walls() -> Claim:
     e = _SPEED * g / w  # d - d* at d = c
     states = np.array([np.linalg.matrix_power(step, k) @ (_SPEED, e) for k in range(1, _STEPS_AT_WALLS + 1)])
     path = _positions(law, q, p, _STEPS_AT_WALLS)[:, :, 0]
-    gone = np.stack([_C - path[:, 0], path[:, 1] - (_SIDE - _C)])
-    off = float(np.abs(gone - (e - states[:, 1])).max())
+    depths = np.stack([_C - path[:, 0], path[:, 1] - (_SIDE - _C)])
+    off = float(np.abs(depths - (e - states[:, 1])).max())
     real = bool(np.isrealobj(fast) and 0.0 < fast < slow < 1.0)
     margin = min(e / _SPEED - (fast - step[0, 0]) / step[0, 1], 1.0 - off / _LINEAR) if real else -1.0
     return limit_claim(
@@ -60,12 +60,12 @@ def _circling() -> Claim:
         q, angle = rng.uniform(_CLEAR, _SIDE - _CLEAR, (2, 2)), rng.uniform(0.0, 2.0 * np.pi, 2)
         path = _positions(law, q, _SPEED * np.column_stack([np.cos(angle), np.sin(angle)]), _STEPS)
         nearest.append(float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min()))
-    met = sum(distance <= _A for distance in nearest)
+    meetings = sum(distance <= _A for distance in nearest)
     return limit_claim("circling", []).described(
-        computed={"meet": met, "of": _SEEDS},
+        computed={"meet": meetings, "of": _SEEDS},
         stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
-        detail=f"from {met} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
+        detail=f"from {meetings} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
         f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which leaves later times open",
     )
 

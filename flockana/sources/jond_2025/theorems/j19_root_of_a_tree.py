@@ -30,8 +30,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from its root the root is reached from nowhere. Right is that edges lead from the root to all others.
     """
     trees = out_trees(_NODES)
-    reached = [globally_reachable(tree) for tree in trees]
-    roots, connected = sum(0 in nodes for nodes in reached), sum(map(bool, reached))
+    is_root = [globally_reachable(tree) for tree in trees]
+    roots, connected = sum(0 in nodes for nodes in is_root), sum(map(bool, is_root))
     star = next(tree for tree in trees if tree.out_degree(0) == _NODES - 1)
     from_root = sum(globally_reachable(tree.reverse()) == {0} for tree in trees)
     return [

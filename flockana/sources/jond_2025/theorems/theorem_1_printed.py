@@ -14,10 +14,10 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """Return the counterexample at rest with every edge at its desired length, where x does not tend to 0."""
     q = case.on_manifold(seen.run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
-    least = kept(case, state(q, 0.0 * q))
-    margin = Enclosure.of(-least)
+    energy = kept(case, state(q, 0.0 * q))
+    margin = Enclosure.of(-energy)
     return judged("equilibrium", margin, needs, about="all", disproof="bearing-distance-printed").described(
-        computed=least * float(case.rho.min()),
+        computed=energy * float(case.rho.min()),
         stated="x -> 0 from any initial condition",
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},
         detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): every |x_e| "
@@ -27,9 +27,9 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
-    length, least = case.lengths(seen.run.q[-1]), kept(case, seen.end)
-    text = f"one edge never falls below {least:.4g} of its desired length"
-    return limit_claim("edges", needs, escape=Certificate(least, text, 0.0)).described(
+    length, energy = case.lengths(seen.run.q[-1]), kept(case, seen.end)
+    text = f"one edge never falls below {energy:.4g} of its desired length"
+    return limit_claim("edges", needs, escape=Certificate(energy, text, 0.0)).described(
         computed=[float(length.min()), float(length.max())],
         stated="|x_e| -> 0 on every edge",
         witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[-1])},

@@ -34,13 +34,13 @@ class TreeCase:
     @cached_property
     def walk(self) -> tuple[tuple[int, int, int], ...]:
         """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
-        reached, outwards = {self.links[0][0] if self.root is None else self.root}, []
+        visited, outwards = {self.links[0][0] if self.root is None else self.root}, []
         left = dict(enumerate(self.links))
         while left:
             for e, (j, i) in list(left.items()):
-                if j in reached or i in reached:
-                    outwards.append((e, j, i) if j in reached else (e, i, j))
-                    reached |= {j, i}
+                if j in visited or i in visited:
+                    outwards.append((e, j, i) if j in visited else (e, i, j))
+                    visited |= {j, i}
                     del left[e]
         return tuple(outwards)
 
@@ -120,6 +120,6 @@ def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
     ]
     if case is not None:
         for name, weights in (("μ > 0", case.mu), ("alignment weights are positive", case.align)):
-            least = float(weights.min())
-            needs.append(condition(name, least > 0.0, least))
+            smallest = float(weights.min())
+            needs.append(condition(name, smallest > 0.0, smallest))
     return needs, case

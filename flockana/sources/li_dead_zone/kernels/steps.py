@@ -30,29 +30,29 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
     for c in range(m):
         x[c], v[c] = q[:, c], p[:, c]
     near, degree = np.zeros((4 * ((n + 3) // 4), wide), np.bool_), np.empty(n)
-    then, skin, kept = np.full((rows, n), inf), 0.0, 0
+    then, skin, listed = np.full((rows, n), inf), 0.0, 0
     drift, squares, since, row = np.zeros(rows), np.empty(n), 0, 0
     most = n * (n - 1) // 2
     first, second, inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
     ends = np.empty(n, np.uint32)  # of each agent's pairs with later ones in the list
     s2, w, d, both = np.empty(most), np.empty(most), np.empty((rows // 2, most, 2)), np.empty((n, 2))
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
-    held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
+    constants = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(1, wanted[-1] + 1 if wanted.size else 1):
         if _moved_beyond(x, then, drift, (step - since) * dt, 0.25 * skin * skin, squares):
             skin = 1e-3 * r + _AHEAD * dt * _spread(v, drift)
-            kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
+            listed = _listed(x, par, skin, near, degree, first, second, inside, ends)
             put(x, then)
             since = step
-        s2[:kept] = 0.0
+        s2[:listed] = 0.0
         for c in range(0, rows, 2):
-            _part(x[c], x[c + 1], first, second, kept, d[c // 2], s2)
+            _part(x[c], x[c + 1], first, second, listed, d[c // 2], s2)
         changed = 0
-        for k in range(kept):
-            w[k] = pair_dead_zone(s2[k], held)[0] if s2[k] < square else 0.0
+        for k in range(listed):
+            w[k] = pair_dead_zone(s2[k], constants)[0] if s2[k] < square else 0.0
             changed += (s2[k] < square) != (inside[k] == 1)
         if changed:
-            _crossed(s2, square, kept, near, degree, first, second, inside)
+            _crossed(s2, square, listed, near, degree, first, second, inside)
         for c in range(rows):
             for i in range(n):
                 z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
@@ -105,14 +105,14 @@ def _scatter(w, d, second, ends, u, v, both):
         both[i, 0], both[i, 1] = u[i], v[i]
     begin = 0
     for i in range(len(ends)):
-        own, other = both[i, 0], both[i, 1]  # in registers, not stored and loaded again from pair to pair
+        own_entry, other = both[i, 0], both[i, 1]  # in registers, not stored and loaded again from pair to pair
         for k in range(begin, ends[i]):
             j, f, g = second[k], w[k] * d[k, 0], w[k] * d[k, 1]
-            own += f
+            own_entry += f
             other += g
             both[j, 0] -= f
             both[j, 1] -= g
-        both[i, 0], both[i, 1], begin = own, other, ends[i]
+        both[i, 0], both[i, 1], begin = own_entry, other, ends[i]
     for i in range(len(ends)):
         u[i], v[i] = both[i, 0], both[i, 1]
 
@@ -148,9 +148,9 @@ def _moved_beyond(x, then, drift, passed, square, squares):
     """
     squares[:] = 0.0
     for c in range(len(x)):
-        x_c, then_c, gone = x[c], then[c], passed * drift[c]
+        x_c, then_c, drift_passed = x[c], then[c], passed * drift[c]
         for i in range(len(squares)):
-            squares[i] += (x_c[i] - then_c[i] - gone) ** 2
+            squares[i] += (x_c[i] - then_c[i] - drift_passed) ** 2
     far = 0 if square < inf else 1
     for i in range(len(squares)):
         far += not squares[i] <= square
@@ -179,7 +179,7 @@ def _listed(x, par, skin, near, degree, first, second, inside, ends):
     """
     m, n = x.shape
     low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
-    kept = 0
+    listed = 0
     degree[:] = 0.0
     for i in range(n):
         for j in range(i + 1, n):
@@ -191,7 +191,7 @@ def _listed(x, par, skin, near, degree, first, second, inside, ends):
             degree[i] += near[i, j]
             degree[j] += near[i, j]
             if not low <= s <= high and not s >= r + skin:
-                first[kept], second[kept], inside[kept] = i, j, s < r
-                kept += 1
-        ends[i] = kept
-    return kept
+                first[listed], second[listed], inside[listed] = i, j, s < r
+                listed += 1
+        ends[i] = listed
+    return listed

@@ -102,8 +102,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         wanted : ndarray of int, shape (S,), optional
             The steps to keep, numbered from 1, rising; by default all of them.
         """
-        kept = np.arange(1, steps + 1) if wanted is None else wanted
-        return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, kept)
+        rows = np.arange(1, steps + 1) if wanted is None else wanted
+        return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, rows)
 
     def block(self, solver: Any) -> Block | None:
         """Return the loop of `semi_implicit` for semi-implicit Euler steps of this law itself, not of a subclass.
@@ -113,8 +113,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         solver : FixedStep
             Method and step.
         """
-        known = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
-        if not known or solver.position_factor != 1.0:
+        is_plain = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
+        if not is_plain or solver.position_factor != 1.0:
             return None
         return lambda times, q, p, wanted: self.semi_implicit(q, p, solver.dt, len(times), wanted)
 

@@ -96,10 +96,10 @@ class LedDeadZoneFlocking(SumOfTerms):
         self._freeze_numbers("pinned", len(self.group), "an agent")
 
     def _freeze_numbers(self, name: str, count: int, what: str) -> None:
-        given = getattr(self, name)
-        if isinstance(given, str | bytes) or not isinstance(given, Iterable):
-            raise ArgumentError(f"{name} = {given!r}: expected a sequence of whole numbers, such as (0, 1)")
-        object.__setattr__(self, name, tuple(ensure_index(f"{name} has", one, count, what) for one in given))
+        value = getattr(self, name)
+        if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+            raise ArgumentError(f"{name} = {value!r}: expected a sequence of whole numbers, such as (0, 1)")
+        object.__setattr__(self, name, tuple(ensure_index(f"{name} has", one, count, what) for one in value))
 
     @property
     def scales(self) -> Scales:
@@ -109,8 +109,8 @@ class LedDeadZoneFlocking(SumOfTerms):
     @cached_property
     def ties(self) -> Leaders:
         """Term that couples agents to their leaders."""
-        own = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
-        return Leaders(self.interaction, self.k2, *own)
+        numbers = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
+        return Leaders(self.interaction, self.k2, *numbers)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -129,7 +129,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         led = [self.ties.led(float(time)) for time in t]
         off, slip = (
-            np.array([np.linalg.norm(own - each[k], axis=1).max() for own, each in zip(state, led, strict=True)])
+            np.array([np.linalg.norm(own_p - each[k], axis=1).max() for own_p, each in zip(state, led, strict=True)])
             for k, state in enumerate((q, p))
         )
         return {

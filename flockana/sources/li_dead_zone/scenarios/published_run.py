@@ -73,8 +73,8 @@ def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that distances stay above half of the distance below which agents repel."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
     ever = at if run.law.is_map else run.closest_approach().lower
-    seen = ever > 0.5 * d1 and not thinned(run)
-    margin = ever / d1 - 0.5 if seen else at / d1 - 0.5 if at < 0.5 * d1 else float("nan")
+    is_seen = ever > 0.5 * d1 and not thinned(run)
+    margin = ever / d1 - 0.5 if is_seen else at / d1 - 0.5 if at < 0.5 * d1 else float("nan")
     detail = f"agents come as near as {ever:.3g}, where repulsion begins at d1 = {d1:g}"
     stated = "safe distances all the time (over d1/2)"
     return finding(margin, detail, computed=ever, stated=stated, error=_rounding(run, d1))

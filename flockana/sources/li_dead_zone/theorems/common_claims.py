@@ -33,8 +33,8 @@ def applied(seen: Observed) -> Hypothesis:
 
 def hypotheses(seen: Observed) -> list[Hypothesis]:
     """Return the hypothesis of distinct positions at the start."""
-    least = min_distance(seen.run.q[0])
-    return [condition("agents start at distinct places", least > 0.0, least)]
+    distance = min_distance(seen.run.q[0])
+    return [condition("agents start at distinct places", distance > 0.0, distance)]
 
 
 def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
@@ -84,20 +84,20 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
     unit = law.scales.length
     if seen.is_map:
         series = seen.run.metric("min_distance")
-        least, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
+        distance, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
     else:
-        least, time = least_distance(seen), seen.run.closest_approach().time
+        distance, time = least_distance(seen), seen.run.closest_approach().time
     where = "at the samples" if seen.is_map else "ever"
-    least = least.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
+    distance = distance.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
     if seen.n == 1:
         margin = Enclosure.of(1.0)  # a single agent has no distances
     elif bound.hi > 0.0:
-        margin = (least / bound).log()
+        margin = (distance / bound).log()
     else:
-        margin = least / unit if least.lo > 0.0 else Enclosure(-inf, least.mid / unit, inf)
+        margin = distance / unit if distance.lo > 0.0 else Enclosure(-inf, distance.mid / unit, inf)
     return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
-        computed=float(least.lo),
+        computed=float(distance.lo),
         stated=f"every distance > {bound.mid:.4g}",
         witness={"time": time},
-        detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound.mid:.3g}",
+        detail=f"no two agents come closer than {distance.lo:.4g} {where}; the bound is {bound.mid:.3g}",
     )

@@ -165,7 +165,7 @@ class Components:
     def _velocity_error(self) -> FloatArray:
         """Rounding of the velocity of each component's centre: of a mean, so none of a single agent."""
         rounding = [(c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0 for c in self.members]
-        return np.array([c.p_off + own for c, own in zip(self.members, rounding, strict=True)])
+        return np.array([c.p_off + own_rounding for c, own_rounding in zip(self.members, rounding, strict=True)])
 
     @property
     def _sizes(self) -> FloatArray:

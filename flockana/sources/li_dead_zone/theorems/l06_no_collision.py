@@ -27,12 +27,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
         seen = observed(law, [[0.0, 0.0], [6.0, 0.0]], p, (0.0, 6.0 / speed), **_TIGHT)
         closest.append(least_distance(seen))
         bounds.append(distance_bound(seen, law))
-    least, bound = stacked(closest), stacked(bounds)
-    gap = abs(least / bound - 1.0)
-    distances = ", ".join(f"{a:.3g}" for a in least.mid)
+    gaps, bound = stacked(closest), stacked(bounds)
+    gap = abs(gaps / bound - 1.0)
+    distances = ", ".join(f"{a:.3g}" for a in gaps.mid)
     return [
-        judged("printed", least / law.scales.length, about="all", proof=PROOF).described(
-            computed=least.mid.tolist(),
+        judged("printed", gaps / law.scales.length, about="all", proof=PROOF).described(
+            computed=gaps.mid.tolist(),
             stated="no collision",
             detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
             "and never meet",

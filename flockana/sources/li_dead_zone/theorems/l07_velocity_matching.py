@@ -43,7 +43,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     coarse, fine = _chatter(hard, 0.01), _chatter(hard, 0.002)
     q, p = _settled(law, 0.01)
     ramped = hold(law, q, p, 0.01).certificate
-    held = observed(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
+    state = observed(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
     return [
         limit_claim("printed", [], escape=end.separation).described(
             stated="all velocities match",
@@ -55,8 +55,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             stated="the scheme chatters, the less the shorter its step",
             detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),
-        by_count("sliding", int("sliding" not in held.stats)).described(
-            stated="a pair at d1 is held there in a sliding mode", detail=f"with every switch located: {held.message}"
+        by_count("sliding", int("sliding" not in state.stats)).described(
+            stated="a pair at d1 is held there in a sliding mode", detail=f"with every switch located: {state.message}"
         ),
         limit_claim("ramp", [], [ramped]).described(
             computed=float(np.sqrt(spreads(p[None])[0] / len(p))), detail="with a ramp of 0.25 the mismatch vanishes"

@@ -37,8 +37,8 @@ def _is_finite_apart() -> bool | None:
 
     s = sp.Symbol("s", positive=True)
     values = [repulsive_primitive(s, eta=eta).subs({K_R: 1, K_DELTA: 1}) for eta in (ETA_POSITIVE, sp.Integer(0))]
-    known = [value.is_finite for value in values]
-    return None if None in known else all(known)
+    is_finite = [value.is_finite for value in values]
+    return None if None in is_finite else all(is_finite)
 
 
 def _necessary() -> Claim:
@@ -69,8 +69,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     wild, x, v = escaping_pair()
     share = energy_share(wild, x, v)
     later = observed(wild, x, v, (0.0, 10.0))
-    kept = final_components(later, wild).members[0].bond
-    left = kept.text.replace("its energy", "the energy left")
+    bond = final_components(later, wild).members[0].bond
+    left = bond.text.replace("its energy", "the energy left")
     calm = Component(law, x, 0.1 * v)
     return [
         limit_claim("printed-sufficient", [], escape=away.separation).described(
@@ -85,7 +85,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s",
         ),
         limit_claim(
-            "not-necessary", [], [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)]
+            "not-necessary", [], [Certificate(min(share - 1.0, bond.margin), left, bond.error + 64.0 * EPS)]
         ).described(
             computed=share,
             stated="the condition is not necessary: a flock with more energy may stay together",

@@ -40,10 +40,10 @@ def first_entry(seen: Observed, r: float) -> RangeEntry:
         return RangeEntry(None, None, thinned(run) or bool(unsure.any()))
     t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
-    known = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
+    noise_levels = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
     for k in range(len(t) - 1):
         start, end = (q[k], p[k], u[k]), (q[k + 1], p[k + 1], u[k + 1])
-        pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, known, was_out, unsure)
+        pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, noise_levels, was_out, unsure)
         if pair[0] >= 0:
             return RangeEntry(pair, float(t[k + 1]), True)
     return RangeEntry(None, None, bool(unsure.any()))

@@ -29,7 +29,7 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
 def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
     """Return the claim R ≤ r in the limit."""
     radius = cohesion_radius(seen.run.q[-1])
-    room, known = _certain_radius(seen, end, radius)
+    room, is_certain = _certain_radius(seen, end, radius)
     within, beyond = (-1.0, -1.0) if room is None else (float(room.lo), float(-room.hi))
     return limit_claim(
         "cohesion", needs, [Certificate(within, "", 0.0)], escape=Certificate(beyond, "", 0.0)
@@ -37,7 +37,7 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
         computed=radius,
         stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
         witness={"components": end.count, "time": float(seen.t[-1])},
-        detail=f"at t = {seen.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {known}",
+        detail=f"at t = {seen.t[-1]:g} there are {end.count} component(s), R = {radius:.4g}; {is_certain}",
     )
 
 

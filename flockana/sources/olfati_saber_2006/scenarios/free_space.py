@@ -73,10 +73,10 @@ def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
     nets = [{*map(tuple, links(q, run.law.alpha.r).tolist())} for q in run.q]
     changes = sum(a != b for a, b in pairwise(nets))
-    kept = len(nets[0] & nets[-1])
+    links_kept = len(nets[0] & nets[-1])
     detail = (
-        f"the net differs between {changes} pairs of successive samples; of {len(nets[0])} links at the start {kept} "
-        f"are among the {len(nets[-1])} at the end"
+        f"the net differs between {changes} pairs of successive samples; of {len(nets[0])} links at the start "
+        f"{links_kept} are among the {len(nets[-1])} at the end"
     )
     return finding(changes - 0.5, detail, computed=changes, stated="> 0")
 

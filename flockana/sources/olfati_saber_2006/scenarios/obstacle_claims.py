@@ -20,16 +20,16 @@ _SEGMENT = 400  # points on the straight way to the γ-agent that are looked at
 @report("clear", "no agent enters an obstacle")
 def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that no agent enters an obstacle, by the lower bound of clearances; a point inside refutes it."""
-    least = run.clearance()
+    clearance = run.clearance()
     rounding = ROUNDING * float(np.abs(run.q).max())
-    margin = least.reached if least.reached < -rounding else least.lower
-    error = rounding if margin > 0.0 or margin == least.reached else inf
+    margin = clearance.reached if clearance.reached < -rounding else clearance.lower
+    error = rounding if margin > 0.0 or margin == clearance.reached else inf
     detail = (
-        f"agent {least.agent} comes closest, {least.reached:.4g} from obstacles[{least.obstacle}] at "
-        f"t = {least.time:.4g}; no agent is closer than {least.lower:.4g} to any at any time"
+        f"agent {clearance.agent} comes closest, {clearance.reached:.4g} from obstacles[{clearance.obstacle}] at "
+        f"t = {clearance.time:.4g}; no agent is closer than {clearance.lower:.4g} to any at any time"
     )
-    witness = {"agent": least.agent, "obstacle": least.obstacle, "time": least.time}
-    return finding(margin, detail, computed=least.lower, stated="> 0", error=error, witness=witness)
+    witness = {"agent": clearance.agent, "obstacle": clearance.obstacle, "time": clearance.time}
+    return finding(margin, detail, computed=clearance.lower, stated="> 0", error=error, witness=witness)
 
 
 @report("splits", "the flock, connected before, splits around the obstacles")
@@ -100,11 +100,11 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 @report("trapped", "the obstacle holds agents back from the γ-agent (Fig. 9)")
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that agents stand still behind an obstacle at the end."""
-    held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
+    is_held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
     last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
     limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
     slow = lengths(run.p[last]).max(axis=0) < limit
-    count = int((held & slow).sum())
+    count = int((is_held & slow).sum())
     detail = (
         f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"

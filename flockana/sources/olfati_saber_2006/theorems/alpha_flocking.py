@@ -41,14 +41,14 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
 def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: Real) -> Claim:
     """Return the claim that a quantity stays below a bound, at and between the samples."""
     (symbol, what), t = _SYMBOLS[name], part.seen.t[part.first :]
-    seen = value[part.first :]
-    largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
-    worst = int(np.argmax(seen.mid))
+    values = value[part.first :]
+    largest = Enclosure(values.lo.max(), values.mid.max(), max(values.hi.max(), over.hi.max()))
+    worst = int(np.argmax(values.mid))
     return judged(name, bound - largest).described(
-        computed=float(seen.mid[worst]),
+        computed=float(values.mid[worst]),
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},
-        detail=f"{what} {symbol}: {seen.mid[worst]:.4g} at worst, at t = {t[worst]:.4g}",
+        detail=f"{what} {symbol}: {values.mid[worst]:.4g} at worst, at t = {t[worst]:.4g}",
     )
 
 
@@ -62,16 +62,16 @@ _SYMBOLS = {
 def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
     """Return the claim that a whole number never exceeds a bound, at and between the samples."""
     t, between = part.seen.t[part.first :], counts[2]
-    least, largest = (series[part.first :] for series in counts[:2])
-    worst = int(np.argmax(least))
+    smallest, largest = (series[part.first :] for series in counts[:2])
+    worst = int(np.argmax(smallest))
     possible = max(float(largest.max()), between)
-    open_ = least[worst] <= most < possible
+    open_ = smallest[worst] <= most < possible
     near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
-    return counted(name, most, int(least[worst]), int(possible)).described(
-        computed=int(least[worst]),
+    return counted(name, most, int(smallest[worst]), int(possible)).described(
+        computed=int(smallest[worst]),
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
-        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"
+        detail=f"{what}: {int(smallest[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"
         + (f"; {near}" if open_ else ""),
     )
 
@@ -124,8 +124,8 @@ def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked
     window, part = _window(seen, tolerances)
     if unmet(needs := [window]):
         return needs, []
-    own = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
-    return needs, [*own, *_common(part, tolerances)]
+    claims = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
+    return needs, [*claims, *_common(part, tolerances)]
 
 
 @run_theorem(

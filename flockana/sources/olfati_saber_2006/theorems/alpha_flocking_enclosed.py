@@ -27,8 +27,8 @@ def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
     steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
     broken = tube.status != "complete"
     detail = tube.message if broken else f"from t = {start:.4g} to {tube.t[-1]:.4g}, at all times"
-    known = condition("judged over a window", bool(steps) and not broken, detail=detail)
-    return known, range(steps[0], steps[-1] + 1) if steps else range(0)
+    is_window = condition("judged over a window", bool(steps) and not broken, detail=detail)
+    return is_window, range(steps[0], steps[-1] + 1) if steps else range(0)
 
 
 def _highest(tube: Tube, window: range, value: Callable[[int], arb]) -> tuple[arb, float]:
@@ -118,9 +118,9 @@ def _check(
     claims: Iterable[Callable[..., Claim]], tube: Tube, basin: BasinLike | None, tolerances: Tolerances
 ) -> Checked:
     """Return claims for the starts of a tube."""
-    known, window = _window(tube, tolerances)
+    spans, window = _window(tube, tolerances)
     with ctx.workprec(BITS):
-        return [known], [] if known.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]
+        return [spans], [] if spans.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]
 
 
 alpha_flocking = partial(_check, (_giant, _cohesive, _deviation, _mismatch))

@@ -88,11 +88,11 @@ def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
 def parting_energy(seen: Observed) -> float:
     """Least E of a disconnected state that is known: each of n − 1 pairs out of range has ψ(r) − L."""
     pair = seen.law.alpha
-    least = 0.0 if is_paper(seen) else pair.facts.least[0]
-    room = pair.far_potential - least
-    error = _ROUNDING * (abs(pair.far_potential) + abs(least)) if np.isfinite(room) else 0.0
-    known = seen.law.gains.c1_alpha * (room - error) if room > error else 0.0
-    return (seen.n - 1) * known if seen.n > 1 else inf
+    energy = 0.0 if is_paper(seen) else pair.facts.least[0]
+    room = pair.far_potential - energy
+    error = _ROUNDING * (abs(pair.far_potential) + abs(energy)) if np.isfinite(room) else 0.0
+    room_left = seen.law.gains.c1_alpha * (room - error) if room > error else 0.0
+    return (seen.n - 1) * room_left if seen.n > 1 else inf
 
 
 def stays_together(seen: Observed) -> Hypothesis:

@@ -75,9 +75,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         velocities_match(seen, [*needs, *bounded], name="iii", caught=[caught], proof=any_potential.LIMITS),
     ]
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
-    given = [*needs, *bounded, consistent(seen.run), repels]
+    needed = [*needs, *bounded, consistent(seen.run), repels]
     if unmet([repels]):
-        return given, any_potential.attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
+        return needed, any_potential.attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
     barrier = collisions.below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
     few = [repels, *potential]
     claims += [  # (iv) needs gains >= 0 only, which every run has
@@ -86,4 +86,4 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         collisions.no_collision(seen, [*few, none], tolerances, name="iv-none", proof=apart),
         collisions.no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
-    return [*given, none, barrier], any_potential.attribute_claims(seen, claims)
+    return [*needed, none, barrier], any_potential.attribute_claims(seen, claims)

@@ -113,15 +113,15 @@ def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
 
 def _graph(net: Net, needs: Needs) -> Claim:
     """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
-    drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
-    planar = drawn or is_planar(net.n, net.links)
+    is_drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
+    planar = is_drawn or is_planar(net.n, net.links)
     witness = kuratowski(net.n, net.links) if not planar and len(net.links) <= _WITNESS_LIMIT else None
-    found = "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
+    remark = "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
     return by_count("i-graph", 0 if planar else 1, needs).described(
         computed="planar" if planar else "not planar",
         stated="the graph of the net is planar (as printed)",
         witness=None if witness is None else vars(witness),
-        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{found}; "
+        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{remark}; "
         f"a planar one has at most {planar_bound(net.n)}",
     )
 

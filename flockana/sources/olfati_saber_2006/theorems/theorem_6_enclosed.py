@@ -55,15 +55,15 @@ def _stays_outside(tube: Tube) -> Hypothesis:
     name = "no agent enters an obstacle"
     if not tube.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
-    least = tube.min_clearance()
-    where = f"(agent {least.agent} at obstacles[{least.obstacle}], about t = {least.time:.4g})"
-    if least.lower > 0.0:
+    room = tube.min_clearance()
+    where = f"(agent {room.agent} at obstacles[{room.obstacle}], about t = {room.time:.4g})"
+    if room.lower > 0.0:
         return Hypothesis(
-            name, "met", least.lower, f"clearance at least {least.lower:.6g} {where}, proved", decided="enclosed"
+            name, "met", room.lower, f"clearance at least {room.lower:.6g} {where}, proved", decided="enclosed"
         )
     inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
     text = "certainly inside" if inside else "the tube is too wide to tell"
-    return Hypothesis(name, "unmet" if inside else "assumed", least.lower, f"{text} {where}", decided="enclosed")
+    return Hypothesis(name, "unmet" if inside else "assumed", room.lower, f"{text} {where}", decided="enclosed")
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:

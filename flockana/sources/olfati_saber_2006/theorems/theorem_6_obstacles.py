@@ -28,14 +28,14 @@ def _least_slack(seen: Observed) -> FloatArray:
     """Return a lower bound of T − (n/2) ⟨p_c, p_r⟩ over each interval between samples, of a constant p_r."""
     # On a step velocities are polynomials of degree four, so that this is one of degree eight: no value of it is below
     # the least of its Bernstein coefficients.
-    p_r, least = seen.law.target.state(float(seen.t[0]))[1], []
+    p_r, slacks = seen.law.target.state(float(seen.t[0]))[1], []
     for h, points, _ in polygons(seen.run):
         legs = 5.0 / h * np.diff(points, axis=1)[:, :, : seen.m]
         squares = 0.5 * np.einsum("nim,njm->ij", legs, legs) - 0.25 * np.add.outer(*[(legs @ p_r).sum(axis=0)] * 2)
         error = float(seen.between_speed_error.max() + seen.drift_error.max())
         blur = error * float(lengths(legs - 0.5 * p_r).max(axis=1).sum()) + 0.5 * seen.n * error**2
-        least.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - blur)
-    bounds = np.array(least)
+        slacks.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - blur)
+    bounds = np.array(slacks)
     if seen.run.path.slack is not None:  # of steps that were not kept the velocities are not known
         bounds[seen.run.path.slack.max(axis=1) > 0.0] = -np.inf
     return seen.run.over_intervals(np.minimum, bounds)
@@ -65,11 +65,11 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     since = later if sure else since
     share = 100.0 * broken.size / len(run.t)
     before = f"broken at {share:.2g} % of the samples before t0" if broken.size else "never broken"
-    least = float(between[since:].min() if sure else slack[since:].min())
+    lowest = float(between[since:].min() if sure else slack[since:].min())
     detail = f"t0 = {run.t[since]:.6g}, {before}; to the end of this run, " + (
         "between samples too" if sure else "seen"
     )
-    return Hypothesis(name, "met" if sure else "assumed", least, detail, decided="enclosed"), since
+    return Hypothesis(name, "met" if sure else "assumed", lowest, detail, decided="enclosed"), since
 
 
 def start_of_condition(seen: Observed) -> int:

@@ -162,8 +162,8 @@ def _few_pairs(case: from_tube.TubeAndBasin, repels: Hypothesis) -> Claim:
     """Claim (iv) as printed, that with H(0) < (k+1) c* at most k pairs collide: certain where none does."""
     tube = case.tube
     with ctx.workprec(BITS):
-        least = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
-    bites = condition("k < n(n-1)/2", least < len(tube.pairs), float(len(tube.pairs) - least - 1))
+        pairs = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
+    bites = condition("k < n(n-1)/2", pairs < len(tube.pairs), float(len(tube.pairs) - pairs - 1))
     apart = from_tube.no_collision(case, [repels, bites], name="iv-printed")
     if apart.status in ("verified", "vacuous"):
         return apart

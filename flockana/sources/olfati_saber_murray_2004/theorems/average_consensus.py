@@ -96,17 +96,17 @@ def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
     """Return the claim about steps q_i + ε Σ_j a_ij (q_j - q_i): the largest ε, and that it is at least 1/Δ."""
     moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
     limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
-    least = min(limits, key=lambda one: float(one.mid())) if limits else None
+    shortest = min(limits, key=lambda one: float(one.mid())) if limits else None
     room = (
         Enclosure.of(0.0)
-        if least is None
-        else Enclosure.around(float(least.mid()) * degree - 1.0, float(least.rad()) * degree + 8.0 * EPS)
+        if shortest is None
+        else Enclosure.around(float(shortest.mid()) * degree - 1.0, float(shortest.rad()) * degree + 8.0 * EPS)
     )
-    known = "no step is too long" if least is None else f"ε < min 2 Re μ/|μ|² = {least.str(8, radius=False)}"
+    text = "no step is too long" if shortest is None else f"ε < min 2 Re μ/|μ|² = {shortest.str(8, radius=False)}"
     return judged("steps", room, [root], about="all", proof=_PROOF).described(
-        computed=None if least is None else float(least.mid()),
+        computed=None if shortest is None else float(shortest.mid()),
         stated="I - εL agrees for 0 < ε < 1/Δ, and exactly for 0 < ε < min 2 Re μ/|μ|² over μ ≠ 0",
-        detail=f"{known}; 1/Δ = {1.0 / degree:.6g}" if degree else known,
+        detail=f"{text}; 1/Δ = {1.0 / degree:.6g}" if degree else text,
     )
 
 

@@ -32,7 +32,7 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
     """Return nets with their systems, and λ_n in closed form or from the matrix."""
     path, ring = [(0, 1), (1, 2)], [(k, (k + 1) % 6) for k in range(6)]
     star, whole = [(0, k) for k in range(1, 5)], [(i, j) for j in range(4) for i in range(j)]
-    known = {
+    known_nets = {
         "path of 3": (_net(3, path), 3.0),
         "ring of 6": (_net(6, ring), 4.0),
         "star of 5": (_net(5, star), 5.0),
@@ -41,7 +41,7 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
     law = Algorithm1(gains=Gains(c1_alpha=0.0, c2_alpha=1.0))
     flock = delay_system(law, hexagonal_patch(1, law.alpha.length))
     top = float(np.linalg.eigvalsh(flock.late[1])[-1])
-    nets = {name: (consensus_system(matrix), largest) for name, (matrix, largest) in known.items()}
+    nets = {name: (consensus_system(matrix), largest) for name, (matrix, largest) in known_nets.items()}
     free = replace(flock, neutral=consensus_system(flock.late[1]).neutral)  # nothing holds any place, not only rigidly
     return nets | {"hexagon of 7 under Algorithm 1 without its gradient": (free, top)}
 
@@ -50,9 +50,9 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Return the claim that the library's delay margin, by a sweep over frequency, agrees with the closed form."""
     off, listed = 0.0, {}
     for name, (system, largest) in nets.items():
-        found = delay_margin(system)
-        listed[name] = found.delay
-        off = max(off, abs(found.delay * 2.0 * largest / pi - 1.0), abs(found.frequency / largest - 1.0))
+        margin = delay_margin(system)
+        listed[name] = margin.delay
+        off = max(off, abs(margin.delay * 2.0 * largest / pi - 1.0), abs(margin.frequency / largest - 1.0))
     return spectral("margin", _SWEEP - off, 0.0).described(
         computed=listed,
         stated="π/(2 λ_n), where the net swings at the frequency λ_n",

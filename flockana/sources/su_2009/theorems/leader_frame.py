@@ -45,9 +45,9 @@ def constant_velocity(run: Trajectory, *, any_p_r: bool = False) -> Hypothesis:
     target = run.law.target
     name = "the leader's velocity is constant" + (", and so is p_r" if any_p_r else "")
     if target.constant_velocity and target.consistent is not None:
-        told = any_p_r or target.consistent
-        detail = type(target).__name__ if told else "the leader reports another velocity than it has"
-        return condition(name, told, detail=detail)
+        is_told = any_p_r or target.consistent
+        detail = type(target).__name__ if is_told else "the leader reports another velocity than it has"
+        return condition(name, is_told, detail=detail)
     feedforward = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
     spread = float(np.abs(feedforward - (feedforward[0] if any_p_r else feedforward[0, 1])).max())
     if target.constant_velocity is False or spread > 64.0 * EPS * float(np.abs(feedforward).max()):
@@ -86,13 +86,13 @@ def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
 def linked_to_informed(run: Trajectory) -> np.ndarray:
     """Return a mask (n,) of agents linked to an informed one in each window of the last half of a run."""
     # A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
-    known, start = np.ones(run.n, dtype=bool), 0.5 * (run.t[0] + run.t[-1])
+    is_linked, start = np.ones(run.n, dtype=bool), 0.5 * (run.t[0] + run.t[-1])
     who, edges = informed(run), np.linspace(start, run.t[-1], WINDOWS + 1)
     for low, high in pairwise(edges):
-        seen = [links(q, run.law.alpha.range) for q in run.q[(run.t >= low) & (run.t <= high)]]
-        label = components(run.n, np.concatenate(seen)) if seen else np.arange(run.n)
-        known &= np.isin(label, label[who])
-    return known
+        nets = [links(q, run.law.alpha.range) for q in run.q[(run.t >= low) & (run.t <= high)]]
+        label = components(run.n, np.concatenate(nets)) if nets else np.arange(run.n)
+        is_linked &= np.isin(label, label[who])
+    return is_linked
 
 
 def comes_to_rest(

@@ -41,31 +41,31 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
         return Hypothesis(name, steady.status, steady.margin, f"no feedforward; {steady.name}: {steady.detail}")
     terms = [type(term) for term in law.terms]
     alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
-    known = alike and type(law.alpha) is AlphaInteraction
-    if known and (tells := consistent(run)).status != "met":
+    is_feedforward = alike and type(law.alpha) is AlphaInteraction
+    if is_feedforward and (tells := consistent(run)).status != "met":
         return Hypothesis(name, tells.status, tells.margin, f"{tells.name}: {tells.detail}", tells.error)
-    return condition(name, known, detail=", ".join(term.__name__ for term in terms))
+    return condition(name, is_feedforward, detail=", ".join(term.__name__ for term in terms))
 
 
 def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Return q_c − q_r and p_c − p_r of a run in its leader's frame, and the closed form, (T, 2 m)."""
-    found = np.concatenate([run.q.mean(axis=1), run.p.mean(axis=1)], axis=1)
+    centre = np.concatenate([run.q.mean(axis=1), run.p.mean(axis=1)], axis=1)
     c1, c2 = run.law.gains.c1_gamma[0], run.law.gains.c2_gamma[0]
     flow = np.array([[0.0, 1.0], [-c1, -c2]])
-    start = found[0].reshape(2, run.m)
+    start = centre[0].reshape(2, run.m)
     from scipy.linalg import expm
 
-    said = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
-    return found, said
+    predicted = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
+    return centre, predicted
 
 
 def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     run = seen.run
-    (found, said), unit = centre_of(run), seen.scales.time
+    (centre, predicted), unit = centre_of(run), seen.scales.time
     units = np.repeat([1.0, unit], run.m)  # velocities as lengths
-    size = max(float(np.abs(found[0] * units).max()), seen.scales.length)
+    size = max(float(np.abs(centre[0] * units).max()), seen.scales.length)
     error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
-    off = (Enclosure.around(np.abs((found - said) * units), error).max(axis=1) / size).clip(0.0)
+    off = (Enclosure.around(np.abs((centre - predicted) * units), error).max(axis=1) / size).clip(0.0)
     worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
     return judged("centre", _AGREES - off, needs, proof=PROOF).described(
         computed=float(off.mid[worst]),

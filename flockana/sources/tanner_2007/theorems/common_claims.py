@@ -17,15 +17,15 @@ def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: Needs) -> Cl
     """Return the claim that some pairs never come nearer than where V alone is the energy of the start."""
     if not len(i):
         return by_count("no-collision", 0, needs, detail="no pair is joined")
-    energy, least = seen.energy[0].widened(_energy_error(seen, i, j)), least_distance(seen, i, j)
+    energy, distance = seen.energy[0].widened(_energy_error(seen, i, j)), least_distance(seen, i, j)
     bound = energy.clip(0.0).falling(np.vectorize(seen.law.potential.nearest, otypes=[float]))
     bound = bound.widened(1e-12 * seen.scales.length)
     k = int(seen.distances(i, j).mid.min(axis=1).argmin())
-    return judged("no-collision", (least - bound) / seen.scales.length, needs, proof=proof).described(
-        computed=float(least.mid),
+    return judged("no-collision", (distance - bound) / seen.scales.length, needs, proof=proof).described(
+        computed=float(distance.mid),
         stated=f"no such pair comes nearer than {bound.mid:.6g}, where V = H(0)",
         witness={"time": float(seen.t[k])},
-        detail=f"the least distance at the samples is {least.mid:.6g}, and between them at least {least.lo:.6g}",
+        detail=f"the least distance at the samples is {distance.mid:.6g}, and between them at least {distance.lo:.6g}",
     )
 
 

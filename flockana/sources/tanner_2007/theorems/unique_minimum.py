@@ -14,9 +14,9 @@ def _own_block() -> Any:
     def pair(i: int, j: int) -> Any:
         return V(sp.sqrt(sum((a - b) ** 2 for a, b in zip(places[i], places[j], strict=True))))
 
-    own = pair(0, 1) + pair(0, 2)
-    total = own + pair(1, 2)
-    return [sp.simplify(sp.diff(total - own, a, b)) for a in places[0] for b in places[0]]
+    own_block = pair(0, 1) + pair(0, 2)
+    total = own_block + pair(1, 2)
+    return [sp.simplify(sp.diff(total - own_block, a, b)) for a in places[0] for b in places[0]]
 
 
 @erratum(

@@ -41,7 +41,7 @@ class Block:
 
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
     """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction."""
-    n, found = headings.shape[1], []
+    n, groups = headings.shape[1], []
     size = max(1, n - 1)
     for k in range(0, len(windows) - size + 1, size):
         start, stop = windows[k][0], windows[k + size - 1][1]
@@ -51,8 +51,8 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
             product, heard = matrix @ product, np.sign(np.sign(matrix) @ heard)
         steps, spread = stop - start, float(np.ptp(headings[start]))
         error = steps * (n + _TERMS) * EPS * (float(np.abs(headings[start]).max()) + n * spread)
-        found.append(Block(start, stop, min(contraction(product), 1.0), error, bool(heard.all(axis=0).any())))
-    return tuple(found)
+        groups.append(Block(start, stop, min(contraction(product), 1.0), error, bool(heard.all(axis=0).any())))
+    return tuple(groups)
 
 
 def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
@@ -106,13 +106,13 @@ def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     places = q @ np.array([np.cos(angles), np.sin(angles)])
     best = Certificate(-1.0, "the net is connected")
     for label in range(labels.max() + 1 if labels.max() else 0):
-        own = labels == label
-        ahead = (places[own].min(axis=0) - places[~own].max(axis=0)) / law.range - 1.0
-        slowest, fastest = _advance(heading[own], angles)[0], _advance(heading[~own], angles)[1]
+        same_group = labels == label
+        ahead = (places[same_group].min(axis=0) - places[~same_group].max(axis=0)) / law.range - 1.0
+        slowest, fastest = _advance(heading[same_group], angles)[0], _advance(heading[~same_group], angles)[1]
         margins = np.minimum(ahead, slowest - fastest)
         k = int(np.argmax(margins))
         if best.margin == -1.0 or margins[k] > best.margin:
-            text = f"{int(own.sum())} of {len(q)} agents are {ahead[k] + 1.0:.3g} r ahead of the others at {k}°"
+            text = f"{int(same_group.sum())} of {len(q)} agents are {ahead[k] + 1.0:.3g} r ahead of the others at {k}°"
             text += f" and advance faster there, by {slowest[k] - fastest[k]:.3g} v or more"
             error = _TERMS * EPS * (2.0 + float(np.abs(q).max()) / law.range)
             best = Certificate(float(np.clip(margins[k], -1.0, 1.0)), text, error)
@@ -128,5 +128,5 @@ def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, Float
     def within(angle: FloatArray) -> npt.NDArray[np.bool_]:
         return np.ceil((low - angle) / turn) * turn + angle <= high
 
-    least = np.where(within(angles + np.pi), -1.0, np.minimum(*ends))
-    return least, np.where(within(angles), 1.0, np.maximum(*ends))
+    lower = np.where(within(angles + np.pi), -1.0, np.minimum(*ends))
+    return lower, np.where(within(angles), 1.0, np.maximum(*ends))

@@ -21,10 +21,10 @@ def _kinds(run: Trajectory) -> list[Hypothesis]:
     """Return the hypotheses that headings are averaged as numbers, without noise, and that every step is kept."""
     law, steps = run.law, np.diff(run.t)
     plain = law.average == "headings" and law.noise == 0.0
-    kept = "heading" in run.extra and bool(np.all(np.abs(steps - law.dt) <= _EVERY * law.dt))
+    is_recorded = "heading" in run.extra and bool(np.all(np.abs(steps - law.dt) <= _EVERY * law.dt))
     return [
         condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}"),
-        condition("every step is kept", kept, detail=f"{len(run.t)} samples"),
+        condition("every step is kept", is_recorded, detail=f"{len(run.t)} samples"),
     ]
 
 
@@ -32,23 +32,23 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
     """Return the hypothesis of joint connectivity over all later windows: proved, disproved or assumed from the run."""
     name = "the nets are jointly connected over contiguous bounded windows, at all later times"
     longest = max((stop - start for start, stop in windows), default=0)
-    seen = f"{len(windows)} windows seen, of {longest} steps at most"
+    text = f"{len(windows)} windows seen, of {longest} steps at most"
     if connected.certain:
-        return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}", decided="enclosed")
+        return Hypothesis(name, "met", connected.margin, f"{text}; {connected.text}", decided="enclosed")
     if parted.certain:
-        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, none can follow: {parted.text}", decided="enclosed")
-    return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
+        return Hypothesis(name, "unmet", -parted.margin, f"{text}, none can follow: {parted.text}", decided="enclosed")
+    return Hypothesis(name, "assumed", None, f"{text}; what comes after the run is not known")
 
 
 def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
-    least, most = headings.min(axis=1), headings.max(axis=1)
-    out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
+    lower, most = headings.min(axis=1), headings.max(axis=1)
+    out = np.flatnonzero((np.diff(lower) < 0.0) | (np.diff(most) > 0.0))
     return by_count("hull", out.size, needs, proof=_PROOF).described(
-        computed=float(most[-1] - least[-1]),
+        computed=float(most[-1] - lower[-1]),
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
-        detail=f"the headings' span goes from {most[0] - least[0]:.4g} to {most[-1] - least[-1]:.4g} radians",
+        detail=f"the headings' span goes from {most[0] - lower[0]:.4g} to {most[-1] - lower[-1]:.4g} radians",
     )
 
 

@@ -48,8 +48,8 @@ def _vectors() -> Claim:
 
     a, b, turn = sp.symbols("a b t", real=True)
     mean = sp.exp(sp.I * a) + sp.exp(sp.I * b)
-    moved = sp.exp(sp.I * (a + turn)) + sp.exp(sp.I * (b + turn))
-    return exact("vectors", sp.simplify(sp.expand(moved - sp.exp(sp.I * turn) * mean)) == 0).described(
+    vectors = sp.exp(sp.I * (a + turn)) + sp.exp(sp.I * (b + turn))
+    return exact("vectors", sp.simplify(sp.expand(vectors - sp.exp(sp.I * turn) * mean)) == 0).described(
         stated="the mean unit vector turns with the flock",
         detail="Σ e^(i(θ + t)) = e^(it) Σ e^(iθ): Vicsek's rule knows no direction of angle 0",
     )
