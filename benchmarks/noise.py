@@ -56,7 +56,7 @@ def _start() -> Flock:
 
 def noisy_flock(seed: int) -> Scenario:
     """A hexagonal spiral under Algorithm 2 in white noise."""
-    from flockana.solvers.stepped import Stepped
+    from flockana.solvers.wrapped_steps import Stepped
 
     law = Stepped(Disturbed(Algorithm2(target=StaticTarget((0.0, 0.0))), intensity=0.1, seed=seed), DT, 1)
     return Scenario("noisy", "white noise", "a benchmark", law, *_start(), (0.0, SPAN), seed, {})

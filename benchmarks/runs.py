@@ -13,7 +13,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.path_bounds import closest_approach
 from flockana.scenarios import scenario
-from flockana.solvers.named import METHODS
+from flockana.solvers.solver_names import METHODS
 
 STUDY = "Whole runs"
 STIFF = ("Radau", "BDF")  # dense Jacobians of 600 states by differences: minutes a run

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from flockana.ensemble import ensemble
+from flockana.ensemble.one_run import Job, Request, run_one
 from flockana.ensemble.processes import ProcessPool, cores
-from flockana.ensemble.work import Job, Request, run_one
 from flockana.scenarios import scenario
 
 RUNS = 64

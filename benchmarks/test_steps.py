@@ -7,7 +7,7 @@ import pytest
 
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.simulate import simulate
-from flockana.kernels.checks import Rules
+from flockana.kernels.step_checks import Rules
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import scenario
 

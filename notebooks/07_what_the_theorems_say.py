@@ -61,7 +61,7 @@ import numpy as np
 import flockana as fl
 from flockana import lattice, plots
 from flockana.course import Prediction, grade
-from flockana.equilibria.barrier import energy_floor, lattice_reach, least_infeasible_size
+from flockana.equilibria.energy_barrier import energy_floor, lattice_reach, least_infeasible_size
 
 alpha = fl.AlphaInteraction()
 sizes = np.arange(2, 31)
@@ -131,7 +131,7 @@ print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no s
 # proof, which is as short as the one above. What changes is what the hypothesis costs:
 
 # %%
-from flockana.equilibria.barrier import collision_barrier
+from flockana.equilibria.energy_barrier import collision_barrier
 
 counted = (2, 3, 5, 7, 8)
 barriers = {n: collision_barrier(alpha, n, starts=3) for n in counted}

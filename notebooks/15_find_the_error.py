@@ -54,7 +54,7 @@ import numpy as np
 import flockana as fl
 from flockana import plots
 from flockana.course import Prediction, grade, is_own
-from flockana.course.unknown import unknown_program
+from flockana.course.unknown_gains import unknown_program
 
 law = fl.Algorithm1()
 alpha, c1, c2 = law.alpha, law.gains.c1_alpha, law.gains.c2_alpha

@@ -11,7 +11,7 @@ from flint import ctx
 from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.decimals import interval
 from flockana.certified.intervals import c_star, far_potential
-from flockana.equilibria.barrier import turan_pairs
+from flockana.equilibria.energy_barrier import turan_pairs
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.energy import algorithm1_identity
 from proofs.n_max import SPACE, shortest_bound

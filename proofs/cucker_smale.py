@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
-from flockana.symbolic.composition import matching_identity
+from flockana.symbolic.energy_balances import matching_identity
 from proofs.proof import Proof, Step
 from proofs.smt import implication
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from flockana.symbolic.functions import taper
-from flockana.symbolic.norms import sigma_norm
+from flockana.symbolic.sigma_norms import sigma_norm
 from proofs.proof import Proof, Step
 
 D, X, EPS, GAP, S = sp.symbols("d x epsilon g S", positive=True)  # r = d + g

@@ -17,7 +17,7 @@ from flockana.certified.decimals import at_least
 from flockana.certified.intervals import phi_alpha, sigma_of_square
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.symbolic.norms import sigma_norm
+from flockana.symbolic.sigma_norms import sigma_norm
 from proofs.compressed_patches import LIFT, Flock, rotation
 from proofs.proof import Proof, Step
 from proofs.unstressed_patches import laplacian_rank, modes_decay, off_the_edges, pair_hessian, squared

@@ -12,7 +12,7 @@ import sympy as sp
 from flint import acb, arb, fmpq
 from sympy.core.function import AppliedUndef
 
-from flockana.symbolic.norms import sigma_norm
+from flockana.symbolic.sigma_norms import sigma_norm
 from flockana.symbolic.sums import P, Q, V, X, Z, write_out
 
 DIMENSION = 3  # of the positions of two agents at which sums are written out

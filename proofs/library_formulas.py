@@ -20,7 +20,7 @@ from flockana.jit import Inlined
 from flockana.kernels import elementary
 from flockana.sources.li_dead_zone.kernels import pair as dead_zone_kernel
 from flockana.sources.li_dead_zone.symbolic import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
-from flockana.symbolic.named import TINY, Named, Phi, PhiIntegral, SigmaNorm
+from flockana.symbolic.named_functions import TINY, Named, Phi, PhiIntegral, SigmaNorm
 from proofs.dead_zone_pairs import zones
 from proofs.proof import Proof, Step
 

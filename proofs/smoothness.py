@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import sympy as sp
 
 from flockana.symbolic.functions import bump, phi, taper
-from flockana.symbolic.norms import sigma_1, sigma_norm
 from flockana.symbolic.parameters import AlphaSymbols
+from flockana.symbolic.sigma_norms import sigma_1, sigma_norm
 from proofs.proof import Proof, Step
 
 Z, S = sp.Symbol("z", positive=True), sp.Symbol("s", real=True)

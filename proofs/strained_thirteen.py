@@ -14,7 +14,7 @@ from flint import arb, arb_mat, ctx
 from flockana.certified.balls import AlphaParameters, ball, square
 from flockana.certified.decimals import at_least, at_most, small
 from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
-from flockana.equilibria.record import smallest_strained
+from flockana.equilibria.equilibrium_files import smallest_strained
 from proofs.compressed_patches import LIFT, Flock, rotation
 from proofs.proof import Proof, Step
 from proofs.unstressed_patches import laplacian_rank, modes_decay, pair_hessian

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from flockana.symbolic.algorithm3_energy import gamma_force
 from flockana.symbolic.parameters import GAINS
-from flockana.symbolic.theorem6 import gamma_force
-from flockana.symbolic.translational import S, derive_split, transfer_function
+from flockana.symbolic.translational_dynamics import S, derive_split, transfer_function
 from proofs.proof import Proof, Step
 
 ZERO = sp.Matrix([0])

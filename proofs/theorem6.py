@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
+from flockana.symbolic.algorithm3_energy import condition_76_residual, e2_counterexample, e2_identity, theorem6_identity
 from flockana.symbolic.obstacles import KINDS, derive_braking, derive_envelope, sphere_beta
-from flockana.symbolic.theorem6 import condition_76_residual, e2_counterexample, e2_identity, theorem6_identity
 from proofs.evaluate import differs
 from proofs.proof import Proof, Step
 from proofs.smt import implication

@@ -12,7 +12,7 @@ from flint import arb, ctx
 from flockana.certified.balls import ball
 from flockana.certified.decimals import interval
 from flockana.symbolic.parameters import GAINS
-from flockana.symbolic.translational import S, falling_condition, frequency_gain, gain_slope, transfer_function
+from flockana.symbolic.translational_dynamics import S, falling_condition, frequency_gain, gain_slope, transfer_function
 from proofs.proof import Proof, Step
 from proofs.smt import impossible
 

@@ -28,7 +28,7 @@ SLOW = (
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
     "test_types_of_a_script.py",
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
-    *("kernels/test_poles.py", "theorems/test_attraction.py"),
+    *("kernels/test_pole_crossings.py", "theorems/test_attraction.py"),
     *(
         "sources/li_dead_zone/theorems/test_range_limits.py",
         "sources/li_dead_zone/theorems/test_l09_leaders.py",

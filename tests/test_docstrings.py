@@ -18,7 +18,7 @@ EXTENSION = (
     "flockana.theorems.theorem",
     "flockana.theorems.hypotheses",
     "flockana.theorems.claims",
-    "flockana.falsify.space",
+    "flockana.falsify.bounded_space",
 )
 RESULTS = ("flockana.falsify.counterexample", "flockana.stability.decay", "flockana.stability.tracking")
 
@@ -132,4 +132,4 @@ def test_public_functions_have_an_example():
 def test_public_functions_and_inherited_classes_are_reached():
     names = {f"{item.__module__}.{item.__qualname__}" for item in reachable()}
     assert {"flockana.dynamics.simulate.simulate", "flockana.laws.law.LawOfMotion"} <= names
-    assert {"flockana.plots.series.energy", "flockana.theorems.theorem.Theorem"} <= names
+    assert {"flockana.plots.time_series.energy", "flockana.theorems.theorem.Theorem"} <= names

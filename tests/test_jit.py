@@ -16,7 +16,7 @@ import pytest
 
 from flockana import AlphaInteraction, jit
 from flockana.jit import njit, register_jitable, thawed
-from flockana.kernels.bound import bound, made
+from flockana.kernels.bound_templates import bound, made
 from flockana.kernels.scalars import sigma_1
 from tests.programs import out_of_a_kernel
 
@@ -33,7 +33,7 @@ PROGRAM = """
 import sys
 import numpy as np
 import many
-from flockana.kernels.lift import lift_scalar
+from flockana.kernels.pair_lift import lift_scalar
 order = range(6) if sys.argv[1] == "up" else range(5, -1, -1)
 z = np.full(1, 100.0)
 assert {k: lift_scalar(getattr(many, f"offset_{k}"))(z)[0] for k in order} == {k: 100.0 + k for k in range(6)}
@@ -227,7 +227,7 @@ def test_a_bound_module_is_a_file_of_this_user_alone_and_written_again_if_it_was
     assert module.over_array(np.array([0.0, 1e200]), ()).tolist() == [0.0, 1.0]
     right = path.read_text()
     path.write_text(right + "\nraise ValueError\n")
-    code = "from flockana.kernels.bound import bound; from flockana.kernels.scalars import sigma_1\n"
+    code = "from flockana.kernels.bound_templates import bound; from flockana.kernels.scalars import sigma_1\n"
     code += "bound('flockana.kernels.over_array', function=sigma_1)"
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
     assert path.read_text() == right

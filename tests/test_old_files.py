@@ -8,7 +8,7 @@ import pytest
 from flockana import Algorithm2, SineTarget, Trajectory, ZoneFlocking, check_certificate
 from flockana.base.errors import FileError
 from flockana.base.seals import is_sealed
-from flockana.equilibria.record import read_equilibrium
+from flockana.equilibria.equilibrium_files import read_equilibrium
 from flockana.falsify import Counterexample
 
 WRITTEN = Path(__file__).parent / "written"

@@ -24,7 +24,7 @@ def toys():
         importlib.import_module("flockana.base.serialize").parameter_classes,
         importlib.import_module("flockana.measures.measure").measures,
         importlib.import_module("flockana.theorems.errata").errata,
-        importlib.import_module("flockana.base.references").bibliography,
+        importlib.import_module("flockana.base.bibtex_entries").bibliography,
     )
     before = set(sys.modules)
     for room, package in packages.items():

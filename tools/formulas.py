@@ -13,7 +13,7 @@ from pathlib import Path
 import sympy as sp
 
 from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth
-from flockana.symbolic.named import (
+from flockana.symbolic.named_functions import (
     Bump,
     BumpSlope,
     Phi,
@@ -79,7 +79,7 @@ from flockana.kernels.scalars import (
     sigma_norm,
     taper,
 )
-from flockana.kernels.tables import on_panels
+from flockana.kernels.integral_tables import on_panels
 
 EPS, H, A, B, C, D_ALPHA, R_ALPHA, OFFSET, FAR, AREA = range(10)
 D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h"""
@@ -267,7 +267,7 @@ def sources() -> dict[str, str]:
     modules = {
         "kernels/scalars.py": (_SCALARS, _scalars()),
         "kernels/alpha.py": (_PAIRS, _pairs()),
-        "certified/formulas.py": (_BALLS, _balls()),
+        "certified/formula_in_balls.py": (_BALLS, _balls()),
     }
     return {path: "\n\n\n".join([head, *functions]) + "\n" for path, (head, functions) in modules.items()}
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 
 FactStatus = Literal["met", "unmet", "assumed"]
 _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")

@@ -16,7 +16,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.certified.balls import ball, dot, norm, norm2, square
 from flockana.certified.krawczyk import enclose_zero
-from flockana.certified.structure import Balls, Structure
+from flockana.certified.structural_potential import Balls, Structure
 
 BOX = fmpq(1, 10**13)  # of d: the half-width of the box in which there is one equilibrium
 _NEWTON = 3

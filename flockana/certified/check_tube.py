@@ -25,7 +25,17 @@ import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, series_length
-from flockana.certified.check import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH, RejectedError, check_data, ensure, positive
+from flockana.certified.certificate_check import (
+    ANY,
+    BINARY,
+    NUMBER,
+    PAIR_LAW,
+    TRUTH,
+    RejectedError,
+    check_data,
+    ensure,
+    positive,
+)
 from flockana.certified.check_motion import Motion, Sphere, Vector, number
 from flockana.certified.decimals import at_least, at_most
 from flockana.certified.intervals import c_star

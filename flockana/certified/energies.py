@@ -1,7 +1,7 @@
 """Energies of Algorithms 1 to 3 on boxes of states, levels of energy, and the work along a tube, as balls.
 
 Below the levels no two agents can coincide, or no agent can leave. The counting is that of
-`flockana.equilibria.barrier`, with every length and level enclosed, and each count rounded to the side that is safe.
+`flockana.equilibria.energy_barrier`, with every length and level enclosed, and each count rounded to the safe side.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from flockana.certified.flow import Flow, Pieces, flow_of, sphere_terms
 from flockana.certified.series import PairNumbers, Piece
 from flockana.certified.structural_energy import BITS, Vectors, pair_energy
 from flockana.certified.tube import Tube
-from flockana.equilibria.barrier import coincident_lattice, turan_pairs
+from flockana.equilibria.energy_barrier import coincident_lattice, turan_pairs
 from flockana.lattice import harborth
 
 _HALVINGS = 40  # of the bracket of the shortest length of a bound pair

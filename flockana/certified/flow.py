@@ -14,7 +14,7 @@ from typing import Any
 from flint import arb, arb_mat, arb_series, fmpq
 
 from flockana.base.errors import ArgumentError, format_value
-from flockana.certified.agent_terms import AgentTerm, Pull, SphereTerm
+from flockana.certified.agent_forces_in_balls import AgentTerm, Pull, SphereTerm
 from flockana.certified.balls import exact, minus, norm2, series_length
 from flockana.certified.krawczyk import column, identity
 from flockana.certified.series import PairNumbers, Piece

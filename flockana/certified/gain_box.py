@@ -18,12 +18,12 @@ from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError, format_value
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.krawczyk import column, krawczyk_shift, least_eigenvalue
-from flockana.certified.structure import Structure, in_lengths_of_unit, outer
+from flockana.certified.structural_potential import Structure, in_lengths_of_unit, outer
+from flockana.equilibria.final_state import generators
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
-from flockana.equilibria.terminal import generators
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.linearise import linearise

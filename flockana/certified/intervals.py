@@ -1,7 +1,7 @@
 """The scalar functions of flocking in ball arithmetic (Arb), as the checkers of certificates compute them.
 
 Every result encloses the true values on all of a ball (`flockana.certified.balls`). They are written by hand, and
-share nothing with what proves: that is generated (`flockana.certified.formulas`).
+share nothing with what proves: that is generated (`flockana.certified.formula_in_balls`).
 """
 
 from dataclasses import dataclass

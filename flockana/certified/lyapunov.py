@@ -33,7 +33,7 @@ from flockana.base.checks import FloatArray
 from flockana.certified.balls import ball, square
 from flockana.certified.decimals import round_down, round_up
 from flockana.certified.krawczyk import least_eigenvalue
-from flockana.certified.structure import Structure
+from flockana.certified.structural_potential import Structure
 
 _DIGITS, _CHOSEN = 3, 9  # digits of proved numbers, and of the parameters, whose differences can be small
 _DAMPING_DIGITS = 4

@@ -12,7 +12,7 @@ from flockana.base.errors import ArgumentError
 from flockana.certified.basin import Basin
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
-from flockana.equilibria.terminal import rigid_motions
+from flockana.equilibria.final_state import rigid_motions
 
 
 @dataclass(frozen=True, eq=False)

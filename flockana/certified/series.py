@@ -2,7 +2,7 @@
 
 ρ_h is only C¹ at z = h r_α and at z = r_α. Between these distances, below and beyond, φ_α and a_ij are analytic in the
 squared distance, so that the Taylor coefficients of a pair's force follow from those of its path by series arithmetic.
-The formulas are generated (`flockana.certified.formulas`).
+The formulas are generated (`flockana.certified.formula_in_balls`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from flockana.certified import formulas
+from flockana.certified import formula_in_balls
 from flockana.certified.balls import Piece as Piece
 from flockana.certified.balls import exact, hull, integrate, monotone
 
@@ -40,7 +40,7 @@ class PairNumbers:
     def of_alpha(cls, alpha: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
         """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, by default as decimals."""
         eps, h, a, b, d, r = (arb(number(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
-        zero, cutoff = (formulas.sigma_norm(x * x, eps) for x in (d, r))
+        zero, cutoff = (formula_in_balls.sigma_norm(x * x, eps) for x in (d, r))
         return cls(
             eps, h, a, b, (b - a) / (4 * a * b).sqrt(), zero, cutoff, arb(number(getattr(alpha, "unit", 1))) ** 2
         )
@@ -49,7 +49,7 @@ class PairNumbers:
     def of_beta(cls, beta: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
         """Return the numbers of a `BetaInteraction`, by default as decimals."""
         eps, h, d, unit = (arb(number(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
-        cutoff = formulas.sigma_norm(d * d, eps)
+        cutoff = formula_in_balls.sigma_norm(d * d, eps)
         return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
 
     @property
@@ -65,7 +65,7 @@ class PairNumbers:
 
     def piece(self, s2: arb) -> Piece:
         """Return the piece on which every squared distance in a ball lies."""
-        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
+        z = formula_in_balls.sigma_norm(s2.nonnegative_part(), self.eps)
         if z > self.cutoff:
             return Piece.OUT
         if z < self.knee:
@@ -74,19 +74,19 @@ class PairNumbers:
 
     def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
-        return formulas.pair(_nonnegative(s2), self, piece)
+        return formula_in_balls.pair(_nonnegative(s2), self, piece)
 
     def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
-        return formulas.slopes(_nonnegative(s2), self, piece)
+        return formula_in_balls.slopes(_nonnegative(s2), self, piece)
 
     def stiffness(self, s2: arb) -> arb:
         """Return the stiffness F''(ℓ) of the pair potential F = ψ(‖·‖_σ), by s² = ℓ²."""
-        return formulas.stiffness(_nonnegative(s2), self, Piece.SWITCH)
+        return formula_in_balls.stiffness(_nonnegative(s2), self, Piece.SWITCH)
 
     def potential(self, s2: arb) -> arb:
         """Return ψ at a squared distance: decreasing to its zero, increasing to the cutoff, constant beyond."""
-        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
+        z = formula_in_balls.sigma_norm(s2.nonnegative_part(), self.eps)
         if z <= self.zero or z >= self.zero:
             return monotone(self._potential, z)
         return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
@@ -108,11 +108,13 @@ class PairNumbers:
     def _from_knee(self, z: arb) -> arb:
         """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
         knee = self.knee
-        before = arb(0) if z >= knee else formulas.closed(z.min(knee), self) - formulas.closed(knee, self)
+        before = (
+            arb(0) if z >= knee else formula_in_balls.closed(z.min(knee), self) - formula_in_balls.closed(knee, self)
+        )
         if z <= knee:
             return before
         end = z.max(knee).min(self.cutoff)
-        return before + integrate(lambda x, analytic: formulas.tapered(x, self, analytic), knee, end)
+        return before + integrate(lambda x, analytic: formula_in_balls.tapered(x, self, analytic), knee, end)
 
 
 def _nonnegative(s2: Any) -> Any:

@@ -38,7 +38,7 @@ from flockana.base.checks import FloatArray
 from flockana.certified.balls import ball, dot, hull, square
 from flockana.certified.decimals import round_down
 from flockana.certified.krawczyk import column, identity, least_eigenvalue
-from flockana.certified.structure import Balls, Structure, outer
+from flockana.certified.structural_potential import Balls, Structure, outer
 
 LEVELS = 4  # cells of the first cut: 2^4 to either side, as many as there are shells
 SHELLS = 2**LEVELS

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
 from flockana.cli.options import AsJson, CaseName, Seed, output
-from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
 
 
 def animate_command(
@@ -22,7 +22,7 @@ def animate_command(
     as_json: AsJson = False,
 ) -> int:
     """Simulate a scenario, or read a saved run, and write a film of it: GIF, or MP4 where ffmpeg is installed."""
-    from flockana.cli.own import read_case
+    from flockana.cli.subject import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.plots.animation import animate, ensure_film
 

@@ -56,8 +56,8 @@ def theorems_command(
 def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) -> None:
     """Print which theorems' claims hold of a flock by its law and its start."""
     from flockana.base.errors import ArgumentError
-    from flockana.cli.own import is_own, read_own
-    from flockana.cli.show import show, show_json
+    from flockana.cli.command_output import show, show_json
+    from flockana.cli.subject import is_own, read_own
     from flockana.report.tables import column, headed_table
     from flockana.scenarios import scenario
     from flockana.theorems.applicable import applicable_to
@@ -80,7 +80,7 @@ def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) ->
 def _show(
     found: list[dict[str, Any]], table: Callable[[list[str]], Any], kind: str, *, long: bool, as_json: bool
 ) -> None:
-    from flockana.cli.show import show, show_json, show_lines
+    from flockana.cli.command_output import show, show_json, show_lines
     from flockana.report.catalogues import short_list
 
     if as_json:

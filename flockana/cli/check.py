@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_json
 from flockana.cli.options import AsJson
-from flockana.cli.show import OK, UNEXPECTED, print_error, show_json
 
 
 def check_command(
@@ -23,7 +23,7 @@ def check_command(
     """
     from dataclasses import asdict
 
-    from flockana.certified.check import RejectedError, check_certificate
+    from flockana.certified.certificate_check import RejectedError, check_certificate
 
     try:
         result = check_certificate(file)

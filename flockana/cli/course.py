@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 import typer
 
 from flockana.base.errors import ArgumentError
+from flockana.cli.command_output import OK, show_json
 from flockana.cli.options import AsJson
-from flockana.cli.show import OK, show_json
 
 
 def course_command(

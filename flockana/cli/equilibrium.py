@@ -6,8 +6,8 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time, output
-from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium
@@ -42,7 +42,7 @@ def equilibrium_command(
     from flockana.cli.flock import announce_time, read_motion
     from flockana.cli.picture import ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
-    from flockana.equilibria.record import write_equilibrium
+    from flockana.equilibria.equilibrium_files import write_equilibrium
 
     ensure_file(save_to, (".json",))
     ensure_file(plot)
@@ -86,7 +86,7 @@ def summary(equilibrium: Equilibrium, name: str) -> dict[str, Any]:
 
 def _draw(ax: Any, equilibrium: Equilibrium, name: str) -> None:
     from flockana import plots
-    from flockana.cli.source import law_scales
+    from flockana.cli.positions_source import law_scales
     from flockana.equilibria.potential import Potential
     from flockana.measures.nets import links
 

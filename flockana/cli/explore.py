@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.cli.command_output import OK
 from flockana.cli.options import OWN
-from flockana.cli.show import OK
 
 
 def explore_command(
@@ -55,8 +55,8 @@ def _first(name: str, folder: str) -> dict[str, str]:
     import os
     from pathlib import Path
 
-    from flockana.cli.own import is_own, read_case
-    from flockana.explore.own import save_case
+    from flockana.cli.subject import is_own, read_case
+    from flockana.explore.own_flock import save_case
     from flockana.explore.starts import FILES, from_file, law_names
     from flockana.scenarios import scenarios
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError
+from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 from flockana.cli.options import AsJson, On, Plot, output
-from flockana.cli.show import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -53,8 +53,8 @@ def falsify_command(
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
-    from flockana.cli.own import is_own, read_flock, read_theorem
     from flockana.cli.picture import ensure_file, write_picture
+    from flockana.cli.subject import is_own, read_flock, read_theorem
     from flockana.falsify import falsify
     from flockana.plots.falsify import falsification
 
@@ -187,8 +187,8 @@ def claim_table(search: Falsification) -> Table:
     from rich.text import Text
 
     from flockana.report.tables import column, headed_table
-    from flockana.report.text import MARKS
-    from flockana.report.text import show as number
+    from flockana.report.value_texts import MARKS
+    from flockana.report.value_texts import show as number
 
     headings = "claim", "margin at the start", "at worst", "worst status", "judged on"
     table = headed_table(*(column(text, right=text not in ("claim", "worst status")) for text in headings))

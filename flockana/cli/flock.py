@@ -41,8 +41,8 @@ def read_motion(
     >>> law.title, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
-    from flockana.cli.own import is_own, read_law
-    from flockana.cli.source import ensure_source, read_source
+    from flockana.cli.positions_source import ensure_source, read_source
+    from flockana.cli.subject import is_own, read_law
     from flockana.environment import StaticTarget
     from flockana.interactions import AlphaInteraction
     from flockana.laws import Algorithm1, Algorithm2
@@ -97,8 +97,8 @@ def _refuse(name: str, reason: str, **given: object) -> None:
 
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray, FloatArray]:
-    from flockana.cli.own import is_own, read_flock
-    from flockana.cli.source import integrated_law
+    from flockana.cli.positions_source import integrated_law
+    from flockana.cli.subject import is_own, read_flock
     from flockana.equilibria.classify import ensure_small
 
     item = read_flock(name, seed)

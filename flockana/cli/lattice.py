@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from flockana.cli.command_output import OK, show_facts, show_files
 from flockana.cli.options import AsJson, Plot, Time
-from flockana.cli.show import OK, show_facts, show_files
 
 if TYPE_CHECKING:
-    from flockana.cli.source import Source
+    from flockana.cli.positions_source import Source
     from flockana.measures.nets import LinkArray
     from flockana.theorems import Tolerances, Verdict
 
@@ -47,7 +47,7 @@ def lattice_command(
     Exit status: 0 measured, 2 bad input, 130 interrupted.
     """
     from flockana.cli.picture import ensure_file, write_picture
-    from flockana.cli.source import read_source
+    from flockana.cli.positions_source import read_source
     from flockana.lattice import links
     from flockana.report.console import details
     from flockana.theorems import verify
@@ -100,8 +100,8 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str, Any]:
     """Return scale, links, crossings, rigidity and defects of a configuration as plain data."""
     from flockana.lattice import classify, coordination, harborth, is_complete, planar_bound
+    from flockana.lattice.classification import GUARD
     from flockana.lattice.crossings import LISTED
-    from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance
     from flockana.measures.nets import components, link_lengths
 

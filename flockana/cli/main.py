@@ -18,9 +18,9 @@ from flockana.base.errors import FlockanaError, UnknownNameError
 from flockana.base.garbage import freeze_gc, relaxed_gc
 from flockana.base.interrupts import restore_interrupts
 from flockana.cli.command import Command
-from flockana.cli.groups import EXAMPLES, Groups
-from flockana.cli.home import prepare_home
-from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, print_error
+from flockana.cli.command_output import BAD_INPUT, INTERRUPTED, OK, print_error
+from flockana.cli.matplotlib_home import prepare_home
+from flockana.cli.root_help import EXAMPLES, Groups
 from flockana.cli.streams import finish_output, prepare_output
 
 _NAME = "flockana"

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.cli.command_output import OK, UNEXPECTED, show, show_files, show_json
 from flockana.cli.options import AsJson, output
-from flockana.cli.show import OK, UNEXPECTED, show, show_files, show_json
 
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
@@ -132,10 +132,10 @@ def _with_options(text: str) -> str:
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if no option names one."""
-    from flockana.cli.own import is_own, read_law
+    from flockana.cli.subject import is_own, read_law
     from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
-    from flockana.recorded.unknown import scaled_alpha
+    from flockana.recorded.unknown_law import scaled_alpha
     from flockana.scenarios import scenario
 
     if formula is not None:
@@ -150,8 +150,8 @@ def _law(name: str | None, formula: str | None, d: float | None, r: float | None
 
 
 def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
-    from flockana.cli.source import law_scales
-    from flockana.recorded.unknown import scaled_alpha
+    from flockana.cli.positions_source import law_scales
+    from flockana.recorded.unknown_law import scaled_alpha
 
     if d is not None or r is not None:
         alpha = scaled_alpha(d, r)

@@ -13,8 +13,8 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
+from flockana.cli.command_output import OK, UNEXPECTED, show_files, show_json
 from flockana.cli.options import AsJson, Jobs, output
-from flockana.cli.show import OK, UNEXPECTED, show_files, show_json
 
 if TYPE_CHECKING:
     from rich.table import Table

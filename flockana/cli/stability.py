@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.options import Algorithm, AnySeed, AsJson, At, Plot, Range, Scale, SourceName, Start, Time
-from flockana.cli.show import OK, UNEXPECTED, print_error, show_facts, show_files
 from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
@@ -114,9 +114,9 @@ def _velocities(law: Any, p: Any) -> Any:
 def rest_of(law: Any, q: Any) -> Any:
     """Return the equilibrium of a law near positions, or a rest; of a map of its own the positions."""
     from flockana.equilibria import find_equilibrium
-    from flockana.equilibria.rest import resting_state
+    from flockana.equilibria.rest_without_potential import resting_state
     from flockana.laws import DiscreteLaw
-    from flockana.stability.loops import instant_law
+    from flockana.stability.wrapped_loops import instant_law
 
     if isinstance(law, DiscreteLaw) and law.continuous is None:
         return q
@@ -194,7 +194,7 @@ def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
 
 def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, Any]:
     """Return the linearisation's results as plain data."""
-    from flockana.stability.translational import CentreOfMass
+    from flockana.stability.centre_transfer import CentreOfMass
 
     slow, (n, m) = tuple(slow), linear.q.shape
     whole = linear.q.size <= DENSE
@@ -251,7 +251,7 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
     import numpy as np
 
     from flockana import plots
-    from flockana.stability.translational import CentreOfMass
+    from flockana.stability.centre_transfer import CentreOfMass
 
     law: Any = linear.law
     space = "3d" if linear.q.shape[1] == 3 else None

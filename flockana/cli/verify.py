@@ -10,19 +10,19 @@ import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
+from flockana.cli.command_output import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.options import AnySeed, AsJson, Jobs, On, output
-from flockana.cli.own import is_own, read_theorem
-from flockana.cli.show import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
 from flockana.cli.streams import in_output_encoding
+from flockana.cli.subject import is_own, read_theorem
 from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flockana.report.pages import Page
+    from flockana.report.seed_surveys import Survey
     from flockana.report.statistics import StatisticsSection
-    from flockana.report.surveys import Survey
-    from flockana.report.work import Done, Work
+    from flockana.report.verify_catalogue import Done, Work
     from flockana.theorems import Theorem
 
 
@@ -59,8 +59,8 @@ def verify_command(
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory, report_folder, verdicts_json
     from flockana.report.pages import Page
+    from flockana.report.seed_surveys import SurveyResult
     from flockana.report.statistics import gather
-    from flockana.report.surveys import SurveyResult
 
     started, name = time.perf_counter(), _id_of(name)
     if is_own(name) and on is None:
@@ -98,9 +98,9 @@ def verify_command(
 
 def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | None, *, as_json: bool) -> int:
     """Check every theorem about the law of a flock that a Python file defines."""
-    from flockana.cli.own import read_own
+    from flockana.cli.subject import read_own
     from flockana.report.build import verdicts_json, write_report
-    from flockana.report.own import own_pages
+    from flockana.report.own_report import own_pages
 
     if seeds:
         raise ArgumentError(f"{name}: a flock in a file is run once; leave out --seeds, or use flockana ensemble")
@@ -118,7 +118,7 @@ def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | N
 def _id_of(name: str | None) -> str | None:
     """Return the id of a theorem given as its source prints it, such as "Theorem 3"; other names as they are."""
     from flockana.base.errors import UnknownNameError
-    from flockana.report.work import ERRATA
+    from flockana.report.verify_catalogue import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
@@ -135,8 +135,8 @@ def _planned(
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
     """Return the tasks of all scenarios to verify, and the surveys among them."""
     from flockana.report.section import DECAYS, LINEARISED, MANY_LAWS, MARGINS, Section
-    from flockana.report.surveys import surveys
-    from flockana.report.work import plan
+    from flockana.report.seed_surveys import surveys
+    from flockana.report.verify_catalogue import plan
 
     tasks = plan(name, seed=seed, figures=figures)
     many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
@@ -157,7 +157,7 @@ def _write(folder: Path, results: Sequence[Done], pages: Sequence[Page], **run: 
 
 def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, FlockanaError | None]:
     """Return results in task order, exit status and error; completed results survive an error or Ctrl-C."""
-    from flockana.report.work import check_all
+    from flockana.report.verify_catalogue import check_all
 
     results: dict[str, Done] = {}
     code, failure = OK, None
@@ -178,7 +178,7 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
 
 def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | None) -> None:
     from flockana.base.checks import ensure_known
-    from flockana.report.work import ERRATA
+    from flockana.report.verify_catalogue import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
 
@@ -200,9 +200,9 @@ def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | 
 
 def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool) -> Page:
     """Return a page's verdict of one theorem on a scenario, or on a saved run as one of its scenario."""
-    from flockana.cli.own import read_case
+    from flockana.cli.subject import read_case
     from flockana.dynamics.trajectory import Trajectory
-    from flockana.report.own import own_pages
+    from flockana.report.own_report import own_pages
     from flockana.report.pages import scenario_page
     from flockana.scenarios import Scenario, scenario, scenarios
     from flockana.theorems import Theorem, verify
@@ -231,7 +231,7 @@ def _print_verdicts(
     from rich.console import Console
 
     from flockana.report.console import details, errata_table, statistics_table, summary, verdict_table
-    from flockana.report.work import ERRATA
+    from flockana.report.verify_catalogue import ERRATA
 
     console, in_full = Console(highlight=False, emoji=False), name not in (None, ERRATA)
     if in_full:

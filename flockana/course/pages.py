@@ -10,8 +10,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from flockana.base.bibtex_entries import cite
 from flockana.base.errors import ArgumentError
-from flockana.base.references import cite
 
 _STATEMENT = re.compile(r"^> \*\*((?:Theorem|Lemma|Proposition|Corrected)[^*]*)\*\*", re.MULTILINE)
 _PROOF = re.compile(r"^\*(Proof[^*]*?)[.:]?\*.*?\\square[^\n]*(?:\n\\end[^\n]*)?$", re.MULTILINE | re.DOTALL)

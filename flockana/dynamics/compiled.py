@@ -1,20 +1,20 @@
-"""Laws that are compiled together with the integrator: many steps in one call (`flockana.kernels.advance`)."""
+"""Laws that are compiled together with the integrator: many steps in one call (`flockana.kernels.many_steps`)."""
 
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.block_pace import Pace
 from flockana.dynamics.encounters import at_a_pole
 from flockana.dynamics.frame import Plan
-from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Start
 from flockana.dynamics.stepper import Integrator
 from flockana.jit import thawed
-from flockana.kernels.advance import Advanced, advance
+from flockana.kernels.adaptive_steps import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
 from flockana.kernels.grid import LARGE
 from flockana.kernels.large import fill
-from flockana.kernels.march import FULL, NOT_FINITE, SINGULAR, TOO_SMALL, UNLISTED, Block, Room
+from flockana.kernels.many_steps import Advanced, advance
 from flockana.kernels.runge_kutta import Method, System
 from flockana.kernels.threads import several_threads
 from flockana.kernels.verlet import COUNT, MADE, no_pairs, spatial_order, with_room

@@ -9,8 +9,8 @@ A pair in range from the start may go as far in a step. The same holds of agents
 which a law's force begins, ends or jumps (`Law.surfaces`).
 
 Paths are the quintics that match position, velocity and acceleration at both ends of the step, ranges are widened by
-the allowance for their error (`flockana.kernels.paths`), and a first contact is found by halving control polygons:
-what is missed is less than the integrator's own error makes of a path. Relative ways count, so a flock's common motion
+the allowance for their error (`flockana.kernels.quintic_paths`), and a first contact is found by halving polygons: what
+is missed is less than the integrator's own error makes of a path. Relative ways count, so a flock's common motion
 shortens no step.
 """
 
@@ -27,16 +27,16 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.frame import Frame, Plan
 from flockana.environment.beta import ObstacleField
 from flockana.jit import Kernel, callback_like, thawed
+from flockana.kernels.adaptive_steps import Block
 from flockana.kernels.alpha import BETA_AREA
-from flockana.kernels.bodies import body_numbers
-from flockana.kernels.bound import bound
-from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
+from flockana.kernels.bound_templates import bound
 from flockana.kernels.encounters import Around, Ends
 from flockana.kernels.grid import LARGE
 from flockana.kernels.large import as_callback, lister
 from flockana.kernels.laws import guard_of
-from flockana.kernels.march import Block
-from flockana.kernels.shares import TOO_MANY
+from flockana.kernels.obstacle_terms import body_numbers
+from flockana.kernels.step_checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
+from flockana.kernels.step_shares import TOO_MANY
 from flockana.kernels.verlet import COUNT, Pairs, no_pairs, with_room
 from flockana.laws.law import LawOfMotion
 
@@ -96,7 +96,7 @@ class Encounters:
         """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
         bodies, poles, pairs = self.bodies is not None, self.poles.size > 0, self.radii.size > 0
         flags = {"BODIES": bodies, "PAIRS": pairs or poles, "POLES": poles, "CROWD": crowd}
-        kernel: Kernel = bound("flockana.kernels.shares", **flags).share_of_step
+        kernel: Kernel = bound("flockana.kernels.step_shares", **flags).share_of_step
         return kernel
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
@@ -121,7 +121,7 @@ class Encounters:
 
 
 class StepChecks:
-    """Checks that every step of a run must pass (`flockana.kernels.checks`)."""
+    """Checks that every step of a run must pass (`flockana.kernels.step_checks`)."""
 
     def __init__(self, law: LawOfMotion, frame: Frame, plan: Plan) -> None:
         self._encounters, self._view = Encounters.of(law, frame.shape[0]), frame.view

@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.block_pace import Pace
 from flockana.dynamics.encounters import Encounters, State
-from flockana.dynamics.pace import Pace
 from flockana.dynamics.sample import Samples, Start, copied, finite
 from flockana.dynamics.stepper import Stepper
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
 from flockana.laws.velocity import first_order
-from flockana.laws.wrapped import wrappers_within
+from flockana.laws.wrapper_base import wrappers_within
 from flockana.solvers.fixed_steps import FixedSteps
 
 _NUMBERS = 6_000_000  # kept of the steps made at once, at most

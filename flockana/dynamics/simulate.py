@@ -24,13 +24,13 @@ from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
-from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.driver import drive, integrator_of
 from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.iterate import MapStepper, count_steps
 from flockana.dynamics.sample import Sample, Samples, Start, Tally
 from flockana.dynamics.stepper import Stepper
+from flockana.dynamics.steps_between_samples import Between, Recorder
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.grid import LARGE
@@ -38,10 +38,10 @@ from flockana.kernels.threads import ensure_threads, limited_threads
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
-from flockana.laws.wrapped import needs_steps, wrappers_within
+from flockana.laws.wrapper_base import needs_steps, wrappers_within
 from flockana.solvers.fixed_steps import FixedStep, FixedSteps
-from flockana.solvers.named import solver_of
 from flockana.solvers.solver import Solver
+from flockana.solvers.solver_names import solver_of
 
 
 def simulate(

@@ -11,8 +11,8 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.sample import Samples, Start
-from flockana.kernels.advance import record
-from flockana.kernels.march import Block
+from flockana.kernels.adaptive_steps import Block
+from flockana.kernels.many_steps import record
 from flockana.laws.law import LawOfMotion
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run

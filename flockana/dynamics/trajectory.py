@@ -16,12 +16,12 @@ from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, rea
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import LEAST, MOST, Scales
 from flockana.base.seals import replace_sealed
-from flockana.base.tables import facts_html
+from flockana.base.table_export import facts_html
 from flockana.base.units import rescale
 from flockana.base.vectors import centres, lengths
-from flockana.dynamics import saved
-from flockana.dynamics.between import Between
-from flockana.dynamics.measured import MeasuredRun
+from flockana.dynamics import saved_runs
+from flockana.dynamics.run_quantities import MeasuredRun
+from flockana.dynamics.steps_between_samples import Between
 from flockana.dynamics.tolerance import ensure_atol, options_in_units
 from flockana.laws.velocity import ensure_any_law
 
@@ -254,7 +254,7 @@ class Trajectory(MeasuredRun):
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""
-        return saved.to_xarray(self)
+        return saved_runs.to_xarray(self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
@@ -270,7 +270,7 @@ class Trajectory(MeasuredRun):
         ArgumentError
             If the law holds something that has no written form, such as a user's function.
         """
-        return saved.save(self.to_xarray(), path)
+        return saved_runs.save(self.to_xarray(), path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -281,4 +281,4 @@ class Trajectory(MeasuredRun):
         FileError
             If the file is missing, is no netCDF, is not one of ours, is of a newer format, or is damaged.
         """
-        return saved.load(cls, path)
+        return saved_runs.load(cls, path)

@@ -24,16 +24,16 @@ from flockana.base.serialize import to_data
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
 from flockana.ensemble.executors import ensure_worker_options, worker_pool
-from flockana.ensemble.guard import can_start_processes
+from flockana.ensemble.one_run import COMPLETE, Job, Request, Scalar, reference
 from flockana.ensemble.processes import cores
 from flockana.ensemble.runs import make_runs
+from flockana.ensemble.start_guard import can_start_processes
 from flockana.ensemble.store import Store
-from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
-from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.flock import chosen as chosen_flock
+from flockana.scenarios.option_checks import SOURCE
 from flockana.theorems import Theorem, Tolerances, theorem, theorems
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana._version import __version__
+from flockana.ensemble.one_run import Job, Record, Request, Scalar
 from flockana.ensemble.shares import RUNS, STATUSES
-from flockana.ensemble.work import Job, Record, Request, Scalar
 from flockana.measures.measure import measures
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarr
     """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
 
-    from flockana.ensemble.shown import Runs  # loads xarray
+    from flockana.ensemble.share_tables import Runs  # loads xarray
 
     dims = (*grid.axes, "seed")
     claims = list(dict.fromkeys(name for record in records for name in record.claims))

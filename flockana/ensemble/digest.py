@@ -28,7 +28,7 @@ _LIBRARIES = ("numpy", "scipy", "numba")
 # files and folders of these names, wherever they are, decide no number
 _SILENT = {"plots", "figures", "report", "player", "explore", "course", "cli", "falsify", "ensemble", "references"}
 _SILENT |= {"_version", "__init__"}
-_ENSEMBLE = "ensemble/work.py"  # of the ensemble, what makes a record
+_ENSEMBLE = "ensemble/one_run.py"  # of the ensemble, what makes a record
 
 
 @cache

@@ -6,7 +6,7 @@ from functools import partial
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import WorkerPool
-from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
+from flockana.ensemble.one_run import DIED, Job, Record, Request, run_batch
 
 BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256

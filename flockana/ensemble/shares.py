@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from flockana.base.binomial import clopper_pearson, ensure_level
 from flockana.base.errors import ArgumentError
-from flockana.ensemble.work import COMPLETE, DIED, ERROR, FAILED
+from flockana.ensemble.one_run import COMPLETE, DIED, ERROR, FAILED
 
 if TYPE_CHECKING:
     import xarray

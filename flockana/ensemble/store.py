@@ -17,7 +17,7 @@ from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path, ensure_target
 from flockana.ensemble.digest import numerics_version
-from flockana.ensemble.work import COMPLETE, Record
+from flockana.ensemble.one_run import COMPLETE, Record
 
 FORMAT = 1
 _MARK = 0x666C6F63  # "floc": tells our files from other SQLite files

@@ -1,13 +1,13 @@
 from .beta import ObstacleField as ObstacleField
 from .capsule import Capsule as Capsule
-from .copies import Copies as Copies
+from .dynamic_gamma_agents import SystemTarget as SystemTarget
+from .gamma_agent_copies import Copies as Copies
 from .obstacles import Obstacle as Obstacle
 from .obstacles import Sphere as Sphere
 from .obstacles import Wall as Wall
 from .polygon import Polygon as Polygon
 from .polygon import SimplePolygon as SimplePolygon
 from .spring import Spring as Spring
-from .system import SystemTarget as SystemTarget
 from .table_target import TableTarget as TableTarget
 from .target import Target as Target
 from .targets import CallableTarget as CallableTarget

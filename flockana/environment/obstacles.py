@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 
 
 class Harmonic(NamedTuple):

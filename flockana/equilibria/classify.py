@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import Landscape, descent_direction
-from flockana.equilibria.large import LargeLandscape
+from flockana.equilibria.large_curvature import LargeLandscape
 from flockana.equilibria.potential import Potential
 
 EquilibriumKind = Literal["minimum", "saddle", "maximum", "degenerate"]

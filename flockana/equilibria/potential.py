@@ -8,10 +8,10 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import ensure_consistent
+from flockana.base.override_checks import ensure_consistent
 from flockana.environment import Obstacle, Sphere, Wall
-from flockana.equilibria.terminal import generators, rigid_motions
-from flockana.interactions.pair import PairInteraction
+from flockana.equilibria.final_state import generators, rigid_motions
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.laws import Law, Navigation, PairTerm, SumOfTerms
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray

@@ -17,7 +17,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
-from flockana.base.tables import facts_html, facts_text
+from flockana.base.table_export import facts_html, facts_text
 from flockana.equilibria.classify import MAX_SIZE, EquilibriumKind, classify_spectrum, ensure_small, falling, spectrum
 from flockana.equilibria.descent import descend
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle
@@ -240,7 +240,7 @@ def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[Float
     """Minimise in a box about the start, then in boxes about each solution, until one lies inside its box."""
     # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
-    from flockana.equilibria.program import Program
+    from flockana.equilibria.ipopt_program import Program
 
     (n, m), escapes, margin = q.shape, 0, _MARGIN * potential.pair.length
     program: Program | None = None

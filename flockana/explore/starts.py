@@ -14,8 +14,8 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.falsify.counterexample import Counterexample
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.candidates import Candidate, candidates
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.usual_laws import Candidate, candidates
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Tolerances

@@ -37,7 +37,7 @@ class Worker:
 
     def answer_all(self) -> None:
         """Answer questions until the process ends."""
-        from flockana.explore.answers import answer
+        from flockana.explore.case_answers import answer
 
         while True:
             with self.changed:
@@ -83,8 +83,8 @@ def _read_to_the_end(worker: Worker) -> None:
 
 def _warm() -> None:
     """Load the modules and kernels that most answers need, before the first question."""
-    from flockana.explore.answers import answer
     from flockana.explore.case import Case
+    from flockana.explore.case_answers import answer
 
     ran: list[str] = []
     with suppress(KeyboardInterrupt):

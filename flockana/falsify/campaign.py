@@ -13,10 +13,10 @@ from flockana.base.checks import FloatArray, TimeSpan, ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
+from flockana.falsify.bounded_space import STATE, search_space
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.search import Search
-from flockana.falsify.space import STATE, search_space
 from flockana.recorded.parameters import law_parameter
 from flockana.scenarios import Flock, Scenario
 from flockana.scenarios.flock import as_scenario, chosen

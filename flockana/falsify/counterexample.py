@@ -15,7 +15,7 @@ from flockana.base.errors import ArgumentError, FileError, FlockanaError
 from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory

@@ -9,13 +9,13 @@ from flockana.base.checks import FloatArray
 from flockana.base.interrupts import restore_interrupts
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
+from flockana.falsify.bounded_space import Space
 from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, grade
-from flockana.falsify.space import Space
 from flockana.scenarios import Scenario
 from flockana.theorems import Claim, Theorem, Tolerances, Verdict, theorem, verify
 from flockana.theorems.claims import vacuous
-from flockana.theorems.leads import squash
+from flockana.theorems.search_objectives import squash
 from flockana.theorems.theorem import Lead, unmet
 
 

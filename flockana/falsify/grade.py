@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from math import isnan
 
 from flockana.theorems import Claim, Hypothesis
-from flockana.theorems.leads import squash
+from flockana.theorems.search_objectives import squash
 
 FAILED = 1000.0
 _REFUTED, _VACUOUS = -2.0, 2.0

@@ -14,12 +14,12 @@ from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
-from flockana.interactions.functions import SlopeBound
-from flockana.interactions.pair import PairInteraction, Tabulated, ensure_lengths, evaluate, one_by_one
+from flockana.interactions.distance_functions import SlopeBound
+from flockana.interactions.pair_interaction import PairInteraction, Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
-from flockana.kernels.lift import lift, lift_scalar
+from flockana.kernels.integral_tables import integral_panels, on_panels, panel_edges
+from flockana.kernels.pair_lift import lift, lift_scalar
 from flockana.kernels.scalars import bump, phi, phi_integral, sigma_norm
-from flockana.kernels.tables import integral_panels, on_panels, panel_edges
 
 _STRENGTH_GRID = 2049
 _PROOFS = ("σ₁ is analytic, and ρ_h is C¹ with ρ_h(1) = ρ_h'(1) = 0", "ρ_h >= 0", "ρ_h(z) > 0 for z < 1")

@@ -9,11 +9,11 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.units import Powers
-from flockana.interactions.pair import Tabulated, ensure_lengths, evaluate, one_by_one
+from flockana.interactions.pair_interaction import Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
-from flockana.kernels.lift import lift_scalar
+from flockana.kernels.integral_tables import integral_panels, on_panels, panel_edges
+from flockana.kernels.pair_lift import lift_scalar
 from flockana.kernels.scalars import sigma_norm
-from flockana.kernels.tables import integral_panels, on_panels, panel_edges
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
 _PHI_BETA = lift_scalar(kernel.phi_beta)

@@ -10,13 +10,13 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
+from flockana.interactions.distance_functions import SlopeBound
 from flockana.interactions.formula_parts import FormulaParts, formula_parts
-from flockana.interactions.functions import SlopeBound
-from flockana.interactions.pair import PairInteraction
-from flockana.kernels.generated import generated_kernels
+from flockana.interactions.pair_interaction import PairInteraction
+from flockana.kernels.generated_scalars import generated_kernels
 
 if TYPE_CHECKING:
-    from flockana.kernels.lift import PairKernels
+    from flockana.kernels.pair_lift import PairKernels
     from flockana.symbolic.derivation import Derivation
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding

@@ -14,9 +14,9 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
-from flockana.interactions.formula_near import TERMS, NearZero, near_zero
-from flockana.interactions.functions import SlopeBound
-from flockana.kernels.tables import integral_panels, series_nodes, series_of
+from flockana.interactions.distance_functions import SlopeBound
+from flockana.interactions.formula_near_zero import TERMS, NearZero, near_zero
+from flockana.kernels.integral_tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
     from flockana.symbolic.pair_formula import PiecewiseFormula

@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, normalise, per_agent
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")

@@ -11,7 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.units import Powers
-from flockana.interactions.functions import DistanceFunction, InnerValues, SlopeBound
+from flockana.interactions.distance_functions import DistanceFunction, InnerValues, SlopeBound
 from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope, singular, singular_slope
 
 

@@ -6,8 +6,8 @@ from math import exp, inf, log1p
 from typing import Any
 
 from flockana.jit import Kernel, register_jitable
-from flockana.kernels.bound import bound
-from flockana.kernels.lift import lift_scalar
+from flockana.kernels.bound_templates import bound
+from flockana.kernels.pair_lift import lift_scalar
 
 STRENGTH, LENGTH, DECAY = range(3)
 

@@ -3,7 +3,7 @@
 from functools import cache
 
 from flockana.jit import Kernel, register_jitable
-from flockana.kernels.bound import made
+from flockana.kernels.bound_templates import made
 
 BLOCK = 512  # pairs: what is known of them stays in the first-level cache
 

@@ -8,7 +8,7 @@ from math import sqrt
 import numpy as np
 
 from flockana.jit import kernel
-from flockana.kernels.sums import square_between
+from flockana.kernels.agent_sums import square_between
 
 
 @kernel

@@ -1,13 +1,13 @@
 """Distance between the paths of a long step and those through a middle one: the error of leaving a step out.
 
-Both are quintics (`flockana.kernels.paths`). The long one is parted at the middle by de Casteljau; the difference of
-two curves stays in the hull of the differences of their control points.
+Both are quintics (`flockana.kernels.quintic_paths`). The long one is parted at the middle by de Casteljau; the
+difference of two curves stays in the hull of the differences of their control points.
 """
 
 import numpy as np
 
 from flockana.jit import kernel, register_jitable
-from flockana.kernels.paths import polygon
+from flockana.kernels.quintic_paths import polygon
 
 
 @register_jitable

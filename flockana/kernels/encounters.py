@@ -1,7 +1,7 @@
 """Whether a step leapt over an encounter: two agents in and out of each other's reach between two evaluations.
 
-The paths of a step are the quintics through its ends (`flockana.kernels.paths`). Paths of many agents are not kept, but
-made again for the few pairs that may matter.
+The paths of a step are the quintics through its ends (`flockana.kernels.quintic_paths`). Paths of many agents are not
+kept, but made again for the few pairs that may matter.
 """
 
 from typing import Any, NamedTuple
@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import inlined, kernel
-from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
-from flockana.kernels.sums import column_mean, put, slope_along
+from flockana.kernels.agent_sums import column_mean, put, slope_along
+from flockana.kernels.quintic_paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
 
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
 _STEEP = 0.5  # a slope from which on the common way says too little of how near two agents come

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import Kernel, callback, launch_threads, load_numba
-from flockana.kernels.bound import made
+from flockana.kernels.bound_templates import made
 from flockana.kernels.large import parallel_twin
 
 _HEAD = """from flockana.jit import kernel

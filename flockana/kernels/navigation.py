@@ -9,7 +9,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from flockana.jit import inlined, kernel
-from flockana.kernels.sums import pull_to, squared_deviations
+from flockana.kernels.agent_sums import pull_to, squared_deviations
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 

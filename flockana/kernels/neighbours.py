@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.jit import kernel
+from flockana.kernels.agent_sums import square_between
 from flockana.kernels.grid import sort_into_grid
-from flockana.kernels.sums import square_between
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]

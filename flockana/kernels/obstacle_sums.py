@@ -1,4 +1,4 @@
-"""Sums over agents and the obstacles of one kind: a template (`flockana.kernels.bound`).
+"""Sums over agents and the obstacles of one kind: a template (`flockana.kernels.bound_templates`).
 
 ``pars[starts[k]:starts[k + 1]]`` are the parameters of obstacle k, ``balls[k]`` is (centre, radius) of a ball that
 holds it: agents farther from the ball than the range cost one distance.
@@ -8,13 +8,13 @@ import numpy as np
 
 from flockana.jit import kernel, register_jitable
 from flockana.kernels.alpha import adjacency_beta_slope, pair_beta, pair_beta_slope, psi_beta
-from flockana.kernels.bodies import BETA, C1, C2, REACH, STARTS, bodies_of
 from flockana.kernels.encounters import SLACK
+from flockana.kernels.obstacle_crossings import LOOKS, MARCHES, TOUCH, longest, out_of_reach, point_at, within_reach
+from flockana.kernels.obstacle_terms import BETA, C1, C2, REACH, STARTS, bodies_of
 from flockana.kernels.obstacles import no_turn as turn  # bound
 from flockana.kernels.obstacles import project_nothing as project  # bound
-from flockana.kernels.paths import reach_of
+from flockana.kernels.quintic_paths import reach_of
 from flockana.kernels.scalars import sigma_norm
-from flockana.kernels.shells import LOOKS, MARCHES, TOUCH, longest, out_of_reach, point_at, within_reach
 
 
 @kernel

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from flockana.jit import Kernel, register_jitable
-from flockana.kernels.bound import bound
+from flockana.kernels.bound_templates import bound
 
 
 @dataclass(frozen=True)

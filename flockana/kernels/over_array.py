@@ -1,4 +1,4 @@
-"""A scalar function over a one-dimensional array: a template (`flockana.kernels.bound`)."""
+"""A scalar function over a one-dimensional array: a template (`flockana.kernels.bound_templates`)."""
 
 import numpy as np
 

@@ -1,13 +1,13 @@
-"""Potential and derivatives of a pair law over a block of pairs: a template (`flockana.kernels.bound`)."""
+"""Potential and derivatives of a pair law over a block of pairs: a template (`flockana.kernels.bound_templates`)."""
 
 import numpy as np
 
 from flockana.jit import kernel
+from flockana.kernels.agent_sums import square_between
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.sums import square_between
 
 NORMED = True  # bound
 

@@ -1,4 +1,4 @@
-"""Forces and potential of a pair law in M dimensions: a template (`flockana.kernels.bound`).
+"""Forces and potential of a pair law in M dimensions: a template (`flockana.kernels.bound_templates`).
 
 Candidates are gathered into blocks, those within range kept without a branch; the pair law runs over a block in a loop
 that the compiler turns into vector instructions, if the law has no branches of its own; and what it gives is added to

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable
-from flockana.kernels.sums import column_squares, squared_deviations
+from flockana.kernels.agent_sums import column_squares, squared_deviations
 from flockana.kernels.verlet import COUNT
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana.jit import kernel, parallel, prange
+from flockana.kernels.agent_sums import slope_along
 from flockana.kernels.runge_kutta import STRIP, combine_strip
-from flockana.kernels.sums import slope_along
 
 _PARTS = 64  # of the agents
 

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable
+from flockana.kernels.agent_sums import put, slope_along
 from flockana.kernels.grid import empty_cuts, sort_into_grid
-from flockana.kernels.sums import put, slope_along
 
 
 class Pairs(NamedTuple):

@@ -1,4 +1,4 @@
-"""Velocity consensus alone, with any weight of the distance: a template (`flockana.kernels.bound`).
+"""Velocity consensus alone, with any weight of the distance: a template (`flockana.kernels.bound_templates`).
 
 A weight is a scalar function of the squared distance and of its parameters. The numbers of a term are the gain, whether
 it is divided by the number of agents, the range (infinite for all pairs) and the parameters.

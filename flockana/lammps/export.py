@@ -26,8 +26,8 @@ from flockana.lammps import script
 from flockana.lammps.table import inner_cutoff, pair_table
 from flockana.laws.discrete import ensure_law
 from flockana.laws.law import Law
+from flockana.laws.law_with_start import WithStart
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.with_start import WithStart
 from flockana.measures.metrics import min_distance
 
 CONSENSUS = ("missing", "nearest")

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.lammps.pull import AXES, pull_commands
 from flockana.lammps.table import KEYWORD, PairTable, adjacency
+from flockana.lammps.target_pull import AXES, pull_commands
 from flockana.laws.law import Law
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.pairs import PairTerm

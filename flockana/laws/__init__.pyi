@@ -2,7 +2,7 @@ from .algorithm3 import Algorithm3 as Algorithm3
 from .composition import Composition as Composition
 from .composition import compose as compose
 from .delayed import Delayed as Delayed
-from .directed import DirectedNet as DirectedNet
+from .directed_algorithms import DirectedNet as DirectedNet
 from .discrete import DiscreteLaw as DiscreteLaw
 from .discrete import ensure_law as ensure_law
 from .disturbed import Disturbed as Disturbed

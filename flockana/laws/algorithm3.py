@@ -12,7 +12,7 @@ from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
 from flockana.interactions.gains import GainsField
-from flockana.laws.gained import GainedLaw
+from flockana.laws.gain_laws import GainedLaw
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
 from flockana.laws.terms.term import Term

@@ -20,10 +20,10 @@ from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.gains import GainsField
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
-from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains
+from flockana.laws.gain_laws import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.alignment import AlignmentTerm
-from flockana.laws.terms.along import AlongVelocity
+from flockana.laws.terms.along_velocity import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
 from flockana.laws.terms.feedforward import TargetFeedforward
 from flockana.laws.terms.navigation import Navigation

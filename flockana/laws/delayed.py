@@ -11,7 +11,7 @@ from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
 from flockana.laws.velocity import VelocityLaw, first_order
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
+from flockana.laws.wrapper_base import Step, View, Wrapper, ensure_hears, input_of
 
 LATE = ("all", "pairs", "neighbours")
 _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for rounding is as long

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, format_value
-from flockana.base.overrides import ensure_consistent
+from flockana.base.override_checks import ensure_consistent
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.laws.law import Arrays, Law, LawOfMotion

@@ -18,7 +18,7 @@ from flockana.kernels.listed import no_energy
 from flockana.laws.features import Feature
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, Derivatives, TermKernel
-from flockana.laws.wrapped import Step, View, Wrapper, input_of, normal_numbers
+from flockana.laws.wrapper_base import Step, View, Wrapper, input_of, normal_numbers
 from flockana.measures.frame import moving_frame
 
 _NOISE = 0  # channel of random numbers

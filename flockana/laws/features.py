@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from flockana.interactions.functions import LawFunction
+from flockana.interactions.distance_functions import LawFunction
 
 if TYPE_CHECKING:
-    from flockana.environment.copies import Copies
+    from flockana.environment.gamma_agent_copies import Copies
     from flockana.environment.target import Target
 
 

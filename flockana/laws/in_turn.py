@@ -11,10 +11,10 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, 
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.functions import LawFunction
+from flockana.interactions.distance_functions import LawFunction
 from flockana.laws.law import Law, LawOfMotion
 from flockana.laws.velocity import VelocityLaw
-from flockana.laws.wrapped import needs_steps
+from flockana.laws.wrapper_base import needs_steps
 
 
 @dataclass(frozen=True)

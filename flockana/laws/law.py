@@ -18,11 +18,11 @@ from flockana.base.checks import (
 )
 from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError, format_value
-from flockana.base.overrides import overrides_consistently
+from flockana.base.override_checks import overrides_consistently
 from flockana.base.scales import Scales
-from flockana.base.shown import ShortRepr
-from flockana.interactions.functions import LawFunction, PairCorner, UnknownEdges
-from flockana.interactions.pair import PairInteraction
+from flockana.base.short_repr import ShortRepr
+from flockana.interactions.distance_functions import LawFunction, PairCorner, UnknownEdges
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.laws.features import Feature, Unknown, function_feature
 
 if TYPE_CHECKING:

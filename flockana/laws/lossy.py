@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_nonnegative, normalise
 from flockana.base.errors import ArgumentError
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
+from flockana.laws.wrapper_base import Step, View, Wrapper, ensure_hears, input_of
 
 _LOST = 3  # channel of random numbers
 

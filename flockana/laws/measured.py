@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_nonnegative, normalise
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, input_of
+from flockana.laws.wrapper_base import Step, View, Wrapper, ensure_hears, input_of
 
 NOISY = ("all", "neighbours")
 _POSITION, _VELOCITY = 1, 2  # channels of random numbers

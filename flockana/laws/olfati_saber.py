@@ -10,7 +10,7 @@ from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
 from flockana.interactions.gains import GainsField
-from flockana.laws.gained import GAINS, GainedLaw, alpha_scales
+from flockana.laws.gain_laws import GAINS, GainedLaw, alpha_scales
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame

@@ -11,7 +11,7 @@ from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
 from flockana.laws.velocity import VelocityLaw
-from flockana.laws.wrapped import Step, View, Wrapper, input_of
+from flockana.laws.wrapper_base import Step, View, Wrapper, input_of
 
 
 @dataclass(frozen=True)

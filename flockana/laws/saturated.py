@@ -12,7 +12,7 @@ from flockana.base.units import Powers
 from flockana.laws.law import Law
 from flockana.laws.matrices import block_diagonal
 from flockana.laws.terms.term import Derivatives
-from flockana.laws.wrapped import Step, View, Wrapper, input_of
+from flockana.laws.wrapper_base import Step, View, Wrapper, input_of
 from flockana.measures.frame import moving_frame
 
 BY = ("length", "component")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
-from flockana.base.overrides import overrides_consistently
+from flockana.base.override_checks import overrides_consistently
 from flockana.laws.law import Law
 from flockana.laws.matrices import assembled
 from flockana.laws.terms.term import Compiled, Derivatives, Term, TermKernel

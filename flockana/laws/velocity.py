@@ -18,7 +18,7 @@ from flockana.base.checks import (
 )
 from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import ensure_consistent, overrides_consistently
+from flockana.base.override_checks import ensure_consistent, overrides_consistently
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law, LawOfMotion
 

@@ -18,7 +18,7 @@ from flockana.base.vectors import lengths
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import AlphaInteraction, BetaInteraction
-from flockana.kernels.paths import bernstein
+from flockana.kernels.quintic_paths import bernstein
 from flockana.measures.nets import link_lengths, links
 
 RELATIVE_TOL = 1e-9  # of the halving, relative to the extent of the motion
@@ -33,7 +33,7 @@ class Clearance:
     """Least clearance of a run from its obstacles."""
 
     # lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
-    # and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles
+    # and steps that resolve the motion (`flockana.kernels.quintic_paths`); ∞ without obstacles
     lower: float
     reached: float  # least signed distance reached on the interpolated paths: an estimate from above
     time: float  # when it was reached
@@ -51,8 +51,8 @@ def clearance(
     slack: FloatArray | None = None,
 ) -> Clearance:
     """Bound the clearance of all agents from all obstacles over all times, from samples of a run."""
-    # The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
-    # are too sparse to resolve the motion.
+    # The bound subtracts an allowance for each path's own error (`flockana.kernels.quintic_paths`), so it is weak
+    # where samples are too sparse to resolve the motion.
     n, m = q.shape[1:]
     least_of = [_Minimum(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)

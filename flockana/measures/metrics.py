@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.kinds import check_kinds
 from flockana.base.vectors import centres, lengths, scaled_near_one
 from flockana.kernels.components import labelled, squared_excess, unite
-from flockana.kernels.instants import greatest_distances, least_distances
+from flockana.kernels.extreme_distances import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
 
 _TREE = 300  # agents from which on a search tree beats all pairs

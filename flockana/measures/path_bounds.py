@@ -1,8 +1,8 @@
 """Closest approach, contacts and cohesion radius along sampled paths, bounded between samples.
 
 What is bounded are the motions themselves, given the integrator's accuracy at the samples, wherever the samples resolve
-them (`flockana.kernels.paths` says when that is): those of the solver's own steps do, samples of one's own choice need
-not. So a run keeps the steps between its samples (`flockana.dynamics.between`).
+them (`flockana.kernels.quintic_paths` says when that is): those of the solver's own steps do, samples of one's own
+choice need not. So a run keeps the steps between its samples (`flockana.dynamics.steps_between_samples`).
 """
 
 from collections.abc import Iterable, Iterator
@@ -13,7 +13,13 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.kernels.neighbours import DENSE_MAX, pair_blocks
-from flockana.kernels.paths import closest_of_few, closest_pair, control_points, farthest_in_turn, touching_pairs
+from flockana.kernels.quintic_paths import (
+    closest_of_few,
+    closest_pair,
+    control_points,
+    farthest_in_turn,
+    touching_pairs,
+)
 from flockana.measures.metrics import cohesion_radii, min_distances
 
 States = tuple[FloatArray, FloatArray, FloatArray]  # q, p, u over time

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flockana.base.kinds import check_kinds
+from flockana.base.argument_kinds import check_kinds
 from flockana.plots.palette import BLUE, INK, VERMILLION
 from flockana.plots.style import LEGEND, ensure_axes, write_title
 from flockana.plots.symbols import typeset

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from flockana.base.kinds import check_kinds
+from flockana.base.argument_kinds import check_kinds
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import ensure_axes, finish, mark
 

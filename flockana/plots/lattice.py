@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import ensure_links, ensure_points, ensure_series
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, STRAIN, VERMILLION
 from flockana.plots.style import LEGEND, colour_bar, ensure_axes, finish, frame_space, in_plane, lines, write_title
 

@@ -13,8 +13,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray
-from flockana.base.kinds import check_kinds
 from flockana.environment import Obstacle
 from flockana.plots.palette import FAINT, MUTED
 from flockana.plots.style import ensure_axes, finish

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.interactions import AlphaInteraction
-from flockana.interactions.functions import DistanceFunction
+from flockana.interactions.distance_functions import DistanceFunction
 from flockana.measures.metrics import deviation_energy
 from flockana.plots.palette import BLUE, MUTED, VERMILLION
 from flockana.plots.style import ensure_axes, finish, mark, place_legend

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.plots.palette import BLUE, INK, VERMILLION
 from flockana.plots.style import ensure_axes, finish
 

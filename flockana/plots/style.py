@@ -19,7 +19,7 @@ from flockana.base.checks import FloatArray, ensure_count
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION
-from flockana.plots.paper import column_size
+from flockana.plots.paper_figures import column_size
 from flockana.plots.symbols import typeset
 
 _STYLE = {
@@ -109,7 +109,7 @@ def subplots(
     rows, columns : int
         Of the grid.
     size : (float, float) or str, optional
-        Width and height in inches, or a journal's column by its name in `flockana.plots.paper.COLUMNS`, such as
+        Width and height in inches, or a journal's column by its name in `flockana.plots.paper_figures.COLUMNS`, such as
         ``"ieee"``; by default 4.4 by 3.4 for each Axes.
     m : int
         Dimension of what will be drawn: 3 for three-dimensional axes.

@@ -7,8 +7,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.recorded.contributions import over_samples, over_steps
+from flockana.recorded.one_step_predictions import kinematic_scheme
 from flockana.recorded.recording import Recording
-from flockana.recorded.steps import kinematic_scheme
 from flockana.recorded.velocities import motions
 
 _FEWEST = 4  # samples for splines

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.base.vectors import lengths
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
-from flockana.recorded.findings import Share, explained
 from flockana.recorded.maps import map_steps
+from flockana.recorded.one_step_predictions import scheme_by_law
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.steps import scheme_by_law
+from flockana.recorded.regression_findings import Share, explained
 
 _WORST = 5  # places that are named
 _OFF_CLOCK = 0.05  # relative difference of steps from velocities, from which on it is reported

@@ -9,12 +9,12 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.compare import compare
 from flockana.recorded.contributions import SYMBOLS
+from flockana.recorded.likelihood_profiles import LowerMinimumError, profile_interval
 from flockana.recorded.parameters import FreeParameters
-from flockana.recorded.profiles import LowerMinimumError, profile_interval
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.shooting import MatchResult, Problem, matched
 from flockana.recorded.windows import Window, deviations, rescaled, usual_window, windows

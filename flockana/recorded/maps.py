@@ -9,8 +9,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.recorded.accelerations import Accelerations, mean_accelerations
+from flockana.recorded.one_step_predictions import predicted
 from flockana.recorded.recording import Recording
-from flockana.recorded.steps import predicted
 
 
 @dataclass(frozen=True, eq=False)

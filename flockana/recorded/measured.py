@@ -11,7 +11,7 @@ from flockana.measures.measure import Flock, measures
 from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import link_lengths, links
 from flockana.recorded.samples import Samples
-from flockana.recorded.unknown import UnknownLaw, scaled_alpha
+from flockana.recorded.unknown_law import UnknownLaw, scaled_alpha
 from flockana.recorded.velocities import with_velocities
 
 if TYPE_CHECKING:

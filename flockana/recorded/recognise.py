@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from flockana.base.errors import ArgumentError, FlockanaError, format_value
-from flockana.base.shown import ShortRepr
-from flockana.laws.candidates import candidates
+from flockana.base.short_repr import ShortRepr
+from flockana.laws.usual_laws import candidates
 from flockana.recorded.compare import Comparison, compare, share_text
 from flockana.recorded.recording import Recording, ensure_recording
 

@@ -17,8 +17,8 @@ from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
-from flockana.recorded.parts import largest_complete_part
-from flockana.recorded.unknown import UnknownLaw, scaled_alpha
+from flockana.recorded.complete_parts import largest_complete_part
+from flockana.recorded.unknown_law import UnknownLaw, scaled_alpha
 from flockana.recorded.velocities import filled, with_velocities
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.differences import ORDER_2, central_differences
 from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.recorded.one_step_predictions import led
 from flockana.recorded.recording import Recording
-from flockana.recorded.steps import led
 from flockana.recorded.velocities import motions
 
 _TIMES = 8.0  # of the law, which a window of samples is as long as

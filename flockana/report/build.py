@@ -25,13 +25,13 @@ from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, scenario_id, verdict_id
 from flockana.report.figures import Picture
-from flockana.report.front import front_findings, most_telling, opening_sentence
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
+from flockana.report.opening_findings import front_findings, most_telling, opening_sentence
 from flockana.report.pages import FixedPage, Page, ScenarioPage
 from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
-from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.report.value_texts import deciding_claim, markup, show, source_name, tolerance_rows
 from flockana.theorems.claim import BYLINES
 from flockana.theorems.errata import FOREWORD, SORTS, errata, erratum_of
 

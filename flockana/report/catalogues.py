@@ -7,7 +7,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from flockana.base.errors import ArgumentError
-from flockana.base.kept import kept_data
+from flockana.base.user_cache import kept_data
 from flockana.report.tables import column, headed_table
 
 _KINDS = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
@@ -65,7 +65,7 @@ def _theorem_entries() -> list[dict[str, Any]]:
 
 def _first(references: Sequence[str]) -> str:
     """Return the first source that is not flockana itself."""
-    from flockana.report.text import source_name
+    from flockana.report.value_texts import source_name
 
     return next((source_name(key) for key in references if key != "flockana"), "flockana")
 

@@ -13,7 +13,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
 from flockana.report.tables import FoldingTable, column, headed_table
-from flockana.report.text import MARKS, show
+from flockana.report.value_texts import MARKS, show
 from flockana.theorems import Verdict
 from flockana.theorems.claim import BYLINES
 from flockana.theorems.errata import SORTS, errata, erratum_of

@@ -12,9 +12,9 @@ from flockana.player.page import text_of
 from flockana.player.scene import scene
 from flockana.report.figures import Picture, pictures
 from flockana.report.stills import still
-from flockana.report.text import parameters
+from flockana.report.value_texts import parameters
 from flockana.scenarios import Scenario, scenarios
-from flockana.scenarios.checks import SOURCE
+from flockana.scenarios.option_checks import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Status, Theorem, Verdict, theorem
 from flockana.theorems.catalogue import catalogue

@@ -9,7 +9,7 @@ import xarray
 from matplotlib.figure import Figure
 
 from flockana import plots
-from flockana.base.tables import MARKS, html_table
+from flockana.base.table_export import MARKS, html_table
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player.page import played, style, templates, text_of
 from flockana.player.scene import scene

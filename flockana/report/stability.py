@@ -13,7 +13,7 @@ from flockana.environment import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws import Algorithm1, Algorithm2
-from flockana.report.control import Download, control_pictures, state_space
+from flockana.report.control_figures import Download, control_pictures, state_space
 from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg
 from flockana.report.pages import Page
@@ -21,7 +21,7 @@ from flockana.report.section import DECAYS, LINEARISED, MARGINS
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor
-from flockana.stability.translational import CentreOfMass
+from flockana.stability.centre_transfer import CentreOfMass
 from flockana.theorems import Verdict
 
 _LONGER = (

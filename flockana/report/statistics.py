@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
+from flockana.ensemble.one_run import COMPLETE, Record
 from flockana.ensemble.shares import STATUSES, shares
-from flockana.ensemble.work import COMPLETE, Record
 from flockana.report.figures import Picture
 from flockana.report.image import svg
-from flockana.report.surveys import Survey, SurveyResult
+from flockana.report.seed_surveys import Survey, SurveyResult
 from flockana.scenarios import Scenario, scenario
 from flockana.theorems.catalogue import catalogue
 

@@ -29,7 +29,7 @@ class Enclosure:
         """Return the tube, and the basin or None, in lengths of ℓ (the unit of σ₁)."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose import enclose
-        from flockana.certified.structure import in_lengths_of_unit
+        from flockana.certified.structural_potential import in_lengths_of_unit
         from flockana.equilibria.solve import find_equilibrium
 
         unit = run.law.alpha.unit

@@ -20,7 +20,7 @@ from flockana.theorems import Claim as Claim
 from flockana.theorems import Tolerances as Tolerances
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.limit_certificates import Certificate, limit_claim
 
 Check = Callable[[Trajectory, Tolerances], Claim]
 ROUNDING = 1e-12  # relative, of what a report measures

@@ -8,8 +8,8 @@ from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_t
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.law_with_start import WithStart
 from flockana.laws.velocity import ensure_any_law, start_velocities
-from flockana.laws.with_start import WithStart
 from flockana.recorded.parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario

@@ -14,10 +14,10 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws import DiscreteLaw, Law
-from flockana.laws.with_start import WithStart
-from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
+from flockana.laws.law_with_start import WithStart
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.start import LazyField
+from flockana.scenarios.lazy_start import LazyField
+from flockana.scenarios.option_checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.theorems import Claim, Status, Theorem, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
 
@@ -48,7 +48,7 @@ class Scenario(WithStart):
     source : str
         Where it was published, and what is ours.
     q0, p0 : ndarray, shape (n, m)
-        Start; what takes long to draw may be given as `flockana.scenarios.start.lazy_array`.
+        Start; what takes long to draw may be given as `flockana.scenarios.lazy_start.lazy_array`.
     expected : mapping of str to str
         Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
     reports : tuple of Report

@@ -14,20 +14,20 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_fits, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import overrides_consistently
+from flockana.base.override_checks import overrides_consistently
 from flockana.kernels.fixed_steps import Coefficients, fixed_steps
 from flockana.kernels.verlet import Pairs, no_pairs, with_room
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
 from flockana.laws.law import Arrays, Law, LawOfMotion
 from flockana.laws.velocity import first_order
-from flockana.laws.wrapped import Step, View, Wrapper, WrappingLaw, input_of, needs_steps, wrappers_within
-from flockana.solvers.past import Past, Row
+from flockana.laws.wrapper_base import Step, View, Wrapper, WrappingLaw, input_of, needs_steps, wrappers_within
+from flockana.solvers.hermite_past import Past, Row
 from flockana.solvers.solver import Limits, Rate, Rows, Solver
 from flockana.solvers.stepper import FixedStepper
 from flockana.solvers.tableau import Tableau, tableau_of_steps
 
-_STEPPED = SimpleNamespace(__module__="flockana.solvers.stepped", __qualname__="Stepped")
+_STEPPED = SimpleNamespace(__module__="flockana.solvers.wrapped_steps", __qualname__="Stepped")
 _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
 
 

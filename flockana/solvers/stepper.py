@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.march import GROWTH
+from flockana.kernels.adaptive_steps import GROWTH
 from flockana.solvers.solver import FloatArray, Limits, Rate
 from flockana.solvers.tableau import Tableau
 

@@ -10,7 +10,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment import RescaledVelocity, Target
 from flockana.interactions import Gains
 from flockana.laws import ensure_one_gain
-from flockana.stability.translational import CentreOfMass
+from flockana.stability.centre_transfer import CentreOfMass
 
 _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
-from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.stability.rounding import eigenvalues
 from flockana.stability.zero_modes import complement

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
@@ -19,7 +19,7 @@ from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
-from flockana.stability.motion import mode_motion
+from flockana.stability.motion_of_mode import mode_motion
 
 AMPLITUDE = 1e-4  # of d: the first neglected term is as small, relative to the linear one
 _FALL = 1e8  # by which K̃ has fallen when the run ends

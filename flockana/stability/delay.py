@@ -27,7 +27,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.progress import progress_bar
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.stability.components import strong_components
 from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
 from flockana.stability.estimates import LIMIT

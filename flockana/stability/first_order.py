@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.tables import facts_html, facts_text
+from flockana.base.table_export import facts_html, facts_text
 from flockana.laws.velocity import VelocityLaw
 from flockana.stability.estimates import LIMIT
 from flockana.stability.linear_flock import LinearFlock
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from control import FrequencyResponseData
     from scipy.sparse import csr_array
 
+    from flockana.stability.chain_disturbances import TransientGrowth
     from flockana.stability.damp_table import DampTable
     from flockana.stability.delay import DelayMargin
-    from flockana.stability.nets import TransientGrowth
     from flockana.stability.robustness import RobustnessMargins
     from flockana.stability.sampling import SamplingMargin
 

@@ -21,11 +21,11 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_points
 from flockana.environment import StaticTarget
-from flockana.equilibria.terminal import rigid_motions
+from flockana.equilibria.final_state import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.laws import Algorithm2
-from flockana.stability.blocks import reduced
+from flockana.stability.second_order_blocks import reduced
 from flockana.stability.zero_modes import complement
 
 FORMS = ("full", "simplified")

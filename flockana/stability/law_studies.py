@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray, ensure_count, ensure_points
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law
-from flockana.stability.blocks import MOST, Blocks, blocks, ensure_pairs_and_pull
 from flockana.stability.delay import DelaySystem, delayed_flock
 from flockana.stability.delay_linearisation import DelayLinearisation
 from flockana.stability.estimates import LIMIT
@@ -24,6 +23,7 @@ from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
 from flockana.stability.robustness import RobustnessMargins, loop_margins
 from flockana.stability.sampling import SamplingMargin, margin_of_flow
+from flockana.stability.second_order_blocks import MOST, Blocks, blocks, ensure_pairs_and_pull
 
 _LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which it cancels
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
-from flockana.base.tables import facts_html, facts_text
+from flockana.base.short_repr import ShortRepr
+from flockana.base.table_export import facts_html, facts_text
 from flockana.laws import Law
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray

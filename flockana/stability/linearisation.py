@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
     from control import FrequencyResponseData, StateSpace
 
+    from flockana.stability.chain_disturbances import Passivity, StringGains, TransientGrowth
     from flockana.stability.controllability import Controllability
     from flockana.stability.damp_table import DampTable
     from flockana.stability.delay import DelayMargin
-    from flockana.stability.nets import Passivity, StringGains, TransientGrowth
     from flockana.stability.packet_loss import LossMargin
     from flockana.stability.robustness import RobustnessMargins
     from flockana.stability.sampling import SamplingMargin
@@ -151,7 +151,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        from flockana.stability.nets import string_gains
+        from flockana.stability.chain_disturbances import string_gains
 
         return string_gains(self, first, limit=limit)
 
@@ -163,13 +163,13 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        from flockana.stability.nets import transient_growth
+        from flockana.stability.chain_disturbances import transient_growth
 
         return transient_growth(self, limit=limit)
 
     def passivity(self) -> Passivity:
         """Return whether forces on all agents only put energy in: see `flockana.stability.passivity`."""
-        from flockana.stability.nets import passivity
+        from flockana.stability.chain_disturbances import passivity
 
         return passivity(self)
 
@@ -181,8 +181,8 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        from flockana.stability.blocks import blocks
         from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm
+        from flockana.stability.second_order_blocks import blocks
 
         ensure_study("the norms", self.q.size, limit)
         system = disturbance_system(blocks(self.stiffness.toarray(), self.damping.toarray(), self.q))

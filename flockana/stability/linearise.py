@@ -22,16 +22,16 @@ from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws import Delayed, DiscreteLaw, Law, Sampled, ensure_law
 from flockana.laws.velocity import VelocityLaw, first_order
-from flockana.laws.wrapped import needs_steps
+from flockana.laws.wrapper_base import needs_steps
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import links as links_within
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.stability.delay_linearisation import DelayLinearisation
 from flockana.stability.first_order import VelocityLinearisation, linearise_velocity
-from flockana.stability.lifted import lifted_map
+from flockana.stability.lifted_loops import lifted_map
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.loops import hold_of, instant_law, is_late, late_parts
-from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
+from flockana.stability.map_linearisation import MapLinearisation, linearise_headings, linearise_map, linearise_steps
+from flockana.stability.wrapped_loops import hold_of, instant_law, is_late, late_parts
 from flockana.stability.zero_modes import extent, zero_threshold
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
-from flockana.equilibria.terminal import rigid_motions
+from flockana.equilibria.final_state import rigid_motions
 from flockana.stability.components import IndexArray, StrongComponents, strong_components
 from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
 from flockana.stability.rounding import eigen_of_one, root_error, slowest_first

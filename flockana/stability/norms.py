@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
-from flockana.stability.blocks import Blocks
 from flockana.stability.rounding import eigenvalues
+from flockana.stability.second_order_blocks import Blocks
 from flockana.stability.zero_modes import complement
 
 if TYPE_CHECKING:

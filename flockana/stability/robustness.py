@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.modes import SecondOrder

@@ -9,7 +9,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin
 from flockana.stability.delay_roots import LatePart
 from flockana.stability.estimates import LIMIT, ensure_maps
-from flockana.stability.lifted import MOST, first_growth, moving_multipliers
+from flockana.stability.lifted_loops import MOST, first_growth, moving_multipliers
 from flockana.stability.sampling import ModePeriod, SamplingMargin
 
 _DELAY, _PERIOD = "the delay margin of a sampled flock", "the sampling margin of a delayed flock"

@@ -24,7 +24,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.stability.estimates import LIMIT
 from flockana.stability.growth import CLOSE, MOST, Growth, Steps, first_growth
 from flockana.stability.linear_flock import LinearFlock
-from flockana.stability.maps import moved_before, stepped_equation
+from flockana.stability.map_linearisation import moved_before, stepped_equation
 from flockana.stability.modes import SecondOrder
 
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0

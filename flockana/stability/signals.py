@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.lattice.rigidity import rigidity_matrix
 from flockana.laws import Navigation
-from flockana.laws.wrapped import WrappingLaw
+from flockana.laws.wrapper_base import WrappingLaw
 from flockana.stability.mode_names import translations
 
 if TYPE_CHECKING:

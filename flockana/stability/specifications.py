@@ -14,12 +14,12 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws import Algorithm2
 from flockana.measures.nets import links
-from flockana.stability.blocks import Blocks
+from flockana.stability.centre_transfer import CentreOfMass
 from flockana.stability.delay import delay_margin
 from flockana.stability.law_studies import delay_system, law_blocks, sampling_margin
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_norm
-from flockana.stability.translational import CentreOfMass
+from flockana.stability.second_order_blocks import Blocks
 
 AT_LEAST = ("decay", "delay", "period")  # what is asked to be at least as large; the rest at most
 AT_MOST = ("h2", "overshoot", "strain", "effort")

@@ -13,9 +13,9 @@ from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
+from flockana.stability.centre_transfer import CentreOfMass
 from flockana.stability.delay import delay_margin
 from flockana.stability.law_studies import delay_system, law_blocks
-from flockana.stability.translational import CentreOfMass
 
 if TYPE_CHECKING:
     from control import TransferFunction

@@ -7,15 +7,15 @@ from math import inf, pi
 
 import numpy as np
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import CircleTarget, SineTarget
 from flockana.laws import Algorithm2
 from flockana.stability.centre_path import Motion, centre_path, motion, path_and_factor, steady_error, transient
-from flockana.stability.translational import CentreOfMass, map_gain
+from flockana.stability.centre_transfer import CentreOfMass, map_gain
 
 _SAMPLES, _APART = 8, 1e-2  # least number of samples of a fit of four unknowns, and least ratio of its singular values
 _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is as long as a period

@@ -13,9 +13,9 @@ from flockana.base.checks import ensure_dimension
 from flockana.symbolic import sums
 from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
-from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.sigma_norms import EPS, sigma_norm
 from flockana.symbolic.sums import I_, J_, P, Q, V, X, Z, indexed, over_agents, over_pairs
 
 

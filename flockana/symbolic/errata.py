@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from flockana.symbolic.concrete import ConcreteFlock
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import EnergyIdentity, algorithm1_identity
 from flockana.symbolic.functions import HALF, adjacency, phi_alpha
-from flockana.symbolic.norms import EPS
 from flockana.symbolic.pair import ADJACENCY, PHI
 from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
+from flockana.symbolic.sigma_norms import EPS
 from flockana.symbolic.sums import sum_over
+from flockana.symbolic.written_out_flock import ConcreteFlock
 
 FRIENDS, NEGATIVE = sp.symbols("k l", integer=True, positive=True)  # |F+| and |F-|
 _J = sp.Symbol("j", integer=True, positive=True)

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from flockana.base.kinds import check_kinds
-from flockana.symbolic.named import HALF as HALF
-from flockana.symbolic.named import Bump, Phi, Place, Sigma1, SigmaNorm, Taper, written
+from flockana.base.argument_kinds import check_kinds
+from flockana.symbolic.named_functions import HALF as HALF
+from flockana.symbolic.named_functions import Bump, Phi, Place, Sigma1, SigmaNorm, Taper, written
 from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
 
 

@@ -11,9 +11,9 @@ import sympy as sp
 from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import HALF
-from flockana.symbolic.norms import EPS, sigma_norm, sigma_norm_gradient
 from flockana.symbolic.pair import along_flow, vector, with_derivative
 from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.sigma_norms import EPS, sigma_norm, sigma_norm_gradient
 
 KINDS = ("wall", "sphere")
 RADIUS = sp.Symbol("R", positive=True)

@@ -12,10 +12,10 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
-from flockana.base.kinds import check_kinds
+from flockana.base.argument_kinds import check_kinds
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.sigma_norms import sigma_norm, sigma_norm_gradient
 
 
 def with_derivative(name: str, derivative: Any) -> Any:

@@ -10,8 +10,18 @@ import sympy as sp
 from flint import arb, fmpq
 
 from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
-from flockana.symbolic.decide import Least, Region, down, is_zero, least_of_integral, least_on, sign_on, smooth_on, up
 from flockana.symbolic.enclosed import Enclosed, Germ, germ, interval, precision, rational
+from flockana.symbolic.interval_decisions import (
+    Least,
+    Region,
+    down,
+    is_zero,
+    least_of_integral,
+    least_on,
+    sign_on,
+    smooth_on,
+    up,
+)
 from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, S, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters

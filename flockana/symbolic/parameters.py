@@ -6,7 +6,7 @@ from typing import Any
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic.norms import EPS, sigma_norm
+from flockana.symbolic.sigma_norms import EPS, sigma_norm
 
 _H, _A, _B, _D, _R, _D_PRIME = sp.symbols("h a b d r d'", positive=True)
 _C1_ALPHA, _C2_ALPHA, _C1_GAMMA, _C2_GAMMA = sp.symbols("c_1^alpha c_2^alpha c_1^gamma c_2^gamma", nonnegative=True)

@@ -13,11 +13,11 @@ from functools import partial
 
 import sympy as sp
 
+from flockana.base.argument_kinds import check_kinds
 from flockana.base.errors import ArgumentError
-from flockana.base.kinds import check_kinds
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth, phi, taper
-from flockana.symbolic.named import PhiIntegral, written
+from flockana.symbolic.named_functions import PhiIntegral, written
 from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
 
 Z = sp.Symbol("z", nonnegative=True)

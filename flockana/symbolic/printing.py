@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from flockana.symbolic.named import Named
+from flockana.symbolic.named_functions import Named
 
 _WHOLE = 8  # powers up to it are products
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from flockana.base.kinds import check_kinds
+from flockana.base.argument_kinds import check_kinds
 from flockana.symbolic.functions import HALF
-from flockana.symbolic.norms import EPS
 from flockana.symbolic.pair import PSI
 from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.sigma_norms import EPS
 
 N = sp.Symbol("n", integer=True, positive=True)
 M = sp.Symbol("m", integer=True, positive=True)

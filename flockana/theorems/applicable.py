@@ -11,7 +11,7 @@ from flockana.base.checks import ensure_finite_scalar, ensure_state
 from flockana.base.errors import FlockanaError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
-from flockana.laws.wrapped import wrappers_of
+from flockana.laws.wrapper_base import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import Claim, Hypothesis
 from flockana.theorems.observed import Observed

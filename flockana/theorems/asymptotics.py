@@ -6,13 +6,13 @@ from typing import Any
 
 from flockana.base.errors import SolverError
 from flockana.base.scales import Scales
-from flockana.equilibria.terminal import TerminalState, terminal_state
+from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.attraction import final_basin
 from flockana.theorems.basin import Basin
 from flockana.theorems.claims import undecided
-from flockana.theorems.limits import decays_to_zero
+from flockana.theorems.limit_certificates import decays_to_zero
 from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
 

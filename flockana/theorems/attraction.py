@@ -7,8 +7,8 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
+from flockana.equilibria.final_state import DENSE_LIMIT, rigid_motions
 from flockana.equilibria.gradient_flow import structural_force
-from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.measures.nets import link_lengths, links

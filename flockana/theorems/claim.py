@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric", "statistical"]

@@ -12,11 +12,11 @@ import numpy.typing as npt
 
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.paths import control_points, touching_pairs
+from flockana.kernels.quintic_paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import counted, judged
-from flockana.theorems.meeting import above_least, meeting
+from flockana.theorems.meeting_energy import above_least, meeting
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
@@ -147,9 +147,9 @@ def energy_at_end(seen: Observed) -> Enclosure:
 def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
     """Return the hypothesis H(0) < min{V : two agents coincide}: met below a proved bound, unmet above a known state.
 
-    Between the two it is assumed: `flockana.equilibria.barrier.collision_barrier` searches the minimum itself.
+    Between the two it is assumed: `flockana.equilibria.energy_barrier.collision_barrier` searches the minimum itself.
     """
-    from flockana.equilibria.barrier import collision_bounds
+    from flockana.equilibria.energy_barrier import collision_bounds
 
     if isinstance(seen.law.alpha, AlphaInteraction):
         low, high = (seen.law.gains.c1_alpha * bound for bound in collision_bounds(seen.law.alpha, seen.n, seen.m))

@@ -51,8 +51,8 @@ def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
 def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
     """Return the hypothesis on the start and the disturbance, and the case if it is met."""
     from flockana.certified.basin import certify
-    from flockana.certified.disturbed import ultimate_bound
-    from flockana.certified.structure import in_lengths_of_unit
+    from flockana.certified.disturbed_bound import ultimate_bound
+    from flockana.certified.structural_potential import in_lengths_of_unit
 
     law, unit = seen.law, getattr(seen.law.law.alpha, "unit", 1.0)
     q, p = seen.given.q[0] / unit, seen.given.p[0] / unit

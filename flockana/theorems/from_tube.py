@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.measures.nets import components
-from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.limit_certificates import Certificate, limit_claim
 from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Needs, Tolerances, judged, positive_room
 
 if TYPE_CHECKING:

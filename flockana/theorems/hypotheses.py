@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from flockana.base.facts import Fact, conjunction
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
-from flockana.interactions.functions import DistanceFunction
+from flockana.interactions.distance_functions import DistanceFunction
 from flockana.laws.composition import Composition
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed

@@ -18,7 +18,7 @@ from flockana.base.vectors import centres
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.laws.discrete import ensure_law
-from flockana.recorded.following import Following, following
+from flockana.recorded.follows_law import Following, following
 from flockana.recorded.recording import Recording
 from flockana.theorems.evidence import Evidence
 from flockana.theorems.observed import Observed, with_resolution

@@ -6,12 +6,12 @@ import numpy as np
 
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.wrapped import wrappers_of
+from flockana.laws.wrapper_base import wrappers_of
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.evidence import Evidence
-from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, in_balls, with_resolution
-from flockana.theorems.of_schemes import claims_on_steps, is_about_steps, on_steps
+from flockana.theorems.on_fixed_steps import claims_on_steps, is_about_steps, on_steps
+from flockana.theorems.run_consistency import ensure_fits
 from flockana.theorems.theorem import Hypothesis, Known, Theorem, Tolerances
 
 _RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"

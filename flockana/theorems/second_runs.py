@@ -14,13 +14,13 @@ from flockana.base import units
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import centres, lengths
-from flockana.dynamics.between import Between
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
+from flockana.dynamics.steps_between_samples import Between
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.beta import InsideObstacleError
-from flockana.solvers.named import solvers
+from flockana.solvers.solver_names import solvers
 from flockana.theorems.step_resolution import demand_of, steps_of, unresolved
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's

@@ -17,9 +17,9 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions.functions import DistanceFunction, LawFunction
+from flockana.interactions.distance_functions import DistanceFunction, LawFunction
 from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.paths import control_points
+from flockana.kernels.quintic_paths import control_points
 from flockana.laws.features import Feature
 
 NAME = "the steps resolve the law"

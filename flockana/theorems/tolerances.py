@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,8 @@ from flockana.theorems.claims import (
 )
 from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.hypotheses import condition, law_is, positive, positive_room
-from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.limit_certificates import Certificate, evidence, limit_claim
 from flockana.theorems.observed import Observed, observed
+from flockana.theorems.random_start_shares import always, mostly
 from flockana.theorems.rounding import EPS
-from flockana.theorems.shares import always, mostly
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet

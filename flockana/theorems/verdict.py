@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from flockana.base.tables import MARKS, html_table, latex_table, number, tex
+from flockana.base.table_export import MARKS, html_table, latex_table, number, tex
 from flockana.theorems.claim import BYLINES, RIGOURS, By, Claim, Hypothesis, Rigour, Status
 from flockana.theorems.headline import headline, merged, overall, plain
 from flockana.theorems.tolerances import Tolerances

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flockana.base.files import atomic_write
-from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
+from flockana.base.table_export import MARKS, html_table, latex_table, tex, text_table
 from flockana.theorems.catalogue import catalogue, theorem
 from flockana.theorems.theorem import Verdict, unmet
 from flockana.theorems.verdict import claim_table

@@ -12,9 +12,9 @@ import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import is_sealed
 from flockana.certified.certificate import basin_certificate, tube_certificate
-from flockana.equilibria.record import write_equilibrium
-from flockana.explore.watching import shown
-from flockana.stability.motion import mode_motion
+from flockana.equilibria.equilibrium_files import write_equilibrium
+from flockana.explore.streamed_runs import shown
+from flockana.stability.motion_of_mode import mode_motion
 
 LAW = fl.Algorithm1()
 RUN = fl.simulate(LAW, [[0.0, 0.0], [8.0, 1.0], [3.0, 7.0]], np.zeros((3, 2)), (0.0, 1.0), t_eval=np.linspace(0, 1, 9))

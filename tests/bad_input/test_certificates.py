@@ -7,7 +7,7 @@ import pytest
 import flockana as fl
 from flockana.base.errors import FileError
 from flockana.base.seals import with_digest
-from flockana.certified.check import RejectedError, check_data
+from flockana.certified.certificate_check import RejectedError, check_data
 from tests.bad_input.test_fuzz import flipped, shortened
 
 WEIRD = (None, True, -1, 1.5, "", "nan", "1e999999", "0x1p4000", "1/0", [], {}, "9" * 1000, {"__class__": "x"})

@@ -91,7 +91,7 @@ def test_through_a_link_the_file_is_written_and_the_link_stays(call, catalogue, 
 
 
 def test_a_report_on_a_part_leaves_the_one_on_all_alone(call, catalogue, monkeypatch):
-    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
+    monkeypatch.setattr("flockana.report.verify_catalogue.theorems", lambda: ("energy",))
     assert call("verify", "--seeds", 0, "--jobs", 1)[0] == 0
     before = Path("report/verdicts.json").read_bytes()
     code, out, _ = call("verify", "tiny")

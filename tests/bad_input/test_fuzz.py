@@ -8,10 +8,10 @@ import pytest
 from flockana import Algorithm1, find_equilibrium, read_lammps
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.seals import sealed
-from flockana.cli.source import read_csv
+from flockana.cli.positions_source import read_csv
+from flockana.ensemble.one_run import Job, Record
 from flockana.ensemble.store import Store
-from flockana.ensemble.work import Job, Record
-from flockana.equilibria.record import read_equilibrium, write_equilibrium
+from flockana.equilibria.equilibrium_files import read_equilibrium, write_equilibrium
 from flockana.falsify import Counterexample
 
 LAW = Algorithm1()

@@ -37,7 +37,7 @@ ALL = pytest.mark.parametrize(
 
 def displaced(basin, share: float, rng) -> np.ndarray:
     """A shape at a share of ρ from the equilibrium, orthogonal to the orbit, in a random direction."""
-    from flockana.equilibria.terminal import rigid_motions
+    from flockana.equilibria.final_state import rigid_motions
 
     motions = rigid_motions(basin.rest)
     w = rng.standard_normal(basin.rest.size)

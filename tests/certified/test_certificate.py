@@ -12,7 +12,7 @@ from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, check
 from flockana.base.errors import ArgumentError
 from flockana.certified import check_tube
 from flockana.certified.certificate import tube_certificate, write_tube_certificate
-from flockana.certified.check import RejectedError, check_data
+from flockana.certified.certificate_check import RejectedError, check_data
 from tests.certified.conftest import more, resealed, with_leaf
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))

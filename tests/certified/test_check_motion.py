@@ -11,7 +11,7 @@ from flockana import enclose
 from flockana.base.errors import ArgumentError
 from flockana.certified.balls import AlphaParameters, BetaParameters, series_length
 from flockana.certified.certificate import tube_certificate
-from flockana.certified.check import RejectedError, check_data
+from flockana.certified.certificate_check import RejectedError, check_data
 from flockana.certified.check_motion import Motion
 from flockana.certified.check_motion import Sphere as Rested
 from flockana.certified.check_tube import Run

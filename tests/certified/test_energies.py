@@ -9,7 +9,7 @@ from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.certified import energies as levels
 from flockana.certified.series import PairNumbers
 from flockana.certified.structural_energy import gain, structural_energy
-from flockana.equilibria.barrier import coincident_lattice, collision_bounds
+from flockana.equilibria.energy_barrier import coincident_lattice, collision_bounds
 from flockana.sources.olfati_saber_2006.theorems.any_potential import disconnected_energy
 
 LONG = AlphaInteraction(r=9.8)  # κ = 1.4: cliques of 4 in the plane

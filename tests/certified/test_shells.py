@@ -14,7 +14,7 @@ from flockana.certified.check_basin import Net
 from flockana.certified.decimals import decimal, round_down, round_up
 from flockana.certified.lyapunov import Bounds, damping, decay
 from flockana.certified.shells import SHELLS, BondTable, LengthCells, Shells, points, proposed_across
-from flockana.certified.structure import Structure
+from flockana.certified.structural_potential import Structure
 from tests.certified.conftest import text_of
 
 LAW = Algorithm1()

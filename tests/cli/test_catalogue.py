@@ -7,7 +7,7 @@ from flockana.base.garbage import SELDOM
 from flockana.cli import main as program
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.verify import verify_command
-from flockana.report import work
+from flockana.report import verify_catalogue
 
 
 @pytest.mark.parametrize("command", [scenarios_command, theorems_command])
@@ -42,7 +42,7 @@ def test_a_command_seldom_looks_for_garbage_and_the_process_does_as_before(monke
 def test_verify_starts_one_thread_for_matrices_unless_told(monkeypatch):
     seen = []
     monkeypatch.setattr(
-        work, "plan", lambda *given, **options: seen.append(os.environ.get("OPENBLAS_NUM_THREADS")) or ()
+        verify_catalogue, "plan", lambda *given, **options: seen.append(os.environ.get("OPENBLAS_NUM_THREADS")) or ()
     )
     for name, threads, expected in (("", "", "1"), ("OPENBLAS_NUM_THREADS", "2", "2"), ("OMP_NUM_THREADS", "2", None)):
         for each in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):

@@ -7,7 +7,7 @@ import pytest
 from flockana.base.errors import SolverError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CallableTarget, LinearTarget
-from flockana.equilibria.record import read_equilibrium
+from flockana.equilibria.equilibrium_files import read_equilibrium
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import Scenario

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from flockana.base.errors import SolverError
-from flockana.cli.source import builders, read_source
+from flockana.cli.positions_source import builders, read_source
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, links

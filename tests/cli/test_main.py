@@ -14,9 +14,9 @@ from flockana.base.errors import FlockanaError, SolverError
 from flockana.cli import main as command_line
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.report.seed_surveys import Survey
 from flockana.report.stability import NO_FLOCKS
-from flockana.report.surveys import Survey
-from flockana.report.work import Task, check_all, plan
+from flockana.report.verify_catalogue import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
 from tests.programs import ANSWERS_CTRL_C, CLI, IGNORES_CTRL_C, group, interrupt, out_of_a_kernel, posix, program, until
@@ -90,8 +90,10 @@ def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, offer, monk
     claim = Claim("apart", "verified")
     one = replace(tiny("right", "verified")(), reports=(Report("apart", "all apart", lambda *given: claim),), seeds=26)
     offer(right=lambda seed=0: replace(one, seed=seed), wrong=tiny("wrong", "verified"))
-    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
-    monkeypatch.setattr("flockana.report.work._section", lambda task: NO_FLOCKS)  # tests/report makes sections
+    monkeypatch.setattr("flockana.report.verify_catalogue.theorems", lambda: ("energy",))
+    monkeypatch.setattr(
+        "flockana.report.verify_catalogue._section", lambda task: NO_FLOCKS
+    )  # tests/report makes sections
     code, out, _ = call("verify", "--jobs", 1)
     (told,) = verdicts("report")["statistics"]["scenarios"]
     assert (code, told["scenario"], told["rows"][0]["verified"]["count"]) == (0, "right", 26)
@@ -148,7 +150,7 @@ def test_bad_input_is_2_and_one_line(refused, arguments, message):
 )
 def test_what_cannot_be_written_is_refused_before_anything_runs(refused, monkeypatch, tmp_path, arguments, message):
     (tmp_path / "report").write_text("a file")
-    monkeypatch.setattr("flockana.report.work.check", lambda task: pytest.fail("it ran"))
+    monkeypatch.setattr("flockana.report.verify_catalogue.check", lambda task: pytest.fail("it ran"))
     monkeypatch.setattr(Scenario, "run", lambda *a, **k: pytest.fail("it ran"))
     monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", classmethod(lambda cls: False))
     refused(message, arguments[0], "hexagon", *arguments[1:])
@@ -274,7 +276,7 @@ def test_a_narrow_terminal_cuts_no_number_and_no_name(call, monkeypatch, width, 
 
 
 def test_errata_come_as_pairs_of_printed_and_right(call, monkeypatch):
-    monkeypatch.setattr("flockana.report.work.theorems", lambda: ("E8",))
+    monkeypatch.setattr("flockana.report.verify_catalogue.theorems", lambda: ("E8",))
     _, out, _ = call("verify", "errata", "--no-report", "--jobs", 1)
     assert "✗ MSN project: rank(A)/n is 1 on a connected net" in out
     assert "✓ right: rank(L)/(n - 1) is 1, as the slides print it" in out

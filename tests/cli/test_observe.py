@@ -1,7 +1,7 @@
 import pandas as pd
 import pytest
 
-from flockana.recorded.faulty import faulty_recording
+from flockana.recorded.faulty_laws import faulty_recording
 
 COMMAND = ("observe",)
 

@@ -24,7 +24,7 @@ from flockana.environment.targets import (
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
-from flockana.kernels.lift import lift
+from flockana.kernels.pair_lift import lift
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.solvers.dop853 import DOP853

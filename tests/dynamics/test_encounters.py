@@ -14,10 +14,10 @@ from flockana.dynamics.encounters import SHARE, Encounters, State, StepChecks
 from flockana.dynamics.simulate import simulate
 from flockana.interactions import BetaInteraction, Gains
 from flockana.jit import callback_like, kernel
-from flockana.kernels.sums import put
+from flockana.kernels.agent_sums import put
 from flockana.kernels.verlet import COUNT, CROWDED, no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.solvers.named import ADAPTIVE, METHODS
+from flockana.solvers.solver_names import ADAPTIVE, METHODS
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.li_dead_zone import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking

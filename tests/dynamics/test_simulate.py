@@ -10,7 +10,7 @@ import flockana as fl
 from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, LinkKeeping, StaticTarget
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.simulate import simulate
-from flockana.solvers.named import ADAPTIVE, METHODS
+from flockana.solvers.solver_names import ADAPTIVE, METHODS
 from tests.programs import out_of_a_kernel
 
 LAW = Algorithm2(gains=Gains(c1_alpha=3.0, c2_alpha=1.0), target=LinearTarget((5.0, 0.0), (1.0, 0.5)))

@@ -17,9 +17,9 @@ from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, numerics_version
 from flockana.ensemble.executors import Serial, WorkerPool, worker_pool
+from flockana.ensemble.one_run import Job, Request, run_batch
 from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.runs import make_runs
-from flockana.ensemble.work import Job, Request, run_batch
 from flockana.measures.measure import measures
 from tests.ensemble import tiny_flocks
 
@@ -268,7 +268,7 @@ def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeyp
     assert {"sources/isola_2024/scenarios/cases.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     silent = ("plots/", "plots.py", "figures", "report/", "player/", "explore/", "course/", "cli/", "falsify/")
     assert not any(part in name for part in silent for name in names)
-    assert not {"ensemble/store.py", "base/references.py", "_version.py", "__init__.py"} & names
+    assert not {"ensemble/store.py", "base/bibtex_entries.py", "_version.py", "__init__.py"} & names
     source = b'def f(x):\n    """Doc."""\n    return x + 1\n'
     base = digest_of_sources({"a.py": source})
     assert digest_of_sources({"a.py": source.replace(b"Doc.", b"Other.") + b"# more\n"}) == base

@@ -5,7 +5,7 @@ import pytest
 
 from flockana.base.errors import FileError
 from flockana.ensemble import Store, ensemble, store
-from flockana.ensemble.work import Job, Record
+from flockana.ensemble.one_run import Job, Record
 from tests.ensemble import tiny_flocks
 from tests.ensemble.tiny_flocks import begun
 from tests.programs import group, posix, program, until

@@ -11,9 +11,9 @@ from flockana import Algorithm3, DeadZoneFlocking, DeadZoneInteraction, StaticTa
 from flockana.base.errors import SolverError
 from flockana.equilibria.classify import falling, landscape, spectrum
 from flockana.equilibria.curvature import Landscape, descent_direction, least_curvature
+from flockana.equilibria.final_state import rigid_motions, surroundings, terminal_state
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import find_equilibrium, finish
-from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent

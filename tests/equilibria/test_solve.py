@@ -11,8 +11,8 @@ from flockana import Algorithm1, Algorithm2, Algorithm3, DeadZoneFlocking, Spher
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import solve as solve_module
+from flockana.equilibria.ipopt_program import Program
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.program import Program
 from flockana.equilibria.solve import finish
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
@@ -117,7 +117,7 @@ def test_the_pair_list_is_checked_again_and_renewed(monkeypatch):
             listed.append(len(pairs))
             super().__init__(potential, shape, pairs, gauge)
 
-    monkeypatch.setattr("flockana.equilibria.program.Program", Counted)
+    monkeypatch.setattr("flockana.equilibria.ipopt_program.Program", Counted)
     monkeypatch.setattr(solve_module, "ALL_PAIRS", 2)
     law = Algorithm2(target=StaticTarget((0.0,)), gains=Gains(c1_gamma=0.5))
     start = np.array([[-20.0], [0.0], [20.0], [40.0]])  # nothing is in range until the target has pulled them in

@@ -5,7 +5,7 @@ from multiprocessing import Pipe, get_context
 
 import pytest
 
-from flockana.explore import answers
+from flockana.explore import case_answers
 from flockana.explore.worker import Worker, work
 
 
@@ -27,7 +27,7 @@ def ask(monkeypatch, answering):
         send("done", {"data": data})
 
     def run(script):
-        monkeypatch.setattr(answers, "answer", answer)
+        monkeypatch.setattr(case_answers, "answer", answer)
         mine, theirs = Pipe()
         worker, found = Worker(theirs, 60.0), []
 

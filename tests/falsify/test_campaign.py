@@ -10,9 +10,9 @@ import pytest
 from flockana import Algorithm2, Gains, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
 from flockana.falsify import falsify, replay
+from flockana.falsify.bounded_space import search_space
 from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
-from flockana.falsify.space import search_space
 from flockana.sources.geschwender_2016.theorems.energy_printed import _printed_rate
 from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.attraction import final_basin

@@ -7,13 +7,13 @@ import pytest
 
 from flockana import Algorithm1, Trajectory, scenario
 from flockana.falsify import falsify
+from flockana.falsify.bounded_space import search_space
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.grade import FAILED, grade, shortfall
-from flockana.falsify.space import search_space
 from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.leads import bridge, pairs_apart, squash, strained
+from flockana.theorems.search_objectives import bridge, pairs_apart, squash, strained
 from tests.falsify.conftest import HEAD_ON, OWN
 
 

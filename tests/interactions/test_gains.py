@@ -12,11 +12,11 @@ from flockana import Algorithm2, Algorithm3, Gains, Sphere, find_equilibrium, si
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, StaticTarget
+from flockana.equilibria.final_state import terminal_state
 from flockana.equilibria.gradient_flow import gradient_flow
+from flockana.equilibria.ipopt_program import Program
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
-from flockana.equilibria.terminal import terminal_state
 from flockana.lattice import hexagonal_patch
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from tests.refused import refused

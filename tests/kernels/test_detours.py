@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana.kernels.detours import detours
-from flockana.kernels.paths import bernstein
+from flockana.kernels.quintic_paths import bernstein
 
 TIMES = 1.0, 1.3, 2.1
 BINOMIALS = 1, 5, 10, 10, 5, 1

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.kernels import shares
+from flockana.kernels import step_shares
 from flockana.kernels.encounters import (
     Around,
     Ends,
@@ -18,7 +18,7 @@ from flockana.kernels.encounters import (
 )
 from flockana.kernels.grid import empty_cuts
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.quintic_paths import bernstein, centred
 from flockana.kernels.verlet import Pairs, listed_anew, no_pairs
 
 H, R, FAR = 0.7, 8.4, 3.5
@@ -167,17 +167,17 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
         if listed == "too many for memory":
             near.counts[0] = -1
 
-    monkeypatch.setattr(shares, "_BLOCK", 50)
-    monkeypatch.setattr(shares, "BODIES", False)
-    monkeypatch.setattr(shares, "POLES", False)
+    monkeypatch.setattr(step_shares, "_BLOCK", 50)
+    monkeypatch.setattr(step_shares, "BODIES", False)
+    monkeypatch.setattr(step_shares, "POLES", False)
     kept, near = no_pairs(40, m), no_pairs(200, m)._replace(places=np.empty((40, m)))
     if listed in ("all", "too few"):
         count, reach = (i.size, 1e6) if listed == "all" else (0, R)
         kept = Pairs(i, j, states.q0, np.array([reach]), empty_cuts(40), np.array([count, 1]))
     given = around(radii)._replace(listed=found)
-    share = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
+    share = step_shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")
-    again = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
+    again = step_shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert (again, len(searched)) == (share, listed != "all")  # a list that was made is kept

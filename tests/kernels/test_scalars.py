@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.kernels import scalars, tables
-from flockana.kernels.tables import NODES, integral_panels, panel_edges, series_nodes, series_of
+from flockana.kernels import integral_tables, scalars
+from flockana.kernels.integral_tables import NODES, integral_panels, panel_edges, series_nodes, series_of
 
 
 def test_sigma_norm_by_hand():
@@ -70,10 +70,10 @@ def test_phi_integral_keeps_its_digits_where_s_is_small():
 def test_on_panels_is_the_polynomial_and_keeps_nan():
     panels = integral_panels(lambda z: 3.0 * z**2, np.array([-1.0, 0.5, 2.0]), anchor=2.0, value=8.0)
     for z in (-1.0, -0.3, 0.5, 1.1, 2.0):
-        assert tables.on_panels(z, panels) == pytest.approx(z**3, abs=3e-15)
-    assert tables.on_panels(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end
-    assert tables.on_panels(-9.0, panels) == pytest.approx(-1.0, abs=3e-15)
-    assert isnan(tables.on_panels(nan, panels))
+        assert integral_tables.on_panels(z, panels) == pytest.approx(z**3, abs=3e-15)
+    assert integral_tables.on_panels(9.0, panels) == pytest.approx(8.0, abs=3e-15)  # the nearest end
+    assert integral_tables.on_panels(-9.0, panels) == pytest.approx(-1.0, abs=3e-15)
+    assert isnan(integral_tables.on_panels(nan, panels))
 
 
 def test_an_integral_is_summed_from_its_anchor_to_both_sides():

@@ -13,7 +13,7 @@ from flockana.base.errors import UnknownNameError
 from flockana.base.serialize import from_data, to_data
 from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.terms.along import AlongVelocity
+from flockana.laws.terms.along_velocity import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
 from flockana.sources.li_dead_zone import DeadZoneInteraction
 from tests.refused import refused

@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, Disturbed, Gains, StaticTarget, Trajectory, rescale, simulate, verify
 from flockana.lattice import hexagonal_patch
-from flockana.laws.wrapped import Step
+from flockana.laws.wrapper_base import Step
 from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 import flockana as fl
-from flockana.theorems.fits import ensure_fits
+from flockana.theorems.run_consistency import ensure_fits
 from tests.refused import refused
 
 LENGTHS = (0.7, 1.3, 0.4)

@@ -5,7 +5,7 @@ import numpy as np
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Law, LinearTarget
 from flockana.base.scales import Scales
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.laws.gained import alpha_scales
+from flockana.laws.gain_laws import alpha_scales
 from tests.refused import refused
 
 TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.stability import robustness_margins
-from flockana.theorems.fits import ensure_fits
+from flockana.theorems.run_consistency import ensure_fits
 from tests.refused import refused
 
 TURN = np.array([[0.0, -1.0], [1.0, 0.0]])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import AlphaInteraction, BetaInteraction, Capsule, Obstacle, Polygon, Sphere, Wall
-from flockana.kernels.paths import bernstein
+from flockana.kernels.quintic_paths import bernstein
 from flockana.lattice import hexagonal_patch
 from flockana.measures.clearance import bounds_over_hull, clearance, constrained_lattice, refine
 

@@ -5,7 +5,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from flockana.kernels.paths import ALLOWED, bernstein
+from flockana.kernels.quintic_paths import ALLOWED, bernstein
 from flockana.measures import path_bounds
 from flockana.measures.metrics import cohesion_radii
 from flockana.measures.path_bounds import closest_approach, cohesion_bound, contacts

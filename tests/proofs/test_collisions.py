@@ -16,8 +16,14 @@ from flockana import scenario, simulate, verify
 from flockana.certified.balls import AlphaParameters
 from flockana.certified.intervals import c_star, far_potential
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.equilibria.barrier import bound_range, energy_floor, lattice_reach, least_infeasible_size, turan_pairs
-from flockana.equilibria.barrier import largest_clique as numeric_clique
+from flockana.equilibria.energy_barrier import (
+    bound_range,
+    energy_floor,
+    lattice_reach,
+    least_infeasible_size,
+    turan_pairs,
+)
+from flockana.equilibria.energy_barrier import largest_clique as numeric_clique
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.algorithm3 import Algorithm3

@@ -16,7 +16,7 @@ from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.jit import register_jitable
 from flockana.kernels import elementary, scalars
 from flockana.sources.li_dead_zone.kernels import pair as kernel
-from flockana.symbolic.named import Phi, PhiAbove, PhiIntegral, SigmaNorm
+from flockana.symbolic.named_functions import Phi, PhiAbove, PhiIntegral, SigmaNorm
 from proofs import library_formulas, library_potentials
 from proofs.dead_zone_pairs import zones
 from tests.proofs.steps import failing

@@ -17,7 +17,7 @@ from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, 
 from flockana.base.modules import modules, source_modules
 from flockana.base.serialize import from_data, to_data
 from flockana.laws.law import LawOfMotion
-from flockana.laws.wrapped import Wrapper
+from flockana.laws.wrapper_base import Wrapper
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
 from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking

@@ -14,9 +14,9 @@ from flint import arb, ctx
 
 from flockana.interactions import Gains
 from flockana.sources.jond_2025.theorems.j07_speed_bound import dragged_speed
+from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.delay import scalar_margin
 from flockana.stability.norms import h2_norm, hinf_norm
-from flockana.stability.translational import predicted_gain
 from proofs import (
     constant_acceleration,
     net_measures,

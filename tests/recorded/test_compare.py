@@ -9,8 +9,8 @@ import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
 from flockana.recorded.contributions import contributions, remainder, variants
+from flockana.recorded.one_step_predictions import kinematic_scheme, scheme_by_law
 from flockana.recorded.recording import recording_of
-from flockana.recorded.steps import kinematic_scheme, scheme_by_law
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
 from tests.refused import refused

@@ -14,7 +14,7 @@ from flockana.report.build import report_folder, verdicts_json, write_report
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import scenario_id, verdict_id
 from flockana.report.pages import ScenarioPage, fixed_page, scenario_page
-from flockana.report.text import deciding_claim, parameters, show, tolerance_rows
+from flockana.report.value_texts import deciding_claim, parameters, show, tolerance_rows
 from flockana.scenarios import Report, Scenario, scenario, scenarios
 from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorems, verify
 

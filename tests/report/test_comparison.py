@@ -6,11 +6,11 @@ from markupsafe import escape
 
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.cli.verify import verify_command
-from flockana.report import comparison, work
+from flockana.report import comparison, verify_catalogue
 from flockana.report.build import write_report
 from flockana.report.figures import Picture
 from flockana.report.stability import LinearisedFlocks
-from flockana.report.work import Task
+from flockana.report.verify_catalogue import Task
 from flockana.scenarios.one_start import compare, entries
 from flockana.theorems import Claim, Verdict, theorem
 
@@ -45,8 +45,8 @@ def test_it_is_part_of_the_page(section, tmp_path):
 
 def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(section, tmp_path, monkeypatch):
     made = []
-    monkeypatch.setattr(work, "plan", lambda *given, **options: (Task("E8", fixed=True),))
-    monkeypatch.setattr("flockana.report.surveys.surveys", lambda *given, **options: ())
+    monkeypatch.setattr(verify_catalogue, "plan", lambda *given, **options: (Task("E8", fixed=True),))
+    monkeypatch.setattr("flockana.report.seed_surveys.surveys", lambda *given, **options: ())
     monkeypatch.setattr("flockana.report.comparison.comparison_section", lambda seed: made.append(seed) or section)
     flocks = LinearisedFlocks((), (), ())
     monkeypatch.setattr("flockana.report.stability.linearised_flocks", lambda: made.append("flocks") or flocks)
@@ -62,11 +62,11 @@ def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(sec
 def test_linearised_flocks_of_the_tasks_are_in_the_page_and_their_failure_loses_nothing(
     section, tmp_path, monkeypatch, capsys
 ):
-    monkeypatch.setattr(work, "plan", lambda *given, **options: (Task("delay-margin", fixed=True),))
+    monkeypatch.setattr(verify_catalogue, "plan", lambda *given, **options: (Task("delay-margin", fixed=True),))
     names = [name.partition(":")[2] for name in theorem("delay-margin").expected]
     claims = tuple(Claim(name, "verified") for name in names if name)
-    monkeypatch.setattr(work, "verify", lambda name: Verdict(name, (), claims))
-    monkeypatch.setattr("flockana.report.surveys.surveys", lambda *given, **options: ())
+    monkeypatch.setattr(verify_catalogue, "verify", lambda name: Verdict(name, (), claims))
+    monkeypatch.setattr("flockana.report.seed_surveys.surveys", lambda *given, **options: ())
     monkeypatch.setattr("flockana.report.comparison.comparison_section", lambda seed: section)
     made = [LinearisedFlocks((Picture("Poles of 19", "<svg></svg>"),), (), ())]
     monkeypatch.setattr("flockana.report.stability.linearised_flocks", made.pop)

@@ -5,7 +5,7 @@ from flockana.plots.decay import linear_range
 from flockana.plots.style import subplots
 from flockana.report import stability
 from flockana.report.build import write_report
-from flockana.report.control import Download
+from flockana.report.control_figures import Download
 from flockana.report.figures import Picture
 from flockana.report.pages import Finding, FixedPage
 from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section

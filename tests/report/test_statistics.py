@@ -6,12 +6,12 @@ import pytest
 from rich.console import Console
 
 from flockana.ensemble import clopper_pearson, ensemble, shares
-from flockana.ensemble.work import Job, Record, Request, run_batch
+from flockana.ensemble.one_run import Job, Record, Request, run_batch
 from flockana.report.build import page_environment, verdicts_json, write_report
 from flockana.report.console import statistics_table
+from flockana.report.seed_surveys import make_survey, surveys
 from flockana.report.statistics import TEMPLATE, Share, entry_of, gather
-from flockana.report.surveys import make_survey, surveys
-from flockana.report.work import check_all
+from flockana.report.verify_catalogue import check_all
 from flockana.scenarios import scenario
 
 

@@ -1,5 +1,5 @@
 from flockana.scenarios.findings import limit_report
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limit_certificates import Certificate
 
 
 def test_a_limit_without_certificate_stays_open():

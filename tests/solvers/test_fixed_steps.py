@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.solvers.named import solver_of, solvers
+from flockana.solvers.solver_names import solver_of, solvers
 from tests.refused import refused
 
 MOVING = fl.CircleTarget((0.0, 0.0), 20.0, frequency=0.05)

@@ -7,7 +7,7 @@ from scipy.integrate import DOP853, RK23, RK45
 from flockana.jit import thawed
 from flockana.kernels.runge_kutta import Method, Step, combine, error_of, interpolated
 from flockana.solvers import dop853
-from flockana.solvers.named import solver_of
+from flockana.solvers.solver_names import solver_of
 
 
 def tableau(method):

@@ -10,7 +10,7 @@ from flockana import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.growth import MOST, Steps, first_growth
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.maps import moved_before
+from flockana.stability.map_linearisation import moved_before
 from flockana.stability.sampling import SamplingMargin, margin_of_flow
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))

@@ -22,9 +22,9 @@ from flockana import (
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.blocks import blocks
 from flockana.stability.law_studies import law_blocks, norms_against_size
 from flockana.stability.norms import disturbance_system, h2_norm, hinf_norm, stationary_covariance
+from flockana.stability.second_order_blocks import blocks
 from tests.refused import refused
 
 ALPHA = AlphaInteraction()

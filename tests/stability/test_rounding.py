@@ -12,6 +12,7 @@ from flockana import Algorithm1, Algorithm2, DeadZoneFlocking, Gains, StaticTarg
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.stability import linearise, slowest_modes
 from flockana.stability.centre_path import centre_path
+from flockana.stability.centre_transfer import CentreOfMass
 from flockana.stability.decay import decay
 from flockana.stability.delay import DelaySystem, delay_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
@@ -19,7 +20,6 @@ from flockana.stability.law_studies import delay_system, law_blocks
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm
 from flockana.stability.rounding import eigen, eigenvalues, slowest_first
 from flockana.stability.sweeps import gain_sweep
-from flockana.stability.translational import CentreOfMass
 
 UNITS = [(1e-6, 1e3), (1e3, 1e-3)]
 ORIGIN = StaticTarget((0.0, 0.0))

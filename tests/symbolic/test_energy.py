@@ -6,12 +6,12 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import GAINS, ConcreteFlock, derive_split, energy, norms, pair, sums
+from flockana.symbolic import GAINS, ConcreteFlock, derive_split, energy, pair, sigma_norms, sums
+from flockana.symbolic.algorithm3_energy import theorem6_identity
 from flockana.symbolic.energy import algorithm1_identity, structural_identity
 from flockana.symbolic.errata import e1_counterexample, e1_identity
 from flockana.symbolic.obstacles import derive_envelope
 from flockana.symbolic.potentials import derive_psi_alpha
-from flockana.symbolic.theorem6 import theorem6_identity
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
 
@@ -79,7 +79,7 @@ def test_e1_leaves_exactly_minus_the_rate_of_v_and_the_dissipation(m: int) -> No
     i, j = sums.I_, sums.J_
     z = sums.Z[i, j]
     relative = [(sums.Q[i, k] - sums.Q[j, k], sums.P[i, k] - sums.P[j, k]) for k in range(1, m + 1)]
-    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + norms.EPS * z) * sp.Add(*(y * w for y, w in relative))
+    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*(y * w for y, w in relative))
     dissipated = GAINS.c2_alpha * pair.ADJACENCY(z) * sp.Add(*(w**2 for _, w in relative))
     identity = e1_identity(m)
     assert identity.residual == sums.over_pairs(-v_rate) + sums.over_pairs(-dissipated)

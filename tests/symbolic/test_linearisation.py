@@ -9,10 +9,10 @@ from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.symbolic import linearisation as lin
 from flockana.symbolic.functions import adjacency, bump, phi_alpha, phi_beta
-from flockana.symbolic.norms import EPS
 from flockana.symbolic.obstacles import PHI_BETA, RADIUS, WEIGHT, GenericObstacle
 from flockana.symbolic.pair import ADJACENCY, PHI
 from flockana.symbolic.parameters import GAINS, AlphaSymbols, BetaSymbols
+from flockana.symbolic.sigma_norms import EPS
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
 Z = sp.Symbol("Z")

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from flockana.symbolic import GAINS, norms, obstacles, pair, sums, theorem6
+from flockana.symbolic import GAINS, algorithm3_energy, obstacles, pair, sigma_norms, sums
+from flockana.symbolic.algorithm3_energy import condition_76_residual, e2_counterexample, e2_identity, theorem6_identity
 from flockana.symbolic.obstacles import KINDS, GenericObstacle, derive_braking, derive_envelope, sphere_beta, wall_beta
-from flockana.symbolic.theorem6 import condition_76_residual, e2_counterexample, e2_identity, theorem6_identity
 from tests.refused import refused
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
@@ -45,7 +45,7 @@ def test_theorem_6_holds_for_generic_n_and_any_obstacles(m: int, moving: bool) -
     assert identity.residual == 0
     assert identity.rate == identity.claimed
     assert identity.rate.has(sums.N)
-    assert identity.rate.has(theorem6.COUNT)
+    assert identity.rate.has(algorithm3_energy.COUNT)
 
 
 def test_the_closed_form_is_the_printed_one() -> None:
@@ -53,8 +53,8 @@ def test_the_closed_form_is_the_printed_one() -> None:
     i, j, k = sums.I_, sums.J_, sums.K_
     p, p_r, s, q_r = sums.P, *sp.symbols("p_r1 s1 q_r1", real=True)
     consensus = -GAINS.c2_alpha * sums.over_pairs(pair.ADJACENCY(sums.Z[i, j]) * (p[i, 1] - p[j, 1]) ** 2)
-    term = obstacles.WEIGHT(theorem6.CLEARANCE[i, k]) * theorem6.BRAKING[i, k]
-    walls = GAINS.c2_beta * sp.Sum(term, (k, 1, theorem6.COUNT), (i, 1, sums.N))
+    term = obstacles.WEIGHT(algorithm3_energy.CLEARANCE[i, k]) * algorithm3_energy.BRAKING[i, k]
+    walls = GAINS.c2_beta * sp.Sum(term, (k, 1, algorithm3_energy.COUNT), (i, 1, sums.N))
     drag = -GAINS.c2_gamma * (sums.over_agents(p[i, 1] ** 2) - p_r * sums.over_agents(p[i, 1]))
     assert sp.expand(theorem6_identity(1).claimed - consensus - walls - drag) == 0
     moving = theorem6_identity(1, moving=True).claimed.coeff(s)
@@ -73,7 +73,7 @@ def test_e2_leaves_exactly_the_rate_of_v_alpha(m: int) -> None:
     i, j = sums.I_, sums.J_
     z = sums.Z[i, j]
     relative = [(sums.Q[i, k] - sums.Q[j, k]) * (sums.P[i, k] - sums.P[j, k]) for k in range(1, m + 1)]
-    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + norms.EPS * z) * sp.Add(*relative)
+    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*relative)
     identity = e2_identity(m)
     assert not identity.holds
     assert identity.residual == sums.over_pairs(v_rate)
@@ -123,7 +123,7 @@ def test_a_wrong_gamma_force_leaves_a_residual(monkeypatch: pytest.MonkeyPatch) 
     def linear(q_i, p_i, q_r, p_r, *, gains=GAINS):  # type: ignore[no-untyped-def]
         return -gains.c1_gamma * (q_i - q_r) - gains.c2_gamma * (p_i - p_r)
 
-    monkeypatch.setattr(theorem6, "gamma_force", linear)
+    monkeypatch.setattr(algorithm3_energy, "gamma_force", linear)
     assert not theorem6_identity(2).holds
 
 

@@ -41,7 +41,7 @@ def test_thrust_balances_and_may_rise():
 
 
 def test_a_wrong_power_is_found(monkeypatch):
-    from flockana.laws.terms.along import AlongVelocity
+    from flockana.laws.terms.along_velocity import AlongVelocity
 
     right = AlongVelocity.act
     monkeypatch.setattr(AlongVelocity, "act", lambda self, *state: 1.01 * right(self, *state))

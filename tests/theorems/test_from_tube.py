@@ -8,7 +8,7 @@ from flint import arb
 
 from flockana import Algorithm1, Algorithm2, Basin, StaticTarget, Tolerances, enclose, simulate, verify
 from flockana.base.errors import ArgumentError
-from flockana.certified.structure import Structure
+from flockana.certified.structural_potential import Structure
 from flockana.theorems.from_tube import met, rest_strain
 from tests.theorems.made_up import statuses
 

@@ -5,7 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.recorded.following import following
+from flockana.recorded.follows_law import following
 from flockana.theorems.collisions import energy_within_accuracy
 from flockana.theorems.observed import Observed
 from flockana.theorems.on_recordings import DEFINITIONS, observed_recording
@@ -70,7 +70,7 @@ def test_a_wide_bound_is_met_and_decides_what_has_room(own):
 
 
 def test_enclosures_hold_every_flock_that_the_accuracy_allows(own):
-    from flockana.recorded.following import following
+    from flockana.recorded.follows_law import following
     from flockana.theorems.on_recordings import observed_recording
 
     rng, bound = np.random.default_rng(5), 0.01

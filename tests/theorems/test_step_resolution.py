@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.interactions.functions import LawFunction
+from flockana.interactions.distance_functions import LawFunction
 from flockana.theorems import Claim
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run

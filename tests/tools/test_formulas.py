@@ -4,9 +4,9 @@ import pytest
 import sympy as sp
 
 import flockana
-from flockana.symbolic import BETA, named
+from flockana.symbolic import BETA, named_functions
 from flockana.symbolic.functions import beta_closed, beta_smooth
-from flockana.symbolic.named import Bump, Phi, PhiIntegral, SigmaNorm, written
+from flockana.symbolic.named_functions import Bump, Phi, PhiIntegral, SigmaNorm, written
 from tools.formulas import sources
 
 A, Y, H, Z = sp.symbols("a y h z", positive=True)
@@ -23,13 +23,13 @@ def test_a_generated_file_is_what_its_formulas_give(path):
 
 def test_slopes_are_derivatives_of_the_printed_formulas():
     s = sp.Symbol("s", real=True)
-    for node in (named.Sigma1(s), Phi(s, A, A + H, C), PhiIntegral(s, A, B, C), SigmaNorm(Y, A)):
+    for node in (named_functions.Sigma1(s), Phi(s, A, A + H, C), PhiIntegral(s, A, B, C), SigmaNorm(Y, A)):
         x = node.args[0]
         assert abs((written(node.diff(x)) - node.formula.diff(x)).subs(AT | {s: 0.3}).evalf()) < 1e-14
     z = sp.Symbol("z", positive=True)
     slope = written(Bump(z, sp.Rational(1, 5)).diff(z))
     assert slope.subs(z, sp.Rational(1, 10)) == slope.subs(z, 2) == slope.subs(z, 1) == 0
-    on_taper = written(named.Taper(named.Place(z, sp.Rational(1, 5))))
+    on_taper = written(named_functions.Taper(named_functions.Place(z, sp.Rational(1, 5))))
     assert abs((slope - on_taper.diff(z)).subs(z, 0.7).evalf()) < 1e-15
 
 

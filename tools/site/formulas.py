@@ -8,17 +8,17 @@ from typing import Any
 import sympy as sp
 
 from flockana import symbolic
-from flockana.symbolic import bearing_distance as zone
 from flockana.symbolic import (
-    composition,
+    algorithm3_energy,
     dead_zone,
+    energy_balances,
     errata,
     linearisation,
     obstacles,
     spanning_trees,
-    theorem6,
-    translational,
+    translational_dynamics,
 )
+from flockana.symbolic import bearing_distance as zone
 from flockana.symbolic.pair import own_force, vector
 
 Made = Callable[[], Any]
@@ -63,7 +63,11 @@ FORMULAS: dict[str, tuple[tuple[str, str, Made], ...]] = {
     "Forces": (
         (r"f_{ij}", "pair_force", lambda: symbolic.pair_force(*_pair())),
         (r"f_i^\gamma", "pair.own_force", lambda: own_force(*_agent())),
-        (r"f_i^\gamma \text{ of Algorithm 3}", "theorem6.gamma_force", lambda: theorem6.gamma_force(*_agent())),
+        (
+            r"f_i^\gamma \text{ of Algorithm 3}",
+            "algorithm3_energy.gamma_force",
+            lambda: algorithm3_energy.gamma_force(*_agent()),
+        ),
     ),
     "Obstacles": (
         (r"\hat q_{i,k} \text{ of a wall}", "obstacles.wall_beta", lambda: _beta("wall", 0)),
@@ -92,8 +96,16 @@ FORMULAS: dict[str, tuple[tuple[str, str, Made], ...]] = {
         (r"\zeta", "damping_ratio", symbolic.damping_ratio),
         ("G(s)", "transfer_function", symbolic.transfer_function),
         (r"|G(i\omega)|", "frequency_gain", symbolic.frequency_gain),
-        (r"\mathrm{d}|G|^2/\mathrm{d}(\omega^2)", "translational.gain_slope", translational.gain_slope),
-        (r"\text{it falls if } 0 <", "translational.falling_condition", translational.falling_condition),
+        (
+            r"\mathrm{d}|G|^2/\mathrm{d}(\omega^2)",
+            "translational_dynamics.gain_slope",
+            translational_dynamics.gain_slope,
+        ),
+        (
+            r"\text{it falls if } 0 <",
+            "translational_dynamics.falling_condition",
+            translational_dynamics.falling_condition,
+        ),
     ),
     "Dead zone (Li, Yuan, Liu)": (
         (r"F^-(\rho)", "dead_zone.repulsion", dead_zone.repulsion),
@@ -153,17 +165,17 @@ DERIVATIONS: dict[str, tuple[tuple[str, Made], ...]] = {
         ("algorithm1_identity", symbolic.algorithm1_identity),
         ("structural_identity", symbolic.structural_identity),
         ("e1_identity", symbolic.e1_identity),
-        ("composition.matching_identity", composition.matching_identity),
-        ("composition.given_frame_identity", composition.given_frame_identity),
-        ("composition.moving_frame_identity", composition.moving_frame_identity),
-        ("composition.copies_balance", composition.copies_balance),
-        ("composition.copies_part", composition.copies_part),
+        ("energy_balances.matching_identity", energy_balances.matching_identity),
+        ("energy_balances.given_frame_identity", energy_balances.given_frame_identity),
+        ("energy_balances.moving_frame_identity", energy_balances.moving_frame_identity),
+        ("energy_balances.copies_balance", energy_balances.copies_balance),
+        ("energy_balances.copies_part", energy_balances.copies_part),
     ),
     "Obstacles and Theorem 6": (
         ('obstacles.derive_envelope("wall")', lambda: obstacles.derive_envelope("wall")),
         ('obstacles.derive_envelope("sphere")', lambda: obstacles.derive_envelope("sphere")),
-        ("theorem6.theorem6_identity", theorem6.theorem6_identity),
-        ("theorem6.e2_identity", theorem6.e2_identity),
+        ("algorithm3_energy.theorem6_identity", algorithm3_energy.theorem6_identity),
+        ("algorithm3_energy.e2_identity", algorithm3_energy.e2_identity),
     ),
     "Jacobians": (
         ("linearisation.derive_pair_jacobian", linearisation.derive_pair_jacobian),
@@ -175,7 +187,7 @@ DERIVATIONS: dict[str, tuple[tuple[str, Made], ...]] = {
         ("bearing_distance.derive_equivalence", zone.derive_equivalence),
         ("dead_zone.derive_potential", dead_zone.derive_potential),
         ("dead_zone.saturated_energy_identity", dead_zone.saturated_energy_identity),
-        ("composition.led_energy_identity", composition.led_energy_identity),
+        ("energy_balances.led_energy_identity", energy_balances.led_energy_identity),
     ),
     "Trees": (
         ("spanning_trees.stacked_form", lambda: spanning_trees.stacked_form(_TREE)),

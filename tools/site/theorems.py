@@ -15,7 +15,7 @@ from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import BYLINES
-from flockana.theorems.of_schemes import scheme_note
+from flockana.theorems.on_fixed_steps import scheme_note
 from tools.site.lectures import back_links
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail

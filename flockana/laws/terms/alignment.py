@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.interactions.functions import LawFunction
-from flockana.interactions.pair import pair_matrix
+from flockana.interactions.distance_functions import LawFunction
+from flockana.interactions.pair_interaction import pair_matrix
 from flockana.interactions.weights import Weight
 from flockana.kernels.listed import no_energy
 from flockana.laws.terms.pairs import ensure_apart

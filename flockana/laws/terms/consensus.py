@@ -5,8 +5,8 @@ from functools import cached_property
 from typing import ClassVar
 
 from flockana.base.checks import FloatArray
-from flockana.interactions.functions import LawFunction
-from flockana.interactions.pair import PairInteraction
+from flockana.interactions.distance_functions import LawFunction
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.kernels.listed import no_energy
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Derivatives, Term, TermKernel

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.environment.copies import Copies
+from flockana.environment.gamma_agent_copies import Copies
 from flockana.interactions import Gains
 from flockana.interactions.gains import weighted
 from flockana.laws.features import Feature, target_feature

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.environment.target import Harmonic, Target
-from flockana.kernels import own as kernel
+from flockana.kernels import agent_terms as kernel
 from flockana.kernels.listed import no_energy
 from flockana.laws.features import Feature, target_feature
 from flockana.laws.terms.term import Term, TermKernel

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Harmonic, Target
-from flockana.interactions.functions import LawFunction
-from flockana.interactions.pair import PairInteraction
+from flockana.interactions.distance_functions import LawFunction
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.features import Feature, target_feature
 from flockana.laws.matrices import block_diagonal

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import overrides_consistently
+from flockana.base.override_checks import overrides_consistently
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel

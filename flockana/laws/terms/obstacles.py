@@ -8,7 +8,7 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
-from flockana.kernels.bodies import body_numbers
+from flockana.kernels.obstacle_terms import body_numbers
 from flockana.laws.features import Feature
 from flockana.laws.terms.term import Invariance, Term, TermKernel
 

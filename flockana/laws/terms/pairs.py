@@ -7,8 +7,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.interactions.functions import LawFunction
-from flockana.interactions.pair import PairInteraction
+from flockana.interactions.distance_functions import LawFunction
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.kernels.listed import listed_numbers
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
 

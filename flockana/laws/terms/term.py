@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.shown import ShortRepr
-from flockana.interactions.functions import LawFunction
+from flockana.base.short_repr import ShortRepr
+from flockana.interactions.distance_functions import LawFunction
 from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.grid import LARGE, empty_cuts

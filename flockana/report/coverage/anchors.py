@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from flockana.report.pages import Page, ScenarioPage
-from flockana.scenarios.checks import SOURCE
+from flockana.scenarios.option_checks import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:

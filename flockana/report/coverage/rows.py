@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
+from flockana.base.bibtex_entries import bibliography
 from flockana.base.errors import ArgumentError
 from flockana.base.modules import source_files
-from flockana.base.references import bibliography
 
 Standing = Literal["held", "weaker", "absent", "prose"]
 

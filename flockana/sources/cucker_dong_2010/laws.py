@@ -10,7 +10,7 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_nonnegative, en
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.functions import LawFunction
+from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.law import Law
 

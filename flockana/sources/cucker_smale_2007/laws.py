@@ -10,11 +10,11 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_flag, ensure_kind, normalise
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
-from flockana.laws.candidates import Candidate
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.alignment import AlignmentTerm
 from flockana.laws.terms.term import Term
+from flockana.laws.usual_laws import Candidate
 from flockana.measures.metrics import spreads
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
+from flockana.interactions.distance_functions import DistanceFunction, InnerValues, LawFunction
 from flockana.laws.velocity import VelocityLaw
 
 

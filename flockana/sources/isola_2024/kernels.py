@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana.jit import kernel
+from flockana.kernels.agent_sums import square_between
 from flockana.kernels.alpha import pair_alpha
-from flockana.kernels.sums import square_between
 
 
 @kernel

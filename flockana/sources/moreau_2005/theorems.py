@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.sources.moreau_2005.laws import NetAveraging
-from flockana.theorems.rooted import describe_groups, unheard_groups
+from flockana.theorems.net_roots import describe_groups, unheard_groups
 from flockana.theorems.toolkit import (
     EPS,
     Checked,

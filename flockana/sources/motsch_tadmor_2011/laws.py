@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.functions import LawFunction
+from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.law import Law
 

@@ -15,9 +15,9 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
-from flockana.interactions.functions import DistanceFunction, InnerValues, LawFunction
+from flockana.interactions.distance_functions import DistanceFunction, InnerValues, LawFunction
 from flockana.kernels.neighbours import pair_blocks
-from flockana.laws.gained import GainedLaw
+from flockana.laws.gain_laws import GainedLaw
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.term import Term
 

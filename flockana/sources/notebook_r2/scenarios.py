@@ -27,7 +27,7 @@ from flockana.scenarios.findings import (
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.notebook_r2.laws import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limit_certificates import Certificate
 
 _FOLLOWED = 0.01  # of d: how near to the flow steps are that follow it
 _RELAXED = 0.1  # of ‖u_α‖ at the start

@@ -9,8 +9,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.units import Powers
-from flockana.interactions.functions import DistanceFunction, InnerValues
-from flockana.interactions.pair import pair_matrix
+from flockana.interactions.distance_functions import DistanceFunction, InnerValues
+from flockana.interactions.pair_interaction import pair_matrix
 
 
 @dataclass(frozen=True)

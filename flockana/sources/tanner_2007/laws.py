@@ -14,7 +14,7 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.interactions.functions import LawFunction, Within
+from flockana.interactions.distance_functions import LawFunction, Within
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import ensure_apart

@@ -7,7 +7,7 @@ from flockana.scenarios.entry import Builder, Report, Start, Status, entry, vacu
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, limit_report, report
 from flockana.scenarios.one_start import RANGE, SPEED, LawEntry
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
-from flockana.sources.vicsek_1995.theorems.averaging import permanently_connected, permanently_separated
+from flockana.sources.vicsek_1995.theorems.heading_averages import permanently_connected, permanently_separated
 
 _REFERENCES = ("jadbabaie-lin-morse-2003", "flockana")
 _SIZE = 0.7  # spacing of a group's agents over r

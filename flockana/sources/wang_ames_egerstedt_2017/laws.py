@@ -10,7 +10,7 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, norma
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Wrapper, WrappingLaw
+from flockana.laws.wrapper_base import Wrapper, WrappingLaw
 
 
 @dataclass(frozen=True)

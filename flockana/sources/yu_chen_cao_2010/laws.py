@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.laws.wrapped import HearingLaw
+from flockana.laws.wrapper_base import HearingLaw
 
 _WANTED = "a square array of weights a_ij >= 0, with which agent i hears agent j"
 

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.certified.balls import exact
 from flockana.certified.second_order import laplacian_of, moving_eigenvalues, stable_off_agreement, velocity_threshold
 from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
-from flockana.theorems.rooted import has_root
+from flockana.theorems.net_roots import has_root
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances
 from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem, vacuous
 

@@ -14,7 +14,7 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
 from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.links import LinkTerm
+from flockana.laws.terms.fixed_links import LinkTerm
 from flockana.laws.terms.term import Term
 from flockana.measures.perception import ensure_in_flock, ensure_net
 

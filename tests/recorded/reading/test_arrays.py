@@ -8,7 +8,7 @@ from scipy.io import savemat
 
 import flockana as fl
 from flockana.base.errors import FlockanaError
-from flockana.recorded.parts import largest_complete_part
+from flockana.recorded.complete_parts import largest_complete_part
 
 Q = np.random.default_rng(0).random((7, 4, 2))
 

@@ -5,9 +5,9 @@ from math import exp, sqrt
 
 import numpy as np
 
-from flockana.interactions.pair import PairInteraction
+from flockana.interactions.pair_interaction import PairInteraction
 from flockana.jit import register_jitable
-from flockana.kernels.lift import lift
+from flockana.kernels.pair_lift import lift
 
 
 @register_jitable

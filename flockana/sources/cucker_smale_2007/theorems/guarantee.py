@@ -1,7 +1,7 @@
 """The functional ‖v‖ + ∫φ of Ha and Liu on a run of the Cucker-Smale law, or of steps of it."""
 
 from flockana.theorems.alignment_bounds import AlignmentRate, Guarantee
-from flockana.theorems.sampling import spread_over
+from flockana.theorems.between_samples import spread_over
 from flockana.theorems.toolkit import Observed
 
 PROOF = "cucker-smale"

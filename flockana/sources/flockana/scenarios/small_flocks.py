@@ -9,7 +9,7 @@ from flockana.environment import Sphere, StaticTarget
 from flockana.interactions import Gains
 from flockana.laws import Algorithm1, Algorithm3, paper_pair
 from flockana.scenarios.entry import OURS, Builder, Scenario, Status, entry, inconclusive, refuted, vacuous, verified
-from flockana.scenarios.start import lazy_array
+from flockana.scenarios.lazy_start import lazy_array
 from flockana.sources.geschwender_2016 import rhombus_with_double_agent
 
 

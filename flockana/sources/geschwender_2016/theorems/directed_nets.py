@@ -7,7 +7,7 @@ import numpy as np
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.directed import DirectedNet
+from flockana.laws.directed_algorithms import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import rises
 from flockana.theorems.claims import erratum, judged, of_state

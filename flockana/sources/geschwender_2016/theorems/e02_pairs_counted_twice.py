@@ -11,7 +11,7 @@ from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observe
 @erratum("E2", expected={"refuted": "printed printed-state printed-run", "verified": "corrected"})
 def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½."""
-    from flockana.symbolic.theorem6 import e2_counterexample, e2_identity, theorem6_identity
+    from flockana.symbolic.algorithm3_energy import e2_counterexample, e2_identity, theorem6_identity
 
     # two agents too close that approach further, a sphere beside them, the γ-agent at rest between them
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))

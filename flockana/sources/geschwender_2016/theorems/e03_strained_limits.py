@@ -10,14 +10,14 @@ import numpy as np
 from flockana.base.progress import show_part
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.coincidence import least_with_coincidence
+from flockana.equilibria.equilibrium_files import smallest_strained
+from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.equilibria.gradient_flow import gradient_flow
-from flockana.equilibria.record import smallest_strained
-from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.nets import components, links
 from flockana.theorems.attraction import attraction
-from flockana.theorems.shares import CONFIDENCE
+from flockana.theorems.random_start_shares import CONFIDENCE
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, always, erratum, judged, of_state
 
 _SIZES, _STARTS = (10, 20, 40), 20

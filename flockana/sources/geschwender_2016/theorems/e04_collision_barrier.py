@@ -4,7 +4,7 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.equilibria.barrier import (
+from flockana.equilibria.energy_barrier import (
     bound_range,
     collision_barrier,
     collision_bounds,

@@ -8,8 +8,8 @@ import numpy as np
 
 from flockana.base.errors import SolverError
 from flockana.equilibria.collapse import CONTACT, natural_ratio, perturbed, pulled_law, threshold
+from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.equilibria.gradient_flow import gradient_flow
-from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair

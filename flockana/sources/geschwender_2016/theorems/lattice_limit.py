@@ -3,7 +3,7 @@
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.hypotheses import alpha_gain
-from flockana.theorems.leads import strained
+from flockana.theorems.search_objectives import strained
 from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
 
 

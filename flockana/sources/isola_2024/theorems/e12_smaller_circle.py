@@ -9,8 +9,8 @@ import numpy as np
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.centre_path import motion, path_and_factor
+from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio, whole_period
-from flockana.stability.translational import predicted_gain
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed, run_theorem

@@ -13,7 +13,7 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
-from flockana.stability.translational import CentreOfMass, predicted_gain
+from flockana.stability.centre_transfer import CentreOfMass, predicted_gain
 from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, equal, erratum, judged, observed, stacked
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's
@@ -48,7 +48,7 @@ def _condition() -> Any:
     import sympy as sp
 
     from flockana.symbolic.parameters import GAINS
-    from flockana.symbolic.translational import falling_condition, gain_slope
+    from flockana.symbolic.translational_dynamics import falling_condition, gain_slope
 
     factor, w = sp.Symbol("k", real=True), sp.Symbol("w", nonnegative=True)
     c1, c2 = GAINS.c1_gamma, GAINS.c2_gamma

@@ -6,7 +6,7 @@ from math import sqrt
 import numpy as np
 
 from flockana.equilibria.collapse import perturbed, pulled_law
-from flockana.equilibria.terminal import TerminalState, terminal_state
+from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.sources.geschwender_2016 import resting_place

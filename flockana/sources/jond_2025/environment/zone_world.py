@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
 from flockana.environment.polygon import SimplePolygon

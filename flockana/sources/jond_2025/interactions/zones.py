@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, PerAgent, ensure_nonnegative, normalise, per_agent
 from flockana.base.errors import ArgumentError
-from flockana.base.shown import ShortRepr
+from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
 
 Table = float | tuple[tuple[float, ...], ...]

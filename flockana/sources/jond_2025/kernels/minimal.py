@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.jit import kernel
+from flockana.kernels.agent_sums import square_between
 from flockana.kernels.neighbours import DENSE_MAX, FloatArray, pair_blocks
-from flockana.kernels.sums import square_between
 
 AT_ONCE = DENSE_MAX  # up to so many agents `semi_implicit_steps` is the same to the bit: pairs come in the same order
 _SLACK = 1.0 + 1e-12  # the search is strict and the radius closed: a few roundings more than R, and the filter decides

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.jit import kernel, register_jitable
+from flockana.kernels.agent_sums import square_between
 from flockana.kernels.noise import noise
-from flockana.kernels.sums import square_between
 from flockana.sources.jond_2025.kernels.candidates import gather, sort_into_cells
 from flockana.sources.jond_2025.kernels.zone_obstacles import obstacle_terms, to_boundary
 

@@ -21,7 +21,7 @@ from flockana.base.checks import (
     per_agent,
 )
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import overrides_consistently
+from flockana.base.override_checks import overrides_consistently
 from flockana.base.scales import Scales
 from flockana.base.units import Powers, scaled_fields, times
 from flockana.base.vectors import lengths

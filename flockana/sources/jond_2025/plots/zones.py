@@ -19,9 +19,9 @@ from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
-from flockana.plots.series import pair_distances
 from flockana.plots.snapshot import configuration, draw_sample, in_view, nearest_sample, velocity_arrows
 from flockana.plots.style import curves, ensure_axes, frame_space, hairlines, levels, lines, over_time, write_title
+from flockana.plots.time_series import pair_distances
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 

@@ -21,7 +21,7 @@ from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, refuted, verified
 from flockana.scenarios.findings import component_counts, finding, in_source_units, report
-from flockana.scenarios.start import lazy_state
+from flockana.scenarios.lazy_start import lazy_state
 from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights

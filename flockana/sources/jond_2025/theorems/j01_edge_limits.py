@@ -8,7 +8,7 @@ from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase, tree_case
 from flockana.sources.jond_2025.theorems.tree_limits import kept, settles
 from flockana.theorems.observed import End, Observed, observed
-from flockana.theorems.shares import CONFIDENCE, interval
+from flockana.theorems.random_start_shares import CONFIDENCE, interval
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, limit_claim
 
 _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s

@@ -22,7 +22,7 @@ import numpy as np
 
 from flockana.measures.perception import edge_vectors
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase
-from flockana.theorems.limits import Certificate, decays_to_zero
+from flockana.theorems.limit_certificates import Certificate, decays_to_zero
 from flockana.theorems.observed import End
 from flockana.theorems.rounding import frame_error
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths

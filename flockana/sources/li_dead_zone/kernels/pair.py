@@ -11,8 +11,8 @@ from math import inf, log, log1p, sqrt
 import numpy as np
 
 from flockana.jit import kernel, register_jitable
-from flockana.kernels.sums import square_between
-from flockana.kernels.tables import on_panels
+from flockana.kernels.agent_sums import square_between
+from flockana.kernels.integral_tables import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
 ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)

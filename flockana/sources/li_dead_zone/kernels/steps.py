@@ -5,7 +5,7 @@ from math import inf, sqrt
 import numpy as np
 
 from flockana.jit import kernel, register_jitable
-from flockana.kernels.sums import put
+from flockana.kernels.agent_sums import put
 from flockana.sources.li_dead_zone.kernels.pair import D_1, D_2, K_1, R, pair_dead_zone
 
 _AHEAD = 30.0  # steps that a list is made for, at the speeds of its time

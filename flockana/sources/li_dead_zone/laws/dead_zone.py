@@ -11,13 +11,13 @@ from flockana.base.checks import FloatArray, ensure_kind, ensure_state, normalis
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.gains import ensure_gain
-from flockana.laws.candidates import Candidate
 from flockana.laws.discrete import IndexArray
 from flockana.laws.law import Arrays, Block
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
+from flockana.laws.usual_laws import Candidate
 from flockana.measures.nets import links
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.kernels.pair import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones

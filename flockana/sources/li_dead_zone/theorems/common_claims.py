@@ -10,9 +10,9 @@ from flockana.measures.metrics import min_distance
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
-from flockana.sources.li_dead_zone.theorems.components import Components, components_of
+from flockana.sources.li_dead_zone.theorems.net_components import Components, components_of
 from flockana.theorems.collisions import least_distance
-from flockana.theorems.limits import Certificate, decays_to_zero
+from flockana.theorems.limit_certificates import Certificate, decays_to_zero
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
 PROOF = "dead-zone"

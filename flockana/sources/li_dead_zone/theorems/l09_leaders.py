@@ -11,7 +11,7 @@ from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
-from flockana.sources.li_dead_zone.theorems.components import components_of
+from flockana.sources.li_dead_zone.theorems.net_components import components_of
 from flockana.theorems.claims import by_count, equal, erratum, of_map
 from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, limit_claim, observed
 
@@ -116,7 +116,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     of the agents does not suffice.
     """
     # Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one.
-    from flockana.symbolic.composition import led_energy_identity
+    from flockana.symbolic.energy_balances import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
     one, turning = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"

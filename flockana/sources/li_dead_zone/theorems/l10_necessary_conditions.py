@@ -6,7 +6,7 @@ from flockana.measures.metrics import min_distance
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import final_components
-from flockana.sources.li_dead_zone.theorems.components import Component
+from flockana.sources.li_dead_zone.theorems.net_components import Component
 from flockana.sources.li_dead_zone.theorems.shared_runs import parting_pair
 from flockana.theorems.claims import erratum, exact, undecided
 from flockana.theorems.toolkit import EPS, Certificate, Claim, FloatArray, Tolerances, limit_claim, observed

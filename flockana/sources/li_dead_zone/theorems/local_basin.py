@@ -16,7 +16,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
+from flockana.equilibria.final_state import DENSE_LIMIT, rigid_motions
 from flockana.measures.nets import link_lengths, links
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking

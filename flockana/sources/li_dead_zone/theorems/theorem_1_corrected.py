@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.sources.li_dead_zone.theorems import common_claims as case
-from flockana.sources.li_dead_zone.theorems.components import Components
+from flockana.sources.li_dead_zone.theorems.net_components import Components
 from flockana.theorems.claims import by_count, vacuous
 from flockana.theorems.energy import balance
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, limit_claim, run_theorem, unmet

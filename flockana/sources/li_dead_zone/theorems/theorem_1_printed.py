@@ -3,7 +3,7 @@
 from flockana.measures.metrics import cohesion_radius
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems import common_claims as case
-from flockana.sources.li_dead_zone.theorems.components import Components
+from flockana.sources.li_dead_zone.theorems.net_components import Components
 from flockana.sources.li_dead_zone.theorems.range_limits import first_entry
 from flockana.theorems.rounding import frame_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet

@@ -28,11 +28,11 @@ from flockana.scenarios.entry import (
     verified,
 )
 from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, limit_report, report
-from flockana.scenarios.start import lazy_array
+from flockana.scenarios.lazy_start import lazy_array
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.attraction import attraction
 from flockana.theorems.gamma_agent import consistent
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limit_certificates import Certificate
 
 _OURS = (
     "The gains are not printed and are ours (c1α = 30, c2α = 2√30, c1γ = 1.1, c2γ = 2√1.1), as are the seed and the "

@@ -12,7 +12,7 @@ from flockana.environment import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
 from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report, report
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.limits import Certificate
+from flockana.theorems.limit_certificates import Certificate
 
 _SEGMENT = 400  # points on the straight way to the γ-agent that are looked at
 

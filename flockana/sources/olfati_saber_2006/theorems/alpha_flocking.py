@@ -5,11 +5,11 @@ from math import floor
 
 import numpy as np
 
-from flockana.theorems import sampling
+from flockana.theorems import between_samples
 from flockana.theorems.enclosure import Real
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import has_lattice
-from flockana.theorems.leads import bridge
+from flockana.theorems.search_objectives import bridge
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged, run_theorem
 
@@ -78,7 +78,7 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
 
 def _connected(part: _Window) -> Claim:
     """Return the claim that the net is connected throughout, by links that are certain."""
-    between, at = sampling.nets_between(part.seen), sampling.nets_at(part.seen)
+    between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
     counts = at.components_least, at.components, float(between.components.max(initial=0.0))
     return _at_most("flock", part, counts, 1, "components")
 
@@ -86,7 +86,7 @@ def _connected(part: _Window) -> Claim:
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that a component keeps more than a share of the agents, by links that are certain."""
     n = part.seen.n
-    between, at = sampling.nets_between(part.seen), sampling.nets_at(part.seen)
+    between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
     counts = n - at.giant_most, n - at.giant, float(n - between.giant.min(initial=n))
     return _at_most("giant", part, counts, n - fewest, "agents outside the giant component")
@@ -98,16 +98,18 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
     off = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
-    one_link, at, during = 2.0 * (r / d - 1.0) ** 2, sampling.nets_at(seen), sampling.nets_between(seen)
+    one_link, at, during = 2.0 * (r / d - 1.0) ** 2, between_samples.nets_at(seen), between_samples.nets_between(seen)
     root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), off).clip(0.0)
     deviation = root.square().widened(one_link * at.open_links / (2.0 * at.links + 1.0)).clip(0.0)
     # of links that stay: √Ẽ grows by no more than the largest of their deviations does
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
-    between = (np.maximum(root.hi[:-1], root.hi[1:]) + sampling.stretch_between(seen) / d) ** 2 + jumps
+    between = (np.maximum(root.hi[:-1], root.hi[1:]) + between_samples.stretch_between(seen) / d) ** 2 + jumps
     over = Enclosure(0.0, np.minimum(between, 1e300), between)
     return [
         _always("deviation", part, deviation, over, tolerances.deviation),
-        _always("mismatch", part, seen.mismatch / units, sampling.mismatch_over(seen) / units, tolerances.mismatch),
+        _always(
+            "mismatch", part, seen.mismatch / units, between_samples.mismatch_over(seen) / units, tolerances.mismatch
+        ),
     ]
 
 
@@ -115,9 +117,9 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     seen = part.seen
     after = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
-    grown = float(sampling.fastest_between(seen)[0]) * after if part.first else 0.0
+    grown = float(between_samples.fastest_between(seen)[0]) * after if part.first else 0.0
     bound = tolerances.cohesion * seen.radius[part.first].widened(grown)
-    return _always("cohesive", part, seen.radius, sampling.radius_over(seen), bound)
+    return _always("cohesive", part, seen.radius, between_samples.radius_over(seen), bound)
 
 
 def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked:

@@ -7,7 +7,7 @@ from flockana.theorems.collisions import below_multiple, energy_at_start, no_col
 from flockana.theorems.energy import nothing_adds_energy
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is, positive
-from flockana.theorems.meeting import least_is_known, meeting
+from flockana.theorems.meeting_energy import least_is_known, meeting
 from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim

@@ -9,8 +9,8 @@ from flockana.theorems.collisions import below_the_barrier, energy_at_start, no_
 from flockana.theorems.energy import proved
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
-from flockana.theorems.leads import strained
-from flockana.theorems.limits import without_assumed
+from flockana.theorems.limit_certificates import without_assumed
+from flockana.theorems.search_objectives import strained
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 

@@ -1,6 +1,6 @@
 """Theorem 3 of Olfati-Saber (2006): Algorithm 2 keeps the flock together."""
 
-from flockana.equilibria.terminal import TerminalState, terminal_state
+from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.sources.olfati_saber_2006.theorems import any_potential
@@ -9,7 +9,7 @@ from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.attraction import final_basin
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.gamma_agent import consistent
-from flockana.theorems.leads import pairs_apart
+from flockana.theorems.search_objectives import pairs_apart
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, run_theorem, vacuous
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
+from flockana.lattice.classification import GUARD
 from flockana.lattice.crossings import LISTED
-from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
 from flockana.theorems.claims import run_theorem

@@ -5,11 +5,11 @@ from math import comb
 import numpy as np
 
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.theorems.between_samples import polygons
 from flockana.theorems.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.hypotheses import common_gains
-from flockana.theorems.sampling import polygons
 from flockana.theorems.theorem import Checked, Hypothesis, Tolerances
 from flockana.theorems.toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths, run_theorem
 

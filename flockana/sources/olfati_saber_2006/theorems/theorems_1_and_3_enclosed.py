@@ -13,7 +13,7 @@ from flockana.certified.structural_energy import BITS, gain
 from flockana.certified.tube import Tube, down, up
 from flockana.theorems import from_tube
 from flockana.theorems.claims import undecided, vacuous
-from flockana.theorems.limits import without_assumed
+from flockana.theorems.limit_certificates import without_assumed
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition, positive, unmet
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.certified.balls import exact
 from flockana.certified.second_order import laplacian_of, moving_eigenvalues
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
-from flockana.theorems.rooted import has_root, unheard_groups
+from flockana.theorems.net_roots import has_root, unheard_groups
 from flockana.theorems.toolkit import (
     EPS,
     Checked,

@@ -8,7 +8,7 @@ from flockana.sources.su_2009.theorems import leader_frame
 from flockana.theorems.cohesion import stays_within
 from flockana.theorems.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
 from flockana.theorems.energy import never_rises
-from flockana.theorems.leads import pairs_apart
+from flockana.theorems.search_objectives import pairs_apart
 from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, law_is, positive, run_theorem, unmet
 
 PROOF = "informed-agents"

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.dynamics.between import Between
+from flockana.dynamics.steps_between_samples import Between
 from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.nets import components, links
-from flockana.theorems.limits import Certificate, decays_to_zero
+from flockana.theorems.limit_certificates import Certificate, decays_to_zero
 from flockana.theorems.rounding import EPS
 from flockana.theorems.toolkit import Claim, FloatArray, Hypothesis, Needs, Observed, Trajectory, condition, lengths
 

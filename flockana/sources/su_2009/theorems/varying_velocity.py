@@ -18,7 +18,7 @@ from flockana.theorems.cohesion import stays_within
 from flockana.theorems.collisions import below_multiple, no_collision
 from flockana.theorems.energy import pairs_dissipate
 from flockana.theorems.gamma_agent import consistent
-from flockana.theorems.meeting import least_is_known, meeting
+from flockana.theorems.meeting_energy import least_is_known, meeting
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 from flockana.theorems.toolkit import Certificate, Enclosure, Observed, Trajectory, condition, judged, law_is, positive
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.limits import decays_to_zero
-from flockana.theorems.sampling import least_distance
+from flockana.theorems.between_samples import least_distance
+from flockana.theorems.limit_certificates import decays_to_zero
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
 
 MATCHED = "matched-velocities"

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.measures.windows import joint_windows
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
-from flockana.sources.vicsek_1995.theorems import averaging
+from flockana.sources.vicsek_1995.theorems import heading_averages
 from flockana.theorems.claim import does_not_hold
 from flockana.theorems.claims import by_count, run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
@@ -52,7 +52,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs: list[Hypothesis]) -> Claim:
+def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...], needs: list[Hypothesis]) -> Claim:
     """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
@@ -71,11 +71,11 @@ def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = averaging.neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
+    weights = heading_averages.neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
     return limit_claim("agreement", needs, [connected], proof=_PROOF).described(
         computed=float(np.ptp(heading)),
         stated="all headings tend to a common one",
-        witness={"heading": averaging.final_heading(heading, weights)} if connected.certain else None,
+        witness={"heading": heading_averages.final_heading(heading, weights)} if connected.certain else None,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
     )
 
@@ -102,10 +102,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     nets = [run.law.links(q) for q in run.q[:-1]]
     windows = joint_windows(run.n, nets)
     at_end = run.law, run.q[-1], headings[-1]
-    connected = averaging.permanently_connected(*at_end)
-    lasting = _at_all_later_times(windows, connected, averaging.permanently_separated(*at_end))
+    connected = heading_averages.permanently_connected(*at_end)
+    lasting = _at_all_later_times(windows, connected, heading_averages.permanently_separated(*at_end))
     return [*needs, lasting], [
         _hull(headings, needs),
-        _contraction(headings, averaging.blocks(nets, headings, windows), needs),
+        _contraction(headings, heading_averages.blocks(nets, headings, windows), needs),
         _limit(run, headings[-1], [*needs, lasting], connected),
     ]

@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import beta
 
 from flockana import Algorithm1, Gains, Tolerances, min_distance
+from flockana.equilibria.final_state import terminal_state
 from flockana.equilibria.gradient_flow import gradient_flow
-from flockana.equilibria.terminal import terminal_state
 from flockana.sources.geschwender_2016.theorems.e03_strained_limits import (
     _is_lattice,
     _Limit,

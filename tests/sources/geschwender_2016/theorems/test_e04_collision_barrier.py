@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from flockana import AlphaInteraction
-from flockana.equilibria import barrier as bounds
+from flockana.equilibria import energy_barrier as bounds
 from flockana.lattice import harborth
 from flockana.sources.geschwender_2016.theorems import e04_collision_barrier as e04
 

@@ -11,10 +11,10 @@ from flockana.base.errors import ArgumentError
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
+from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio
-from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
-from flockana.symbolic.translational import frequency_gain
+from flockana.symbolic.translational_dynamics import frequency_gain
 from flockana.theorems.observed import Observed, observed
 from tests.theorems.made_up import statuses
 

@@ -7,11 +7,11 @@ import pytest
 import sympy as sp
 
 from flockana import Gains, scenario, verify
+from flockana.stability.centre_transfer import CentreOfMass, predicted_gain
 from flockana.stability.tracking import response_ratio
-from flockana.stability.translational import CentreOfMass, predicted_gain
 from flockana.symbolic import GainSymbols
 from flockana.symbolic.parameters import GAINS
-from flockana.symbolic.translational import OMEGA, SQUARE, falling_condition, frequency_gain, gain_slope
+from flockana.symbolic.translational_dynamics import OMEGA, SQUARE, falling_condition, frequency_gain, gain_slope
 
 # what an independent transcription of the project's system gave, to two digits, at ¼, ½, 1, 2 and 4 times the speed
 TRUE = [1.01, 1.04, 1.11, 1.15, 0.92]

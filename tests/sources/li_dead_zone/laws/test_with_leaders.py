@@ -11,7 +11,7 @@ from flockana import CircleTarget, LedDeadZoneFlocking, LinearTarget, RescaledVe
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.terms.leaders import known_path
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
-from flockana.symbolic.composition import led_energy_identity
+from flockana.symbolic.energy_balances import led_energy_identity
 from tests.refused import refused
 
 LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))

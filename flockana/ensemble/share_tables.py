@@ -1,0 +1,43 @@
+"""Results of an ensemble that print, and show themselves in a notebook, as a table of shares."""
+
+import xarray
+
+from flockana.base.table_export import html_table, text_table
+from flockana.ensemble.shares import share_cells, shares
+
+_HEADS = ("parameters", "claim", "runs", "verified, %", "refuted, %", "vacuous", "inconclusive")
+_LINES = 12
+
+
+class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
+    """Dataset of an ensemble: it prints as the shares of runs in which claims hold, a part of it as xarray's."""
+
+    __slots__ = ()
+
+    def _table(self) -> tuple[tuple[str, ...], ...]:
+        """Return headings and rows without empty columns; nothing of a part without seeds, claims or status."""
+        if not ({"seed", "claim"} <= {*self.dims} and {"status", "run"} <= {*self.data_vars}):
+            return ()
+        columns = (column for column in zip(_HEADS, *share_cells(shares(self)), strict=True) if any(column[1:]))
+        return tuple(zip(*columns, strict=True))
+
+    def __str__(self) -> str:
+        heads, *rows = self._table() or ((),)
+        return f"{self._title()}\n{text_table(rows, heads)}" if rows else super().__repr__()
+
+    def __repr__(self) -> str:
+        lines = str(self).splitlines()
+        if len(lines) <= _LINES or not self._table():
+            return "\n".join(lines)
+        return "\n".join([*lines[: _LINES - 1], f"… {len(lines) - _LINES + 1} more rows; print(...) shows all"])
+
+    def _repr_html_(self) -> str:
+        heads, *rows = self._table() or ((),)
+        variables = super()._repr_html_()
+        table = html_table(rows, heads, self._title()) if rows else ""
+        return f"{table}<details><summary>variables</summary>{variables}</details>" if rows else variables
+
+    def _title(self) -> str:
+        lost = int((self.run != 0).sum())
+        lacking = f", {lost} did not complete" if lost else ""
+        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{lacking}"

@@ -1,0 +1,102 @@
+"""Runge-Kutta steps with error control, over a list of pairs that is kept up.
+
+What a step may not leap over, and what its energies say, is looked at once it is made (`flockana.kernels.step_checks`).
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.jit import inlined
+from flockana.kernels.agent_sums import finite, put
+from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
+from flockana.kernels.verlet import COUNT
+
+
+class Block(NamedTuple):
+    """Several steps: the states between which they lead, one row each."""
+
+    t: Any  # times
+    y: Any  # vectors
+    f: Any  # their rates
+    energy: Any  # energies, as far as they are known: NaN elsewhere
+
+
+class Room(NamedTuple):
+    """Room for a step: the rates of its stages, and a vector."""
+
+    rates: Any
+    trial: Any
+
+
+class Marched(NamedTuple):
+    """Result of a step: status, lengths of this step and of the next, evaluations."""
+
+    status: Any
+    h: Any
+    later: Any
+    evaluations: Any
+
+
+RUNNING, TOO_SMALL, NOT_FINITE, UNLISTED, SINGULAR, FULL = range(6)  # UNLISTED: pairs, FULL: samples have no room
+_SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
+GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
+
+
+@inlined
+def spacing(t):
+    """Return the distance from a time to the next floating-point number."""
+    return np.nextafter(abs(t), np.inf) - abs(t)
+
+
+@inlined
+def _controlled(h, error, exponent, rejected):
+    """Return (next step, whether this one is accepted), as scipy's solvers choose."""
+    factor = _SAFETY * error**exponent
+    if error < 1.0:
+        factor = _MOST if error == 0.0 else min(_MOST, factor)
+        return h * (min(1.0, factor) if rejected else factor), True
+    return h * (factor if factor > _LEAST else _LEAST), False  # of an error that is no number too
+
+
+@inlined
+def step_of(block, k, room):
+    """Return the step from row k of a block to the next row."""
+    return Step(block.t[k], block.t[k + 1] - block.t[k], block.y[k], block.y[k + 1], room.rates, room.trial)
+
+
+@inlined
+def march(block, k, h, ends, system, method, room, pairs):
+    """Make a step from row k of a block to the next; `ends` are the time at which it ends at the latest, and the last.
+
+    The step has the length h, if its error allows it, or, if h is 0, one that is chosen here.
+    """
+    y, t, stop, fixed, tried = block.y, block.t[k], ends[0], method.exponent == 0.0, 0
+    first, past = np.int64(1), np.int64(method.stages + 1)  # typed, as in `advance`
+    put(block.f[k], room.rates[0])
+    if h == 0.0 and fixed:
+        h = np.inf
+    elif h == 0.0:
+        h = first_step(ends[1] - t, Step(t, h, y[k], y[k + 1], room.rates, room.trial), method, system, pairs)
+        tried = 1
+    shortest, rejected = 10.0 * spacing(t), False
+    h = min(h, stop - t) if fixed else max(min(h, method.longest), shortest)
+    while True:
+        if h < shortest and not fixed:
+            return Marched(TOO_SMALL, h, h, tried)
+        block.t[k + 1] = stop if h == stop - t else min(t + h, stop)
+        step = step_of(block, k, room)
+        stages_of(step, method, first, past, system, pairs)
+        tried += method.stages
+        if pairs.counts[COUNT] < 0:
+            return Marched(UNLISTED, step.h, h, tried)
+        later, passes = np.inf if block.t[k + 1] == stop else GROWTH * step.h, True
+        if not fixed:
+            later, passes = _controlled(step.h, error_of(step, method), method.exponent, rejected)
+        if passes:
+            break
+        h, rejected = later, True
+    end = room.rates[method.rows[method.stages]]
+    put(end, block.f[k + 1])
+    is_known = finite(step.reached) and finite(end)
+    return Marched(RUNNING if is_known else NOT_FINITE, step.h, later, tried)

@@ -1,0 +1,113 @@
+"""Many steps of a compiled law in one call: each is checked, and repeated with a shorter one if it fails."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flockana.jit import inlined, kernel
+from flockana.kernels.adaptive_steps import FULL, RUNNING, SINGULAR, UNLISTED, march, step_of
+from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
+from flockana.kernels.step_checks import IN_VAIN, PATIENCE, checked
+from flockana.kernels.verlet import COUNT
+
+AT_ONCE = 50_000_000  # agents and pairs in all evaluations of one call, some tenths of a second: then signals are heard
+
+
+class Advanced(NamedTuple):
+    """Numbers that `advance` returns: status, steps, evaluations."""
+
+    steps: int  # number of accepted steps
+    status: int  # status of the last step, which says why the block ends
+    h: float  # length of the next step, or of the one that failed
+    evaluations: int
+    redone: int  # number of steps that were made again
+    samples: int  # number of the times due that are passed, or that need room if no step had it
+
+
+@inlined
+def _record(y, f, order, frame, out):
+    """Write positions, velocities and accelerations in the agents' own order; return the work."""
+    n, m = order.size, frame.shape[1]
+    for i in range(n):
+        agent = np.int64(order[i])
+        for c in range(m):
+            out[0, agent, c] = y[i * m + c] + frame[0, c]
+            out[1, agent, c] = y[n * m + i * m + c] + frame[1, c]
+            out[2, agent, c] = f[n * m + i * m + c]
+    return y[2 * n * m] if y.size > 2 * n * m else np.nan
+
+
+@kernel
+def record(block, order, view, states, work):
+    """Write states and work at the ends of the first steps of a block, in the agents' own order.
+
+    The room is numpy's, for large pages (`flockana.kernels.pair_sums.forces`).
+    """
+    frame = np.empty((2, view[1].size))
+    for k in range(work.size):
+        frame_at(block.t[k + 1], view, frame)
+        work[k] = _record(block.y[k + 1], block.f[k + 1], order, frame, states[k])
+
+
+@inlined
+def _sampled(step, due, method, states, work, system, pairs):
+    """Write the samples (q, p, u) that are due within a step, in the agents' own order."""
+    slope = np.empty(step.y.size)
+    stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
+    for k in range(due.size):
+        interpolated((due[k] - step.t) / step.h, step, method)
+        rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
+        work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
+
+
+@kernel
+def advance(system, method, block, room, h, lists, stops, samples, judged):
+    """Fill a block with accepted steps up to the last of `stops`, from its first row; return the fields of `Advanced`.
+
+    The first step has the length h, or, if that is 0, one that is chosen here. `lists` are those of the integrator and
+    of the checks; samples are (times that are due, states, work), work being NaN where a step ends.
+    """
+    (pairs, near), (due, states, work) = lists, samples
+    energetic, evaluations, redone, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
+    agents, steps = (
+        system.order.size,
+        np.int64(0),
+    )  # typed: of a literal, all that is called would be compiled once more
+    while steps + 1 < block.t.size and stop < stops.size and evaluations * (agents + pairs.counts[COUNT]) < AT_ONCE:
+        now = march(block, steps, h, (stops[stop], stops[-1]), system, method, room, pairs)
+        status, evaluations, at = now.status, evaluations + now.evaluations, block.t[steps + 1]
+        if status != RUNNING:
+            h = h if status == UNLISTED else now.h
+            break
+        if energetic and judged.ledger[IN_VAIN] < PATIENCE:
+            for row in range(steps, steps + 2):
+                if row > steps or np.isnan(block.energy[row]):
+                    block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
+        shorter, singular = checked(block, steps, judged, system.seen_from, pairs, near)
+        if singular:
+            h, status = now.h, SINGULAR
+            break
+        if shorter > 0.0:
+            h, redone = shorter, redone + 1
+            continue
+        before = sampled
+        while sampled < due.size and due[sampled] < at:
+            sampled += 1
+        is_known = sampled
+        while is_known < due.size and due[is_known] == at:
+            is_known += 1  # the step itself is the sample
+        if is_known > len(states):
+            h, status, sampled = now.h, FULL, (before if steps else is_known)
+            break
+        work[sampled:is_known] = np.nan
+        if sampled > before:
+            step, inside = step_of(block, steps, room), due[before:sampled]
+            _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
+            evaluations += len(method.rows) - method.stages - 1 + sampled - before
+            if pairs.counts[COUNT] < 0:
+                h, status, sampled = now.h, UNLISTED, before
+                break
+        sampled = is_known
+        stop += at == stops[stop]
+        h, steps = now.later, steps + 1
+    return steps, status, h, evaluations, redone, sampled

@@ -1,0 +1,310 @@
+"""How close two agents come *between* samples: quintics through (q, p, u), bounded by their control points.
+
+Between two samples a path is taken for the quintic Q that matches position, velocity and acceleration at both ends. In
+Bernstein form it stays in the convex hull of its control points, so subdivision bounds the distance of a pair from
+below for the whole interval: two crossings hidden in one step are found like one.
+
+How far is the motion q itself from Q? Let L2 and L3 be the differences between the inner control points of Q and those
+of the cubic C through positions and velocities alone (raised to degree five), and let q⁽ᵏ⁾ be of one sign on the
+interval, coordinate by coordinate, for some k from 4 to 11: at these lengths the integrator, whose local error is of
+such an order, has resolved the motion, kinks of the force included. Then ‖q − Q‖ ≤ 0.35 (‖L2‖ + ‖L3‖). For q is a cubic
+plus ∫ (t − θ)₊ᵏ⁻¹ dμ(θ) with a μ of one sign; q − Q, L2 and L3 are linear in q and vanish for cubics; L2 and L3 of
+every (t − θ)₊ᵏ⁻¹ are ≥ 0; and of each of these the bound holds (tests/kernels/test_quintic_paths.py): the allowance.
+"""
+
+import numpy as np
+
+from flockana.jit import inlined, kernel, register_jitable
+from flockana.kernels.agent_sums import put
+
+ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
+_DEPTH = 48  # halvings of an interval: below rounding of the time itself
+
+
+@inlined
+def _norm(x):
+    return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
+
+
+@register_jitable
+def polygon(a, b, out, back, bend0, bend1):
+    """Write the control points of a coordinate's quintic from a to b: of h p/5 and h² u/20 at both ends, and linear."""
+    return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
+
+
+@kernel
+def quintic(h, a, p0, u0, b, p1, u1, out):
+    """Write the control points of one agent's quintic from a to b into `out`, (6, 3); return its error allowance."""
+    off2, off3 = 0.0, 0.0
+    for k in range(a.size):
+        bends = h * h * u0[k] / 20.0, h * h * u1[k] / 20.0
+        points = polygon(a[k], b[k], h * p0[k] / 5.0, h * p1[k] / 5.0, bends[0], bends[1])
+        out[0, k], out[1, k], out[2, k], out[3, k], out[4, k], out[5, k] = points
+        c1, c2 = a[k] + h * p0[k] / 3.0, b[k] - h * p1[k] / 3.0
+        off2 += (out[2, k] - (a[k] + 6.0 * c1 + 3.0 * c2) / 10.0) ** 2
+        off3 += (out[3, k] - (3.0 * c1 + 6.0 * c2 + b[k]) / 10.0) ** 2
+    return ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
+
+
+@kernel
+def bernstein(h, q0, p0, u0, q1, p1, u1):
+    """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
+
+    The reach bounds how far an agent gets from its first point. The allowance, which it includes, bounds how far the
+    motion is from the quintic where the interval resolves it (see above).
+    """
+    n = q0.shape[0]
+    points, reach, allowance = np.zeros((n, 6, 3)), np.zeros(n), np.zeros(n)
+    for i in range(n):
+        allowance[i] = quintic(h, q0[i], p0[i], u0[i], q1[i], p1[i], u1[i], points[i])
+        reach[i] = reach_of(points[i]) + allowance[i]
+    return points, reach, allowance
+
+
+@kernel
+def reach_of(c):
+    """Return the largest distance of a curve's control points (6, 3) from the first: a bound for the curve."""
+    s2 = 0.0
+    for k in range(1, 6):
+        s2 = max(s2, (c[k, 0] - c[0, 0]) ** 2 + (c[k, 1] - c[0, 1]) ** 2 + (c[k, 2] - c[0, 2]) ** 2)
+    return np.sqrt(s2)
+
+
+@kernel
+def centred(points, allowance):
+    """Take the flock's common drift out of the control points, in place, and return the reaches that are left.
+
+    No distance between agents changes.
+    """
+    n = points.shape[0]
+    reach = np.zeros(n)
+    for c in range(1, 6):
+        for k in range(3):
+            drift = 0.0
+            for i in range(n):
+                drift += (points[i, c, k] - points[i, 0, k]) / n
+            for i in range(n):
+                points[i, c, k] -= drift
+    for i in range(n):
+        reach[i] = reach_of(points[i]) + allowance[i]
+    return reach
+
+
+@kernel
+def control_points(h, q0, p0, u0, q1, p1, u1):
+    """Return `bernstein` without the flock's common drift."""
+    points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
+    reach = centred(points, allowance)
+    return points, reach, allowance
+
+
+@kernel
+def _start(points, reach, i, j, stop, stack):
+    """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
+    s2 = 0.0
+    for x in range(3):
+        s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
+    if s2 >= (stop + reach[i] + reach[j]) ** 2:
+        return False
+    for k in range(6):
+        for x in range(3):
+            stack[0, k, x] = points[j, k, x] - points[i, k, x]
+    return True
+
+
+@kernel
+def _hull_bound(c):
+    """Return a lower bound of the curve's distance to 0: its control points projected on their mean direction."""
+    axis0, axis1, axis2 = 0.0, 0.0, 0.0
+    for k in range(6):
+        axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
+    size = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
+    if size == 0.0:
+        return 0.0
+    bound = np.inf
+    for k in range(6):
+        bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / size)
+    return bound
+
+
+@kernel
+def _halve(stack, spans, top):
+    """Halve the curve stack[top] by de Casteljau: its left half goes on top of it, the right half stays in place."""
+    c, left, right = stack[top], spans[top, 0], spans[top, 1]
+    middle = 0.5 * (left + right)
+    for level in range(6):
+        for x in range(3):
+            stack[top + 1, level, x] = c[0, x]
+            for k in range(5 - level):
+                c[k, x] = 0.5 * (c[k, x] + c[k + 1, x])
+    spans[top, 0] = middle
+    spans[top + 1, 0], spans[top + 1, 1] = left, middle
+
+
+@kernel
+def _least_distance(stack, spans, stop, tol):
+    """Return (lower bound, distance, parameter) of the closest point to 0 of the curve stack[0], within tol.
+
+    The distance is (stop, -1) if none is below stop; the bound holds all the same, up to stop.
+    The arrays are work space: (_DEPTH + 2, 6, 3) and (_DEPTH + 2, 2).
+    """
+    proven, best, where = stop, stop, -1.0
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
+    while top >= 0:
+        c, left, right = stack[top], spans[top, 0], spans[top, 1]
+        for end in (0, 5):
+            value = _norm(c[end])
+            if value < best:
+                best, where = value, left if end == 0 else right
+        bound = _hull_bound(c)
+        if bound >= best - tol or right - left < 2.0**-_DEPTH:
+            proven = min(proven, bound)
+            top -= 1
+            continue
+        _halve(stack, spans, top)
+        top += 1
+    return proven, best, where
+
+
+@kernel
+def _first_touch(stack, spans, tol):
+    """Return the first parameter at which the curve stack[0] is within tol of 0; -1 if it never is."""
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
+    while top >= 0:
+        left, right = spans[top, 0], spans[top, 1]
+        if _norm(stack[top, 0]) < tol:
+            return left
+        if _hull_bound(stack[top]) >= tol:
+            top -= 1
+        elif right - left < 2.0**-_DEPTH:
+            return left
+        else:
+            _halve(stack, spans, top)
+            top += 1
+    return -1.0
+
+
+@kernel
+def closest_pair(points, reach, allowance, first, second, stop, tol):
+    """Return (lower bound, distance, parameter, i, j) over the pairs given; i = -1 if none comes below `stop`.
+
+    The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
+    how far each agent gets from its first control point.
+    """
+    lower, best, where, a, b = stop, stop, -1.0, -1, -1
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    for k in range(first.size):
+        i, j = first[k], second[k]
+        slack = allowance[i] + allowance[j]
+        if not _start(points, reach, i, j, lower + slack, stack):
+            continue
+        # there is no sense in resolving what the allowance blurs
+        proven, value, at = _least_distance(stack, spans, lower + slack, max(tol, 0.01 * slack))
+        if proven - slack < lower:
+            lower = max(0.0, proven - slack)
+            where, a, b = at, i, j
+        if at >= 0.0:
+            best = min(best, value)
+        if lower == 0.0:
+            break
+    return lower, best, where, a, b
+
+
+@kernel
+def closest_of_few(t, states, slack, stops, tols):
+    """Return `closest_pair` over all pairs of a small flock in each interval, five arrays; skip those with stop 0.
+
+    `states` are (q, p, u) over time; `slack`, (T − 1, n), adds to reaches and allowances.
+    """
+    (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
+    first, second = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
+    lower, best, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
+    a, b = np.full(steps, -1), np.full(steps, -1)
+    for k in range(steps):
+        if stops[k] == 0.0:
+            continue
+        points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        reach, allowance = reach + slack[k], allowance + slack[k]
+        x, limit, count = points[:, 0].copy(), ((stops[k] + 2.0 * reach.max()) * (1.0 + 1e-9)) ** 2, 0
+        for i in range(n):
+            for j in range(i + 1, n):
+                first[count], second[count] = i, j
+                d0, d1, d2 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+                count += d0 * d0 + d1 * d1 + d2 * d2 < limit
+        approach = closest_pair(points, reach, allowance, first[:count], second[:count], stops[k], tols[k])
+        lower[k], best[k], where[k], a[k], b[k] = approach
+    return lower, best, where, a, b
+
+
+@kernel
+def touching_pairs(points, reach, first, second, tol, out):
+    """Mark in `out` the first parameter at which each pair's quintics are within tol of each other, -1 if never."""
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    for k in range(first.size):
+        out[k] = -1.0
+        if not _start(points, reach, first[k], second[k], tol, stack):
+            continue
+        out[k] = _first_touch(stack, spans, tol)
+
+
+@kernel
+def _largest_distance(stack, spans, enough, tol):
+    """Return (upper bound, parameter) of how far the curve stack[0] gets from 0, within tol or up to `enough`."""
+    proven, best, where = 0.0, 0.0, -1.0
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
+    while top >= 0:
+        c, left, right = stack[top], spans[top, 0], spans[top, 1]
+        for end in (0, 5):
+            value = _norm(c[end])
+            if value > best:
+                best, where = value, left if end == 0 else right
+        bound = 0.0
+        for k in range(6):
+            bound = max(bound, _norm(c[k]))
+        if bound <= max(enough, best + tol) or right - left < 2.0**-_DEPTH:
+            proven = max(proven, bound)
+            top -= 1
+            continue
+        _halve(stack, spans, top)
+        top += 1
+    return proven, where
+
+
+@kernel
+def farthest(points, allowance, floor, tol):
+    """Return (upper bound, agent, parameter) of how far any agent gets from the centre; `floor` is known to be reached.
+
+    Changes the control points. The centre's allowance is the mean one.
+    """
+    n = points.shape[0]
+    upper, agent, at, common = floor, -1, -1.0, 0.0
+    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    for c in range(6):
+        for k in range(3):
+            centre = 0.0
+            for i in range(n):
+                centre += points[i, c, k] / n
+            for i in range(n):
+                points[i, c, k] -= centre
+    for i in range(n):
+        common += allowance[i] / n
+    for i in range(n):
+        slack = allowance[i] + common
+        put(points[i], stack[0])
+        bound, where = _largest_distance(stack, spans, max(upper, floor + tol) - slack, tol)
+        if bound + slack > upper:
+            upper, agent, at = bound + slack, i, where
+    return upper, agent, at
+
+
+@kernel
+def farthest_in_turn(t, states, slack, floors, tols):
+    """Return the upper bound of `farthest` in each interval; arguments as of `closest_of_few`."""
+    (q, p, u), upper = states, np.empty(len(t) - 1)
+    for k in range(len(t) - 1):
+        points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        upper[k] = farthest(points, allowance + slack[k], floors[k], tols[k])[0]
+    return upper

@@ -1,0 +1,146 @@
+"""Linear feedback of a wrapped law: what acts at once, what acts late, and how long the input is held."""
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.laws import Delayed, Disturbed, Law, Lossy, Measured, PairTerm, Sampled, Saturated
+from flockana.laws.wrapper_base import Step, View, Wrapper, WrappingLaw, input_of
+from flockana.stability.delay import late_part
+from flockana.stability.delay_roots import LatePart
+
+State = tuple[float, FloatArray, FloatArray]
+_LOOPS = (Delayed, Sampled, Measured)
+
+
+class _Heard(NamedTuple):
+    """How late neighbours are heard: one delay, or one of each pair; and whether an agent's own state is as late."""
+
+    delay: Any
+    both: bool
+
+
+def instant_law(law: Law) -> Law:
+    """Return a law with the same rest that acts at once: without delays, holds, noise and losses."""
+    if not isinstance(law, Wrapper):
+        return law
+    within = instant_law(law.law)
+    if isinstance(law, Disturbed):
+        pushed = law.force is not None or law.swing is not None or law.times is not None
+        return replace(law, law=within, intensity=0.0) if pushed else within
+    if isinstance(law, Lossy):
+        return _MeanLoss(within, law.loss)
+    if isinstance(law, _LOOPS):
+        return within
+    if law.stepped:
+        raise ArgumentError(
+            f"{type(law).__name__} has no input at an instant: expected Delayed, Sampled, Measured, Lossy, Disturbed "
+            "or Saturated around a law, or a map that steps it"
+        )
+    whole: Any = law  # a dataclass, as every wrapper is
+    return law if within is law.law else replace(whole, law=within)
+
+
+@dataclass(frozen=True)
+class _MeanLoss(WrappingLaw):
+    """Law whose terms between agents push with the share of messages that arrives, their mean under losses."""
+
+    law: Law
+    loss: float
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        alone = View(t, q, p, linked=np.zeros((len(q),) * 2, dtype=bool))
+        input_kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), alone)
+        return (1.0 - self.loss) * self.law.flow(t, q, p)[0] + self.loss * input_kept, float("nan")
+
+
+def hold_of(law: Law) -> Sampled | None:
+    """Return the zero-order hold among the wrappers of a law; None without one."""
+    holds = [one for one in law.wrappers if isinstance(one, Sampled)] if isinstance(law, Wrapper) else []
+    if len(holds) > 1:
+        raise ArgumentError(f"the law has {len(holds)} holds, Sampled within Sampled: expected one")
+    return holds[0] if holds else None
+
+
+def is_late(law: Law) -> bool:
+    """Return whether a delay longer than 0 is among the wrappers of a law."""
+    wrappers = law.wrappers if isinstance(law, Wrapper) else ()
+    return any(isinstance(one, Delayed) and one.memory > 0.0 for one in wrappers)
+
+
+def late_parts(law: Law, state: State) -> list[LatePart]:
+    """Return the parts of K and D of a wrapped law at a steady state (t, q, p), by rising delay.
+
+    As in a run, what is heard enters the pair terms. Of lost messages the mean remains: these terms, times the share
+    that arrives.
+    """
+    core = law.core if isinstance(law, Wrapper) else law
+    slopes: Any = core.derivatives(*state)
+    by_position, by_velocity = (-part.toarray() for part in slopes)
+    parts: dict[float, LatePart] = {}
+
+    def add(delay: float, stiffness: FloatArray, damping: FloatArray) -> None:
+        _, k, d = parts.get(delay, LatePart(delay, np.zeros_like(stiffness), np.zeros_like(damping)))
+        parts[delay] = LatePart(delay, k + stiffness, d + damping)
+
+    share, bend, shift, heard = 1.0, np.eye(state[1].size), 0.0, None
+    for one in law.wrappers if isinstance(law, Wrapper) else ():
+        if isinstance(one, Lossy):
+            share *= 1.0 - one.loss
+        elif isinstance(one, Saturated):
+            bend = bend @ _block_diagonal(one.slopes(instant_law(one.law).flow(*state)[0]))
+        elif isinstance(one, Delayed) and one.late == "all":
+            shift, heard = shift + float(one.delay), None
+        elif isinstance(one, Delayed):
+            heard = _Heard(shift + np.asarray(one.delay), one.late == "pairs")
+    m = state[1].shape[1]
+    pairs = _pair_terms(core, state)
+    add(shift, bend @ (by_position - pairs[0]), bend @ (by_velocity - pairs[1]))
+    pairs = [share * bend @ part for part in pairs]
+    if heard is None:
+        add(shift, *pairs)
+    elif heard.both:
+        add(float(heard.delay), *pairs)
+    else:
+        _ensure_at_rest(state[2], heard)
+        others = [late_part(part, m, "neighbours") for part in pairs]
+        add(shift, pairs[0] - others[0], pairs[1] - others[1])
+        lags = np.broadcast_to(heard.delay, (len(state[1]),) * 2)
+        lags = np.kron(lags, np.ones((m, m)))
+        for delay in np.unique(lags).tolist():
+            add(delay, *(np.where(lags == delay, part, 0.0) for part in others))
+    used_parts = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
+    return sorted(used_parts, key=lambda part: part.delay)
+
+
+def _pair_terms(core: Law, state: State) -> list[FloatArray]:
+    """Return K and D of the pair terms of a law, the terms into which heard states can be put; of other laws all."""
+    if not any(isinstance(term, PairTerm) for term in core.terms):
+        whole: Any = core.derivatives(*state)
+        return [-part.toarray() for part in whole]
+    size = state[1].size
+    total = [np.zeros((size, size)), np.zeros((size, size))]
+    for term in core.terms:
+        if isinstance(term, PairTerm):
+            slopes: Any = term.derivatives(*state)
+            total = [part - slope.toarray() for part, slope in zip(total, slopes, strict=True)]
+    return total
+
+
+def _ensure_at_rest(p: FloatArray, heard: _Heard) -> None:
+    """Raise if agents that move hear where others were: what they hear is another configuration."""
+    if np.any(p != 0.0) and np.any(np.asarray(heard.delay) > 0.0):
+        raise ArgumentError(
+            "agents that move hear where their neighbours were, which is no rest of the law: expected p = 0, or "
+            'late="pairs" or "all", in which all of a pair is late'
+        )
+
+
+def _block_diagonal(blocks: FloatArray) -> FloatArray:
+    """Return a matrix (n m, n m) of blocks (n, m, m) on its diagonal."""
+    from scipy.linalg import block_diag
+
+    return block_diag(*blocks)
