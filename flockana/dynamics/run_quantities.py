@@ -225,8 +225,8 @@ class MeasuredRun(ResultCache):
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
 
-        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.quintic_paths`). It
-        is 0 where steps are not known (`resolved`); the least distance at the samples is ``metric("min_distance")``.
+        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.quintic_paths`).
+        It is 0 where steps are not known (`resolved`); the least distance at the samples is ``metric("min_distance")``.
         """
         return self._closest.lower
 
