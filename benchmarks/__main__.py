@@ -27,6 +27,7 @@ STUDIES = (
     "before",
     "costs",
     "million",
+    "threads",
     "zones",
     "noise",
     "search",

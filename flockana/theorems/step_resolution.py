@@ -8,7 +8,6 @@ hω <= 2 resolves the law: a feature of width w < ℓ changes velocities by at m
 hides less than the run's own error. A part that does not say what it reads is not resolved by any step.
 """
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -25,6 +24,7 @@ from flockana.laws.features import Feature
 NAME = "the steps resolve the law"
 RESOLVED = 2.0  # hω, up to which a step resolves the law
 _PARTS = 64  # of the range
+_FEW, _BLOCK = 40, 20_000  # agents of which all pairs are looked at, and pairs at once
 
 
 class NeededSteps(NamedTuple):
@@ -80,10 +80,11 @@ def _allowed_by_lengths(run: Trajectory, feature: Feature, step: FloatArray, pla
     if not _has_slopes(feature):
         return short if feature.width is not None else allowed
     assert feature.function is not None  # it has slopes
-    for k in np.flatnonzero(ways > width):
-        worst = max(_rates(run, feature.function, int(k), float(step[k]), place), default=0.0)
-        if worst > 0.0:
-            allowed[k] = max(RESOLVED / np.sqrt(worst), short[k])
+    fast = np.flatnonzero(ways > width)
+    rates = _in_blocks if feature.function.edges is not None or len(run.q[0]) <= _FEW else _one_by_one
+    worst = rates(run, feature.function, fast, step, place)
+    moved = fast[worst > 0.0]
+    allowed[moved] = np.maximum(RESOLVED / np.sqrt(worst[worst > 0.0]), short[moved])
     return allowed
 
 
@@ -94,26 +95,50 @@ def _largest_speeds(run: Trajectory, *, pairs: bool) -> FloatArray:
     return np.maximum(speed[1:], speed[:-1])
 
 
-def _rates(run: Trajectory, function: LawFunction, k: int, step: float, place: float) -> Iterator[float]:
-    """Yield the largest ω² of pairs from which a step over an interval may hide more than the error of positions."""
-    t, q, p, u, slack = run.path
-    span = t[k + 1] - t[k]
-    points, reach, allowance = control_points(span, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-    if slack is not None:
-        reach, allowance = reach + slack[k], allowance + slack[k]
-    for i, j in _pairs(function, q[k], 2.0 * float(reach.max())):
-        rate, way = _hidden(function, points[j] - points[i], allowance[i] + allowance[j], span)
-        rate = rate / len(q[k]) if function.mean else rate
-        yield float(rate.max(where=rate * step * step * (way * step / span) > place, initial=0.0))
-
-
-def _pairs(function: LawFunction, q: FloatArray, margin: float) -> Any:
-    """Return blocks of the pairs between which a function acts, or may within an interval."""
-    if function.edges is not None:
-        return [np.array(function.edges, dtype=np.int32).reshape(-1, 2).T]
+def _one_by_one(run: Trajectory, function: LawFunction, at: Any, step: FloatArray, place: float) -> FloatArray:
+    """Return over each interval the largest ω² of pairs that may hide more than the error of positions in a step."""
     assert function.function is not None
-    reach = function.function.range + margin
-    return pair_blocks(q, reach) if np.isfinite(reach) else [np.triu_indices(len(q), 1)]
+    worst, span = np.zeros(len(at)), np.diff(run.path.t)
+    for row, k in enumerate(at.tolist()):
+        points, reach, allowance = _control_points(run, k)
+        near = function.function.range + 2.0 * float(reach.max())
+        for i, j in pair_blocks(run.path.q[k], near) if np.isfinite(near) else [np.triu_indices(len(reach), 1)]:
+            apart, off = points[j] - points[i], allowance[i] + allowance[j]
+            worst[row] = max(worst[row], _largest(function, apart, off, span[k], step[k], place, len(reach)))
+    return worst
+
+
+def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray, place: float) -> FloatArray:
+    """Return what `_one_by_one` does, of few pairs over many intervals at once."""
+    n, span, worst = len(run.q[0]), np.diff(run.path.t), np.zeros(len(at))
+    i, j = np.triu_indices(n, 1) if function.edges is None else np.array(function.edges, dtype=np.intp).reshape(-1, 2).T
+    size = max(1, _BLOCK // max(1, len(i)))
+    for first in range(0, len(at) if len(i) else 0, size):
+        rows = at[first : first + size]
+        each = [_control_points(run, k) for k in rows.tolist()]
+        points, allowance = np.array([one[0] for one in each]), np.array([one[2] for one in each])
+        time, long = span[rows, None], step[rows, None]
+        worst[first : first + size] = _largest(
+            function, points[:, j] - points[:, i], allowance[:, i] + allowance[:, j], time, long, place, n
+        )
+    return worst
+
+
+def _largest(
+    of: LawFunction, apart: FloatArray, off: FloatArray, span: Any, step: Any, place: float, n: int
+) -> FloatArray:
+    """Return the largest ω² of the pairs along the last axis; of those alone that hide more than `place`."""
+    rate, way = _hidden(of, apart, off, span)
+    rate = rate / n if of.mean else rate
+    hidden = rate * step * step * (way * step / span)
+    return np.asarray(rate.max(axis=-1, where=hidden > place, initial=0.0))
+
+
+def _control_points(run: Trajectory, k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the control points of an interval's paths, their reaches and their allowances."""
+    t, q, p, u, slack = run.path
+    points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+    return (points, reach, allowance) if slack is None else (points, reach + slack[k], allowance + slack[k])
 
 
 def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
@@ -127,11 +152,11 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     return steps, steps[at]
 
 
-def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any) -> tuple[FloatArray, FloatArray]:
     """Return ω² of each pair over an interval, from its relative control points, and how far its distance moves."""
     assert of.function is not None
-    sides, ends = lengths(np.diff(apart, axis=1)).sum(axis=1) + 2.0 * allowance, lengths(apart[:, [0, -1]])
-    middle, table = 0.5 * ends.sum(axis=1), _table(of.function)
+    sides, ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
+    middle, table = 0.5 * ends.sum(axis=-1), _table(of.function)
     edges = table[0]
     first = np.clip(np.searchsorted(edges, middle - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
     last = np.clip(np.searchsorted(edges, middle + 0.5 * sides, side="left") - 1, first, len(edges) - 2)

@@ -36,14 +36,12 @@ def longest_link(seen: Observed) -> Enclosure:
     return Enclosure(at_samples.lo, at_samples.mid, bound + error + 64.0 * EPS * seen.law.r)
 
 
-def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
+def _below(longest: Enclosure, r: float, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
     """The claim that no link is longer than `most`: by a bound of the path, refuted by a sample alone."""
-    longest = longest_link(seen)
-    return judged(name, (most - longest) / seen.law.r, needs, proof=_PROOF).described(
+    return judged(name, (most - longest) / r, needs, proof=_PROOF).described(
         computed=float(longest.mid),
         stated=stated,
-        detail=f"the longest link is {longest.mid:.4g} at a sample and at most {longest.hi:.4g} between; "
-        f"r = {seen.law.r:g}",
+        detail=f"the longest link is {longest.mid:.4g} at a sample and at most {longest.hi:.4g} between; r = {r:g}",
     )
 
 
@@ -68,14 +66,14 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     part of both results, in our words.
     """
     law, joined, energy = seen.law, _joined(seen), seen.energy[0]
-    longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS)
-    level = f"no link is longer than {longest.mid:.5g}, at which one link alone has the energy H(0) = {energy.mid:.5g}"
+    most, longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS), longest_link(seen)
+    level = f"no link is longer than {most.mid:.5g}, at which one link alone has the energy H(0) = {energy.mid:.5g}"
     whole = "the links, all shorter than r, always join all agents"
     damped = condition("c > 0", law.c > 0.0, law.c, f"c = {law.c:g}")
     return [joined, damped], [
         never_rises(seen, [], proof=_PROOF),
         balance(seen, [], tolerances, proof=_PROOF),
-        _below(seen, "links", longest, level, []),
-        _below(seen, "connected", Enclosure.of(law.r), whole, [joined]),
+        _below(longest, law.r, "links", most, level, []),
+        _below(longest, law.r, "connected", Enclosure.of(law.r), whole, [joined]),
         velocities_match(seen, [joined, damped], name="velocities", proof="matched-velocities"),
     ]
