@@ -177,7 +177,7 @@ SOURCES = "li_dead_zone.kernels.steps", "li_dead_zone.kernels.pair", "jond_2025.
 
 def test_kernels_load_numba_when_they_compute():
     code = "import sys, flockana.{0}; print('numba' in sys.modules, end=' ')"
-    names = "kernels.pair_sums", "kernels.obstacles", "kernels.paths", *(f"sources.{name}" for name in SOURCES)
+    names = "kernels.pair_sums", "kernels.obstacles", "kernels.quintic_paths", *(f"sources.{name}" for name in SOURCES)
     rooms = "".join(code.format(name) + "\n" for name in names)
     run = subprocess.run([sys.executable, "-c", rooms], capture_output=True, text=True, check=True, cwd=ROOT)
     assert set(run.stdout.split()) == {"False"}

@@ -68,6 +68,7 @@ Parameters are vectors of float64 whose places have the names below: OFFSET is t
     + """from math import sqrt
 
 from flockana.jit import register_jitable
+from flockana.kernels.integral_tables import on_panels
 from flockana.kernels.scalars import (
     bump,
     bump_slope,
@@ -79,7 +80,6 @@ from flockana.kernels.scalars import (
     sigma_norm,
     taper,
 )
-from flockana.kernels.integral_tables import on_panels
 
 EPS, H, A, B, C, D_ALPHA, R_ALPHA, OFFSET, FAR, AREA = range(10)
 D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h"""

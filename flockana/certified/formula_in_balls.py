@@ -17,28 +17,28 @@ from flockana.certified.balls import monotone, place, square
 
 
 def sigma_norm(s2: Any, eps: Any) -> Any:
-    """Return ‖x‖_σ of a ball, a monotone function."""
+    """‖x‖_σ, monotone."""
     return monotone(lambda s2: s2/((eps*s2 + 1).sqrt() + 1), s2)
 
 
 def sigma_1(s: Any) -> Any:
-    """Return σ₁(s) of a ball, a monotone function."""
+    """σ₁(s), monotone."""
     return monotone(lambda s: s*(square(s) + 1).rsqrt(), s)
 
 
 def taper(s: Any) -> Any:
-    """Return the half-cosine of ρ_h on its taper, a monotone function."""
+    """Half-cosine of ρ_h, monotone."""
     return monotone(lambda s: s.cos_pi()/2 + arb(1)/2, s)
 
 
 def phi(s: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return φ(s) of a ball, an increasing function."""
+    """φ(s), increasing."""
     x0 = sigma_1(c + s)
     return a/2 - b/2 + x0*(a + b)/2
 
 
 def pair(s2: Any, law: Any, piece: Any) -> Any:
-    """Return (weight, adjacency) of a pair at a squared distance s2."""
+    """(weight, adjacency) at squared distance s2."""
     x0 = sigma_norm(s2, law.eps)
     x1 = phi((-law.zero + x0)/law.area, law.a, law.b, law.c)
     x2 = place(x0/law.cutoff, law.h, piece)
@@ -48,7 +48,7 @@ def pair(s2: Any, law: Any, piece: Any) -> Any:
 
 
 def slopes(s2: Any, law: Any, piece: Any) -> Any:
-    """Return the derivatives of (weight, adjacency) by the squared distance s2."""
+    """Derivatives of (weight, adjacency) by s2."""
     x0 = 1/law.area
     x1 = sigma_norm(s2, law.eps)
     x2 = x0*(-law.zero + x1)
@@ -65,7 +65,7 @@ def slopes(s2: Any, law: Any, piece: Any) -> Any:
 
 
 def stiffness(s2: Any, law: Any, piece: Any) -> Any:
-    """Return the stiffness F''(ℓ) of the pair potential F = ψ(‖·‖_σ), by s2 = ℓ²."""
+    """F''(ℓ) of F = ψ(‖·‖_σ), by s2 = ℓ²."""
     x0 = 1/law.area
     x1 = sigma_norm(s2, law.eps)
     x2 = x0*(-law.zero + x1)
@@ -81,14 +81,14 @@ def stiffness(s2: Any, law: Any, piece: Any) -> Any:
 
 
 def closed(z: Any, law: Any) -> Any:
-    """Return an antiderivative of the action where ρ_h = 1."""
+    """An antiderivative of the action where ρ_h = 1."""
     x0 = (-law.zero + z)/law.area
     x1 = law.c + x0
     return law.area*(x0*(law.a - law.b) + (law.a + law.b)*(-(square(law.c) + 1).sqrt() + (square(x1) + 1).sqrt()))/2
 
 
 def tapered(z: Any, law: Any, analytic: Any) -> Any:
-    """Return the action where ρ_h falls from 1 to 0."""
+    """The action on the taper."""
     x0 = law.c + (-law.zero + z)/law.area
     x1 = (square(x0) + 1).rsqrt(analytic=analytic)
     x2 = ((-law.h + z/law.cutoff)/(1 - law.h)).cos_pi()

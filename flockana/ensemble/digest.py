@@ -26,7 +26,7 @@ from flockana.base.files import write_atomic
 _DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
 # files and folders of these names, wherever they are, decide no number
-_SILENT = {"plots", "figures", "report", "player", "explore", "course", "cli", "falsify", "ensemble", "references"}
+_SILENT = {"plots", "figures", "report", "player", "explore", "course", "cli", "falsify", "ensemble", "bibtex_entries"}
 _SILENT |= {"_version", "__init__"}
 _ENSEMBLE = "ensemble/one_run.py"  # of the ensemble, what makes a record
 

@@ -125,15 +125,12 @@ def falsify(
             )
     record = _Record()
     record.add(None, problem.graded(run, verdict))
-    # what is about another law no start meets; another number of a law may be one gain for all
-    others = verdict is not None and item.law is not None and verdict.hypotheses[0].status == "unmet"
-    hopeless = others and not parameters
-    _warn_of_unmet(f"{item.id} on {begin.name}", record.unmet or {}, hopeless)
+    _warn_of_unmet(f"{item.id} on {begin.name}", record.unmet or {})
     search = Search(space.start, seed)
-    ended: Ending = "law" if hopeless else "budget"
+    ended: Ending = "budget"
     with progress_bar(budget, enabled=progress, steady=True) as advance:
         try:
-            while not hopeless and len(record.rows) < budget and (deepen or record.best.status != "refuted"):
+            while len(record.rows) < budget and (deepen or record.best.status != "refuted"):
                 points = search.ask()
                 batch, grades = points[: budget - len(record.rows)], []
                 for point, evaluation in zip(batch, (executor.map if executor else map)(problem, batch), strict=True):
@@ -171,12 +168,11 @@ def falsify(
     return sealed(result)
 
 
-def _warn_of_unmet(what: str, unmet: Mapping[str, str], hopeless: bool) -> None:
+def _warn_of_unmet(what: str, unmet: Mapping[str, str]) -> None:
     """Log which hypotheses the scenario's own start does not meet, before the budget is spent."""
     if unmet:
         texts = "; ".join(unmet.values())
-        never = "; it is about another law, so that nothing else is tried" if hopeless else ""
-        _LOG.warning("%s: no claim at its own start, which does not meet: %s%s", what, texts, never)
+        _LOG.warning("%s: no claim at its own start, which does not meet: %s", what, texts)
 
 
 def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:

@@ -17,7 +17,7 @@ from flockana.falsify.counterexample import Counterexample
 from flockana.scenarios import Scenario
 from flockana.theorems import Verdict
 
-Ending = Literal["found", "budget", "interrupted", "law"]
+Ending = Literal["found", "budget", "interrupted"]
 _WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")
 
 
@@ -41,8 +41,8 @@ class Falsification:
         Status of each claim in each evaluation, ``"failed"`` where the run failed.
     seed, budget, restarts : int
         Of the search.
-    ended : {"found", "budget", "interrupted", "law"}
-        Why it ended; "law": the theorem is about another one.
+    ended : {"found", "budget", "interrupted"}
+        Why it ended.
     message : str
         Why runs failed, of the last that did.
     unmet : tuple of str

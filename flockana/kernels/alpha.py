@@ -31,7 +31,7 @@ D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h
 
 @register_jitable
 def phi_alpha(z, par):
-    """Return the α-action φ_α(z) = ρ_h(z/r_α) φ((z − d_α)/ℓ²)."""
+    """φ_α(z) = ρ_h(z/r_α) φ((z − d_α)/ℓ²)."""
     x0 = bump(z/par[R_ALPHA], par[H])
     x1 = phi((-par[D_ALPHA] + z)/par[AREA], par[A], par[B], par[C])
     return x0*x1
@@ -39,7 +39,7 @@ def phi_alpha(z, par):
 
 @register_jitable
 def phi_alpha_slope(z, par):
-    """Return the slope dφ_α/dz of the α-action."""
+    """dφ_α/dz."""
     x0 = 1.0/par[AREA]
     x1 = x0*(-par[D_ALPHA] + z)
     x2 = par[C] + x1
@@ -54,7 +54,7 @@ def phi_alpha_slope(z, par):
 
 @register_jitable
 def psi_alpha(z, par, panels):
-    """Return the α-potential ψ_α(z), constant from r_α on."""
+    """ψ_α(z), constant from r_α on."""
     if par[R_ALPHA] <= z:
         return par[FAR]
     if z < par[H]*par[R_ALPHA]:
@@ -64,20 +64,20 @@ def psi_alpha(z, par, panels):
 
 @register_jitable
 def adjacency_alpha(z, par):
-    """Return the adjacency a_ij at the σ-norm z = ‖q_j − q_i‖_σ."""
+    """a_ij by z = ‖q_j − q_i‖_σ."""
     return bump(z/par[R_ALPHA], par[H])
 
 
 @register_jitable
 def norm_alpha(s2, par):
-    """Return (‖x‖_σ, √(1 + ε‖x‖²)) of a squared length."""
+    """(‖x‖_σ, √(1 + ε‖x‖²))."""
     x0 = sqrt(par[EPS]*s2 + 1.0)
     return s2/(x0 + 1.0), x0
 
 
 @register_jitable
 def stress_alpha(z, root, par):
-    """Return (weight s_ij, adjacency a_ij) of a pair from `norm_alpha`."""
+    """(s_ij, a_ij) from `norm_alpha`."""
     c0 = 1.0/par[AREA]
     c1 = 1.0/par[R_ALPHA]
     x0 = c0*(-par[D_ALPHA] + z)
@@ -89,14 +89,14 @@ def stress_alpha(z, root, par):
 
 @register_jitable
 def pair_alpha(s2, par):
-    """Return (weight s_ij, adjacency a_ij) of a pair at the squared distance s2."""
+    """(s_ij, a_ij) at squared distance s2."""
     z, root = norm_alpha(s2, par)
     return stress_alpha(z, root, par)
 
 
 @register_jitable
 def pair_alpha_slope(s2, par):
-    """Return the weight's derivative d(s_ij)/d(s2), for the Hessian of V."""
+    """d(s_ij)/d(s2), for the Hessian of V."""
     x0 = 1.0/par[AREA]
     x1 = sigma_norm(s2, par[EPS])
     x2 = x0*(-par[D_ALPHA] + x1)
@@ -115,7 +115,7 @@ def pair_alpha_slope(s2, par):
 
 @register_jitable
 def pair_alpha_adjacency_slope(s2, par):
-    """Return the adjacency's derivative d(a_ij)/d(s2), for Jacobians."""
+    """d(a_ij)/d(s2), for Jacobians."""
     x0 = 1.0/par[R_ALPHA]
     x1 = sigma_norm(s2, par[EPS])
     x2 = bump_slope(x0*x1, par[H])
@@ -124,14 +124,14 @@ def pair_alpha_adjacency_slope(s2, par):
 
 @register_jitable
 def pair_alpha_potential(s2, par, panels):
-    """Return the α-potential ψ_α at the squared distance s2."""
+    """ψ_α at squared distance s2."""
     x0 = sigma_norm(s2, par[EPS])
     return psi_alpha(x0, par, panels)
 
 
 @register_jitable
 def phi_beta(z, par):
-    """Return the β-action φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1)."""
+    """φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1)."""
     x0 = bump(z/par[D_BETA], par[H])
     x1 = sigma_1((-par[D_BETA] + z)/par[BETA_AREA])
     return x0*(x1 - 1.0)
@@ -139,7 +139,7 @@ def phi_beta(z, par):
 
 @register_jitable
 def integral_beta(z, par):
-    """Return an antiderivative of the β-action φ_β where ρ_h = 1."""
+    """An antiderivative of φ_β where ρ_h = 1."""
     x0 = -z
     x1 = -par[D_BETA] - x0
     x2 = sigma_norm((x1*x1)/(par[BETA_AREA]*par[BETA_AREA]), 1.0)
@@ -148,7 +148,7 @@ def integral_beta(z, par):
 
 @register_jitable
 def psi_beta(z, par, panels):
-    """Return the β-potential ψ_β(z), 0 from d_β on."""
+    """ψ_β(z), 0 from d_β on."""
     if par[D_BETA] <= z:
         return 0.0
     if z < par[D_BETA]*par[H]:
@@ -158,13 +158,13 @@ def psi_beta(z, par, panels):
 
 @register_jitable
 def adjacency_beta(z, par):
-    """Return the adjacency b_ik at the σ-norm z = ‖q̂_ik − q_i‖_σ."""
+    """b_ik by z = ‖q̂_ik − q_i‖_σ."""
     return bump(z/par[D_BETA], par[H])
 
 
 @register_jitable
 def pair_beta(s2, par):
-    """Return (weight of q̂_ik − q_i, adjacency b_ik) at the squared distance s2."""
+    """(weight of q̂_ik − q_i, b_ik) at squared distance s2."""
     x0 = sigma_norm(s2, par[EPS])
     x1 = sigma_1((-par[D_BETA] + x0)/par[BETA_AREA])
     x2 = bump(x0/par[D_BETA], par[H])
@@ -173,7 +173,7 @@ def pair_beta(s2, par):
 
 @register_jitable
 def pair_beta_slope(s2, par):
-    """Return the β-weight's derivative d(weight)/d(s2), for the Hessian of ψ_β."""
+    """d(weight)/d(s2), for the Hessian of ψ_β."""
     x0 = sigma_norm(s2, par[EPS])
     x1 = -par[D_BETA] + x0
     x2 = 1.0 + (x1*x1)/(par[BETA_AREA]*par[BETA_AREA])
@@ -191,7 +191,7 @@ def pair_beta_slope(s2, par):
 
 @register_jitable
 def adjacency_beta_slope(s2, par):
-    """Return the β-adjacency's derivative d(b_ik)/d(s2)."""
+    """d(b_ik)/d(s2)."""
     x0 = 1.0/par[D_BETA]
     x1 = sigma_norm(s2, par[EPS])
     x2 = bump_slope(x0*x1, par[H])

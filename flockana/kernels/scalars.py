@@ -18,7 +18,7 @@ tiny = 1e-300  # keeps 0/0 out
 
 @register_jitable
 def sigma_norm(s2, eps):
-    """Return the σ-norm ‖x‖_σ from s2 = ‖x‖²."""
+    """‖x‖_σ from s2 = ‖x‖²."""
     x0 = sqrt(eps*s2 + 1.0)
     if inf > x0:
         return s2/(x0 + 1.0)
@@ -27,21 +27,21 @@ def sigma_norm(s2, eps):
 
 @register_jitable
 def clipped(s):
-    """Return s, cut off where its square would overflow."""
+    """s, cut off where squares would overflow."""
     x0 = -LARGE
     return LARGE if (LARGE < s) else x0 if (LARGE < -s) else s
 
 
 @register_jitable
 def sigma_1(s):
-    """Return σ₁(s) = s/√(1+s²)."""
+    """σ₁(s) = s/√(1+s²)."""
     x0 = clipped(s)
     return x0/sqrt((x0*x0) + 1.0)
 
 
 @register_jitable
 def taper(z, h):
-    """Return the bump ρ_h(z) for z ≥ 0."""
+    """ρ_h(z) for z ≥ 0."""
     c0 = 0.5*pi/(1.0 - h)
     x0 = quarter_sine(c0*(1.0 - z))
     x1 = (x0*x0)
@@ -50,14 +50,14 @@ def taper(z, h):
 
 @register_jitable
 def bump(z, h):
-    """Return the bump ρ_h(z), 0 for z < 0."""
+    """ρ_h(z), 0 for z < 0."""
     x0 = taper(z, h)
     return 0.0 if (z < 0.0) else x0
 
 
 @register_jitable
 def bump_slope(z, h):
-    """Return the bump's slope dρ_h/dz, 0 at the ends of the taper."""
+    """dρ_h/dz, 0 at the ends of the taper."""
     x0 = pi/(1.0 - h)
     if (h >= z) or (z >= 1.0):
         return 0.0
@@ -66,7 +66,7 @@ def bump_slope(z, h):
 
 @register_jitable
 def phi_above(s, a, b, c):
-    """Return the numerator of φ."""
+    """Numerator of φ."""
     c0 = 2.0*c
     c1 = sqrt((c*c) + 1.0)
     c2 = 0.5*a + 0.5*b
@@ -80,7 +80,7 @@ def phi_above(s, a, b, c):
 
 @register_jitable
 def phi_below(s, a, b, c):
-    """Return the denominator of φ."""
+    """Denominator of φ."""
     c0 = sqrt((c*c) + 1.0)
     x0 = c + s
     x1 = abs(x0)
@@ -90,7 +90,7 @@ def phi_below(s, a, b, c):
 
 @register_jitable
 def phi(s, a, b, c):
-    """Return φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab)."""
+    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab)."""
     x0 = clipped(s)
     x1 = phi_above(x0, a, b, c)
     x2 = phi_below(x0, a, b, c)
@@ -99,7 +99,7 @@ def phi(s, a, b, c):
 
 @register_jitable
 def phi_integral(s, a, b, c):
-    """Return the integral ∫₀ˢ φ ≥ 0."""
+    """∫₀ˢ φ ≥ 0."""
     c0 = sqrt((c*c) + 1.0)
     c1 = (c*c) + 1.0
     c2 = (0.5*a + 0.5*b)/sqrt((c*c) + 1.0)

@@ -30,9 +30,9 @@ def ensure_threads(threads: Any) -> int:
     """Return a number of threads; by default all in a main process, one in a worker."""
     if threads is None and parent_process() is None:
         return most_threads()
-    if threads is None or (threads == 1 and threads is not True):
-        return 1
     whole = isinstance(threads, int) and not isinstance(threads, bool)
+    if threads is None or (whole and threads == 1):
+        return 1
     if not whole or not 1 <= threads <= most_threads():
         raise ArgumentError(
             f"threads = {threads!r}: expected a number from 1 to {most_threads()}, the cores that numba may use; more "

@@ -306,13 +306,13 @@ def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
 WORKING = """
 import time
 from pathlib import Path
-from flockana.report import work
+from flockana.report import verify_catalogue
 
 def endless(task):
     Path("begun").touch()
     time.sleep(3600.0)
 
-work.check = endless
+verify_catalogue.check = endless
 if __name__ == "__main__":
 """
 

@@ -356,7 +356,7 @@ def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_t
 
 
 def test_a_run_that_fails_says_why():
-    wild = Algorithm1(gains=Gains(c1_alpha=1e300, c2_alpha=1e300))
+    wild = Algorithm2(gains=Gains(c1_gamma=1e300), target=StaticTarget((0.0, 0.0)))
     run = simulate(wild, *start(), (0.0, 10.0), method="RK4", dt=1.0)
     assert run.status == "failed"
     assert "RK4 left the finite numbers at t = " in run.message

@@ -394,7 +394,7 @@ def test_pairs_too_many_for_a_list_cut_the_same_steps(method, monkeypatch):
     listed = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
     pairs, looked = no_pairs(1, 2), []
     callback = callback_like(no_room, 0, np.empty((1, 2)), 0.0, pairs)
-    monkeypatch.setattr(encounters, "lister", lambda: callback)
+    monkeypatch.setattr(encounters, "as_callback", lambda _: callback)
     at_crowd = StepChecks.make_room
     monkeypatch.setattr(StepChecks, "make_room", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
     crowd = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)

@@ -139,6 +139,6 @@ def test_the_shortest_period_fits_the_largest_map(monkeypatch):
     """With few states allowed the search begins at a longer period, and finds the same margin."""
     system = scalar(4.0, 1.0)
     exact = delayed_sampling_margin(system, 0.1).period
-    for module in ("lifted", "sampled_delays"):
+    for module in ("lifted_loops", "sampled_delays"):
         monkeypatch.setattr(f"flockana.stability.{module}.MOST", 40)
     assert delayed_sampling_margin(system, 0.1).period == pytest.approx(exact, rel=1e-9)

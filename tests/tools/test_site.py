@@ -166,7 +166,7 @@ def test_formulas_are_those_of_the_library(monkeypatch):
     assert r"\|z\|_\sigma = \frac{\sqrt{\epsilon z^{2} + 1} - 1}{\epsilon}" in text
     assert "| $V$ | collective potential" in text  # notation
     assert text.count("As computed: every residual, computed, is 0.") == 3
-    for false in ("e1_identity", "theorem6.e2_identity"):  # printed energies that are none
+    for false in ("e1_identity", "algorithm3_energy.e2_identity"):  # printed energies that are none
         assert "is **not** 0" in text.split(f"### `{false}`")[1].split("###")[0]
 
 

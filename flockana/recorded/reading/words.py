@@ -58,7 +58,7 @@ def unit_of(text: str) -> Unit | None:
     Examples
     --------
     >>> unit_of("mm/s")
-    Unit(text='mm/s', length='mm', factor=0.001, power=1)
+    Unit(text='mm/s', length='mm', factor=0.001, power=1, second=1.0)
     """
     match = _RATE.match(text.strip().lower())
     if match is None:
