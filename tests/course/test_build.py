@@ -35,6 +35,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("source", "name"), CASES)
 def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
     answers = ANSWERS[number_of(source)][name]

@@ -108,6 +108,7 @@ def engine(law, q, p, plan, t=0.0):
     return engine_of(law, first_call(law, t, q, p), plan)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("m", "law"), list(laws()))
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
@@ -166,6 +167,7 @@ def test_no_encounter_is_leapt_over():
         assert np.abs(run.path.u).max() > 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "beside"),
     [
@@ -329,6 +331,7 @@ def test_an_alarm_during_a_compiled_run_raises_its_own_exception():
     assert (ended.returncode, ended.stdout) == (0, "12\n"), ended.stderr
 
 
+@pytest.mark.slow
 def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_the_same():
     class Long(AlphaInteraction):
         """With parameters that nothing reads."""

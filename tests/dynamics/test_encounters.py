@@ -194,6 +194,7 @@ RUNS = {
 
 
 class TestRuns:
+    @pytest.mark.slow
     @pytest.mark.parametrize("name", RUNS)
     def test_every_method_sees_what_a_tight_run_sees(self, name):
         """Free flight would leave the velocities as they are; tolerances 1e-8 leave errors of some 1e-5 of them."""

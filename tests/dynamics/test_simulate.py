@@ -369,6 +369,7 @@ def test_a_run_that_would_take_a_thousand_million_steps_fails_in_seconds_and_say
     assert run.stats["steps"] < 30_000
 
 
+@pytest.mark.slow
 def test_steps_that_collapse_at_a_collision_end_a_run_and_name_the_pair():
     """A bound pair of a logarithmic potential, whose friction lets it spiral into the pole."""
     pair = fl.pair_law("k*log(s)", adjacency="(1-s/r)**2", range=3, length=2, parameters={"k": 1.0})

@@ -23,6 +23,7 @@ def test_a_claim_of_ones_own_is_checked_on_every_seed(tmp_path):
     assert again.identical(runs)  # seconds included: nothing was computed anew
 
 
+@pytest.mark.slow
 def test_a_claim_at_the_top_of_a_module_goes_to_other_processes():
     with_two = fl.ensemble(tiny_flocks.trio, range(4), theorems=[SLOW], jobs=2)
     alone = fl.ensemble(tiny_flocks.trio, range(4), theorems=[SLOW], jobs=1)

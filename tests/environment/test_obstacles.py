@@ -183,6 +183,7 @@ def _dense(q: np.ndarray, p: np.ndarray, obstacles: Any, beta: BetaInteraction) 
     return force, damping, (power, potential)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("obstacles", [LINE, PLANE, SPACE, (*PLANE, Slab(0.25), Sphere((4.0, 4.0), 0.5))])
 def test_sums_over_all_kinds_are_those_of_plain_loops(obstacles: tuple[Obstacle, ...]) -> None:
     rng, m = np.random.default_rng(4), obstacles[0].dimension

@@ -159,6 +159,7 @@ def test_short_formulas_that_grow_are_refused_by_counts(formula):
         fl.pair_law(formula, adjacency=0, range=3.0, length=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["mpf", "lambda_", "mpmath", "x0", "inf", "nan", "par", "root_", "max"])
 def test_a_parameter_may_have_any_name(name):
     assert fl.pair_law(f"{name}*s", adjacency=0, range=3.0, length=1.0, parameters={name: 2.0}).force(1.0) == -2.0
@@ -217,6 +218,7 @@ def test_a_file_holds_text_and_numbers():
         from_data(data | {"adjacency": "9**9**9**9"})
 
 
+@pytest.mark.slow
 def test_it_is_a_pair_law_everywhere(tmp_path):
     law = fl.Algorithm2(spring(), fl.Gains(c1_gamma=0.5), fl.StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(3)

@@ -135,6 +135,7 @@ def test_the_band_is_where_a_pair_may_come_within_reach_or_be_within_it():
     assert band(common, (0.3, 0.1), edges, 2.79) == pytest.approx((0.0, 11.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1.0, 0.8, 0.3, 1.3])
 @pytest.mark.parametrize(("speed", "bend"), [(0.3, 1.0), (3.0, 1.0), (12.0, 1.0), (0.3, 60.0)])  # of FAR = 3.5 a step
 @pytest.mark.parametrize("m", [1, 2, 3])

@@ -89,10 +89,12 @@ def same(body, *arguments, layer="default", before=(), **environment):
     return [line[0] for line in lines]
 
 
+@pytest.mark.slow
 def test_any_number_of_threads_gives_the_same_bits_under_each_layer():
     assert same(MANY) == same(MANY, layer="workqueue")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layer", ["default", "workqueue"])
 @pytest.mark.parametrize("body", [FORKS, AT_ONCE], ids=["forks", "at once"])
 def test_forked_children_and_four_threads_at_once_compute_the_same(body, layer):

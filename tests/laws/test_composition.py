@@ -100,6 +100,7 @@ def test_through_a_file_and_other_units(chosen):
     assert seen_rate * 60.0**3 / 1e6 == pytest.approx(rate, abs=1e-9 * (abs(rate) + np.abs(u).sum()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "chosen",
     [

@@ -34,6 +34,7 @@ def forces(t):
 TABLE = {"times": np.linspace(0.0, 40.0, 4001), "table": forces(np.linspace(0.0, 40.0, 4001)).T}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("push", [{"force": forces}, TABLE], ids=["function", "table"])
 @pytest.mark.parametrize("noise", [0.0, 1e-12])
 def test_a_force_of_time_acts_as_the_swing_that_it_is(push, noise):

@@ -5,6 +5,7 @@ import pytest
 from tests.adversarial.side_roads import ROADS, hold
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("road", ROADS)
 def test_a_few_cases_beside_the_main_road(road):
     hold(road, 0.15)

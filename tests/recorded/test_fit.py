@@ -30,6 +30,7 @@ def made(n, seconds, noise, seed):
     return law, run, fl.Recording(t, q, sd=noise) if noise else fl.Recording(t, q, run.p, bound=1e-8)
 
 
+@pytest.mark.slow
 def test_gains_of_an_exact_recording_are_found_from_sample_to_sample():
     law, _, rec = made(5, 1.0, 0.0, 0)
     found = fl.fit(rec, replace(law, gains=fl.Gains()))

@@ -84,6 +84,7 @@ def shifted(rng, t, gap, size):
     return q, p
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["exact", "sd", "unknown", "bound", "rounded", "rounded unknown", "rounded sd"])
 def test_velocities_lie_within_95_percent_beside_gaps_too(kind):
     """Twelve random cases of each kind."""

@@ -70,6 +70,7 @@ def test_compiled_steps_of_noise_are_those_made_one_by_one(target):
     np.testing.assert_allclose(later[0], later[1], rtol=0.0, atol=1e-11)
 
 
+@pytest.mark.slow
 def test_a_step_of_order_1_holds_the_input():
     """q + h p + ½ h² u and p + h u, with u at the beginning of the step."""
     law, h, p = Disturbed(LAW, force=(0.3, -0.2)), 0.1, 0.1 * Q[::-1]
@@ -80,6 +81,7 @@ def test_a_step_of_order_1_holds_the_input():
     np.testing.assert_allclose(held, u, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_runs_are_the_same_at_any_number_of_workers():
     """All wrappers, and compiled noise: in this process, and in two others."""
     for law in (Stepped(ALL, 0.01), Stepped(Disturbed(LAW, intensity=0.1), 0.01, 1)):

@@ -193,6 +193,7 @@ def test_the_least_effort_that_decays_fast_enough():
     assert rich.reached["decay"] > least.reached["decay"]
 
 
+@pytest.mark.slow
 def test_the_strain_of_a_squeezed_pair_binds():
     """c1γ pulls two agents together against one bond: its strain at rest is that of their equilibrium."""
     pair = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=ALPHA, gains=GAINS)

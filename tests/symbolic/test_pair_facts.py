@@ -41,6 +41,7 @@ SMOOTH = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", SMOOTH, ids=lambda make: make.args[0] if isinstance(make, partial) else make.__name__)
 def test_smooth_laws_are_proved_smooth(make):
     law = make()
@@ -73,6 +74,7 @@ ROUGH = [  # and where
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "fault", "at"), ROUGH, ids=[text for text, _, _ in ROUGH])
 def test_hidden_jumps_poles_and_kinks_are_found_with_a_witness(text, fault, at):
     smooth = pair(f"({text}){END}").facts.smooth

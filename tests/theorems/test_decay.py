@@ -192,6 +192,7 @@ def test_what_cannot_be_linearised_is_vacuous():
     assert "n = 201: more than 200" in large.hypotheses[0].detail
 
 
+@pytest.mark.slow
 def test_a_pair_that_is_damped_much_is_measured_while_it_is_above_the_errors_of_the_run():
     """s² + 2 a s + 2 k with ζ = 0.82: within six half swings K̃ falls by 10²³, of which a run shows 10¹²."""
     pair = fl.pair_law("(1 - exp(1 - s))**2*(1 - s/3)**3", adjacency="(1 - s/3)**2", range=3.0, length=1.0)

@@ -170,6 +170,7 @@ def part(claim, what):
     return getattr(claim, what) if isinstance(what, str) else what(claim)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted({row[0] for row in (*KNOWN, *BETWEEN)}))
 def test_what_is_known(name, verdict_of):
     for _, claim, what, value in (row for row in KNOWN if row[0] == name):

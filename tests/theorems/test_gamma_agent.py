@@ -74,6 +74,7 @@ def test_a_function_that_was_seen_at_rest_but_for_rounding_is_assumed_to_be():
     assert target_rests(run(noisy), any_p_r=False).status == "assumed"
 
 
+@pytest.mark.slow
 def test_a_function_is_assumed_until_its_user_states_how_slowly_it_changes():
     def path(t):
         return (np.sin(t), 1.0), (np.cos(t), 0.0)

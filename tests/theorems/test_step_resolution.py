@@ -25,6 +25,7 @@ def meeting(barrier=0.0, brake=0.0, width=700.0, **options):
     return fl.simulate(law, START, SPEED, (0.0, 0.6), **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "how", [{"barrier": 1.5}, {"brake": 3000.0, "t_eval": np.linspace(0.0, 0.6, 301)}], ids=["force", "adjacency"]
 )
@@ -49,6 +50,7 @@ def test_a_spike_too_narrow_for_any_number_of_steps_is_assumed_not_to_be_there()
         assert claim.rigour != "numeric" or NAME in [one.name for one in claim.needs]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("place", "status"), [(2.99, "assumed"), (2.5, None)])
 def test_a_pole_counts_where_a_pair_comes_near_it(place, status):
     pair = fl.pair_law("0.01*s**2/(r - s)", adjacency="(1 - s/r)**2", range=3.0, length=1.0)

@@ -35,6 +35,7 @@ def test_one_link_is_the_logistic_equation_of_its_square():
     assert np.sum((run.q[-1, 1] - run.q[-1, 0]) ** 2) == pytest.approx(x, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_lengths_that_no_line_leaves_and_none_has_die_out_as_one_over_t():
     """Lengths 1, 1, 2 on a line are reached along it; across, errors of 1/t are left: doubled time halves them."""
     law = fl.DistanceFormation(TRIANGLE, (1.0, 1.0, 2.0))

@@ -38,6 +38,7 @@ def random_polygon(rng):
     return rng.uniform(0.0, 4.0, 2) + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", ["conflict", "attraction"])
 def test_trigger_and_force_against_shapely(depth):
     rng, met = np.random.default_rng(1), 0

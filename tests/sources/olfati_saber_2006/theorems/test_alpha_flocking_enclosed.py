@@ -22,6 +22,7 @@ def window(tube, tolerances):
     return simulate(LED, *START, SPAN, rtol=1e-12, t_eval=np.union1d(np.linspace(first, SPAN[1], 2001), SPAN))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settle", [0.5, 0.9])
 @pytest.mark.parametrize(
     ("claim", "measure", "unit"),

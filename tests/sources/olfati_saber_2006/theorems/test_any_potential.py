@@ -27,6 +27,7 @@ def parabola(top=4.0):
     return pair_law("k*(1 - s**2/r**2)**2 - 1", adjacency="1 - s/r", range=2.0, length=1.0, parameters={"k": top})
 
 
+@pytest.mark.slow
 def test_a_morse_flock_is_cohesive_and_matches_under_theorem_3():
     verdict = verify("os-3", law=Algorithm2(morse(), GAINS, ORIGIN), q0=Q, p0=P, t_span=(0.0, 1.0))
     found = statuses(verdict)
