@@ -10,7 +10,7 @@ NAME ?= hexagon
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
 
-test: .venv/.dev  ## formulas, theorems, laws, numbers and commands, in six minutes on two cores
+test: .venv/.dev  ## formulas, theorems, laws, numbers and commands, in five minutes on two cores
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow"
 
 test-all: .venv/.dev  ## the whole test suite, with what kills processes, waits, drives tools, certifies and attacks
