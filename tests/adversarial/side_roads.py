@@ -111,21 +111,37 @@ WEIGHTS = st.tuples(
 )
 
 
-def check_weight(case):
-    """Two agents part through a distance at which the weight has a hump or a hole: H rises in a hole, else never."""
-    hump, at, width, speed, loose = case
-    pair = fl.pair_law(
+def part_through(law, hump, speed, loose):
+    """Let two agents part through the hump or hole of what averages their velocities: H rises in a hole alone."""
+    start = [[0.0], [4.0]], [[-speed], [speed]]
+    run = fl.simulate(law, *start, (0.0, 4.0 / speed), **({"rtol": 1e-4} if loose else {}))
+    assert float(run.q[-1, 1, 0] - run.q[-1, 0, 0]) > 7.0  # it went through
+    never(verify("energy", run), "rate", hump > 0.0)
+
+
+def uneven_pair(hump, at, width):
+    """A pair law that hardly pulls, whose adjacency has a hump or a hole of a width at a distance."""
+    return fl.pair_law(
         "0.001*(1 - s/r)**3*s**2/d**2",
         adjacency="(1 - s/r)**2*(1 + A*exp(-((s - c)/w)**2))",
         range=9.0,
         length=3.0,
         parameters={"A": hump, "c": at, "w": 10.0**width},
     )
-    law = Algorithm1(pair, Gains(c1_alpha=1.0, c2_alpha=1e-3))
-    start = [[0.0], [4.0]], [[-speed], [speed]]
-    run = fl.simulate(law, *start, (0.0, 4.0 / speed), **({"rtol": 1e-4} if loose else {}))
-    assert float(run.q[-1, 1, 0] - run.q[-1, 0, 0]) > 7.0  # it went through
-    never(verify("energy", run), "rate", hump > 0.0)
+
+
+def check_weight(case):
+    """The adjacency of the pair law itself has the hump or hole."""
+    hump, at, width, speed, loose = case
+    part_through(Algorithm1(uneven_pair(hump, at, width), Gains(c1_alpha=1.0, c2_alpha=1e-3)), hump, speed, loose)
+
+
+def check_net(case):
+    """The net of velocity consensus has it, beside a pair law with an adjacency of its own that is not read."""
+    hump, at, width, speed, loose = case
+    even = fl.pair_law("0.001*(1 - s/r)**3*s**2/d**2", adjacency="(1 - s/r)**2", range=9.0, length=3.0)
+    law = fl.compose(pair=even, gradient=1.0, consensus=1e-3, net=uneven_pair(hump, at, width))
+    part_through(law, hump, speed, loose)
 
 
 # --- targets that report another velocity, for a moment -------------------------------------------------------------
@@ -202,6 +218,7 @@ def hold(road, share):
 ROADS = {
     "maps": (MAPS, check_map),
     "weights": (WEIGHTS, check_weight),
+    "nets": (WEIGHTS, check_net),
     "targets": (TARGETS, check_target),
     "times": (TIMES, check_times),
     "recordings": (RECORDINGS, check_recording),
