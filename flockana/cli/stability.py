@@ -106,19 +106,19 @@ def _with_flags(error: Exception) -> Exception:
 
 def _velocities(law: Any, p: Any) -> Any:
     """Return the velocities that a map of its own keeps; other laws are linearised at rest."""
-    from flockana.laws import DiscreteLaw
+    from flockana.laws.discrete import is_own_map
 
-    return p if isinstance(law, DiscreteLaw) and law.continuous is None else None
+    return p if is_own_map(law) else None
 
 
 def rest_of(law: Any, q: Any) -> Any:
     """Return the equilibrium of a law near positions, or a rest; of a map of its own the positions."""
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.rest_without_potential import resting_state
-    from flockana.laws import DiscreteLaw
+    from flockana.laws.discrete import is_own_map
     from flockana.stability.wrapped_loops import instant_law
 
-    if isinstance(law, DiscreteLaw) and law.continuous is None:
+    if is_own_map(law):
         return q
     acting = law if law.continuous is None else instant_law(law.continuous)
     by_energy = acting.terms and acting.conservative

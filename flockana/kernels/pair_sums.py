@@ -89,9 +89,9 @@ def _gather(x, limit, listed, begin, end, pairs, s2):
 
 
 @register_jitable
-def _act_in_slab(own, s, x, v, u, numbers, listed, cuts, near, room):
+def _act_in_slab(own, s, x, v, u, numbers, listed, work):
     """Add the forces of the pairs of a slab to u; write their sum into the slab's room."""
-    total, r, par = 0.0, numbers[2], as_tuple(numbers[4:])
+    total, r, par, (cuts, near, room) = 0.0, numbers[2], as_tuple(numbers[4:]), work
     pairs, block = (near[2 * s], near[2 * s + 1]), (room[3 * s], room[3 * s + 1], room[3 * s + 2])
     for begin in range(cuts[s], cuts[s + 1], BLOCK):
         end = min(begin + BLOCK, cuts[s + 1])
@@ -107,7 +107,7 @@ def act(t, x, v, u, numbers, panels, listed):
     slabs, total, marker = cuts.size - 1, 0.0, OWN[:0]
     for parity in range(2):
         for half in prange((slabs + 1 - parity) // 2):
-            _act_in_slab(marker, 2 * np.int64(half) + parity, x, v, u, numbers, (first, second), cuts, near, room)
+            _act_in_slab(marker, 2 * np.int64(half) + parity, x, v, u, numbers, (first, second), (cuts, near, room))
     for s in range(slabs):
         total += room[3 * s, 0]
     return -numbers[1] * total

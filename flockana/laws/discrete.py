@@ -148,6 +148,11 @@ class DiscreteLaw(LawOfMotion):
         return {}
 
 
+def is_own_map(law: Any) -> bool:
+    """Return whether a law is a map that steps no continuous law."""
+    return isinstance(law, DiscreteLaw) and law.continuous is None
+
+
 def ensure_law(law: Any) -> Law | DiscreteLaw:
     """Return `law` if it is a law or a map; raise otherwise.
 

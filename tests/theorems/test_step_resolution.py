@@ -7,7 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.interactions.distance_functions import LawFunction
-from flockana.theorems import Claim
+from flockana.theorems import Claim, step_resolution
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
 from flockana.theorems.step_resolution import NAME, _hidden, demand_of, steps_of
@@ -98,3 +98,18 @@ def test_the_second_run_shares_no_stage_and_keeps_the_bound_of_the_first():
         longest = steps_of(again)[0].max()
         assert longest <= 0.618 * steps_of(run)[0].max() * (1.0 + 1e-9)
         assert longest <= options.get("max_step", np.inf)
+
+
+@pytest.mark.parametrize("m", [1, 2])
+def test_pairs_looked_at_all_at_once_ask_for_the_steps_of_those_found_interval_by_interval(m, monkeypatch):
+    """A flock that spreads, so that pairs come and go: the same bits, in blocks of whatever size."""
+    rng, numbers = np.random.default_rng(m), {"barrier": 0.1, "brake": 0.5, "width": 20.0}
+    pair = fl.pair_law(FORMULA[0], adjacency=FORMULA[1], range=3.0, length=1.0, parameters=numbers)
+    law, q = fl.Algorithm1(pair), 1.5 * np.arange(9.0)[:, None] * np.eye(m)[0] + 0.1 * rng.normal(size=(9, m))
+    run = fl.simulate(law, q, rng.normal(size=(9, m)), (0.0, 2.0))
+    monkeypatch.setattr(step_resolution, "_BLOCK", 100)
+    blocks = demand_of(run, 1e-12)
+    monkeypatch.setattr(step_resolution, "_FEW", 0)
+    found = demand_of(run, 1e-12)
+    np.testing.assert_array_equal(blocks.longest, found.longest)
+    assert np.isfinite(found.longest).sum() > 10
