@@ -20,17 +20,24 @@ from flockana.lattice import hexagonal_patch
 @pytest.mark.parametrize(
     ("cls", "options", "message"),
     [
+        (AlphaInteraction, {"d": 0.0}, "d = 0: expected a number > 0"),
+        (AlphaInteraction, {"d": np.nan}, "d = nan: expected a finite number"),
+        (AlphaInteraction, {"r": "x"}, "r = 'x': expected one real number"),
         (AlphaInteraction, {"r": 7.0}, "r = 7 and d = 7: expected r > d; the paper takes r = 1.2 d"),
+        (AlphaInteraction, {"eps": -0.1}, "eps = -0.1: expected a number > 0"),
         (AlphaInteraction, {"h": 0.0}, "h = 0: expected 0 < h < 1; at h = 1 the bump jumps"),
         (AlphaInteraction, {"h": 1.0}, "h = 1: expected 0 < h < 1"),
+        (AlphaInteraction, {"a": 0.0}, "a = 0: expected a number > 0"),
         (AlphaInteraction, {"a": 9.0}, "a = 9 and b = 5: expected a <= b (attraction at most repulsion)"),
         (AlphaInteraction, {"a": 1e-9, "b": 1e9}, "expected b <= 1e+12 a"),
         (AlphaInteraction, {"d": 1e200, "r": 2e200}, "expected 0 < d_sigma < r_sigma, all finite"),
         (AlphaInteraction, {"d": 1e-200, "r": 2e-200}, "their σ-norms are 0 and 0"),
+        (BetaInteraction, {"d": -1.0}, "d = -1: expected a number > 0"),
         (BetaInteraction, {"r": 4.2}, "r = 4.2 and d = 4.2: expected r > d; the paper takes r' = 1.2 d'"),
         (BetaInteraction, {"h": 1.5}, "h = 1.5: expected 0 < h < 1"),
         (BetaInteraction, {"d": 1e-200}, "their σ-norms are 0"),
         (Gains, {"c2_alpha": -1.0}, "c2_alpha = -1: expected a gain >= 0; a negative one feeds energy in"),
+        (Gains, {"c1_gamma": np.inf}, "c1_gamma = inf: expected a finite number"),
     ],
 )
 def test_bad_parameters(cls, options, message):
@@ -51,6 +58,21 @@ def test_defaults_are_the_papers():
     assert (gains.c1_alpha, gains.c2_alpha) == (30.0, 2 * sqrt(30.0))
     assert (gains.c1_beta, gains.c2_beta) == (1500.0, 2 * sqrt(1500.0))
     assert (gains.c1_gamma, gains.c2_gamma) == (1.1, 2 * sqrt(1.1))
+
+
+def test_by_hand():
+    """ε = 1 and r² = 24: r_α = 4; a = 1, b = 4: c = 3/4."""
+    alpha = AlphaInteraction(d=sqrt(8.0), r=sqrt(24.0), eps=1.0, h=0.5, a=1.0, b=4.0)
+    assert (alpha.c, alpha.d_alpha) == pytest.approx((0.75, 2.0), rel=1e-15)
+    assert alpha.r_alpha == pytest.approx(4.0, rel=1e-15)
+    assert alpha.kappa == pytest.approx(sqrt(3.0), rel=1e-15)
+    assert alpha.sigma_norm(sqrt(15.0)) == pytest.approx(3.0, rel=1e-15)
+    assert alpha.adjacency(3.0) == pytest.approx(0.5, rel=1e-14)
+    s = 1.0 + 0.75
+    assert alpha.phi(1.0) == pytest.approx(0.5 * (5 * s / sqrt(1 + s * s) - 3), rel=1e-14)
+    assert alpha.phi_alpha(3.0) == pytest.approx(0.5 * alpha.phi(1.0), rel=1e-14)
+    # below d_α the bump is 1: ψ in closed form from 0
+    assert alpha.c_star == pytest.approx(0.5 * (5 * (sqrt(1 + 1.25**2) - 1.25) + 6), rel=1e-14)
 
 
 def test_shapes_go_through_and_scalars_stay_scalars():
@@ -127,8 +149,17 @@ def test_beta_by_hand():
     assert beta.adjacency(3.0) == pytest.approx(0.5, rel=1e-14)
 
 
-def test_pairs_beyond_the_range_have_no_entries_in_the_hessian():
+def test_hessian_of_a_pair_by_hand():
+    """Along the pair dF/ds, across it F/s; zero row sums; beyond the range nothing."""
     alpha = AlphaInteraction()
+    for gap in (3.0, 7.0, 8.0):
+        z, g = alpha.sigma_norm(gap), 1.0 + 0.1 * gap**2
+        along = alpha.phi_alpha_slope(z) * gap**2 / g + alpha.phi_alpha(z) / g**1.5
+        across = alpha.phi_alpha(z) / sqrt(g)
+        block = np.diag([along, across])
+        expected = np.block([[block, -block], [-block, block]])
+        computed = alpha.hessian(np.array([[0.0, 0.0], [gap, 0.0]])).toarray()
+        np.testing.assert_allclose(computed, expected, atol=1e-13 * np.abs(expected).max())
     assert alpha.hessian(np.array([[0.0, 0.0], [8.4, 0.0]])).nnz == 0
     assert alpha.hessian(np.zeros((1, 3))).toarray().tolist() == np.zeros((3, 3)).tolist()
 
@@ -144,6 +175,16 @@ def test_pairs_that_come_in_several_blocks_are_summed_as_in_one():
         assert abs(found - expected).max() <= 1e-14 * abs(expected).max()
         assert found.nnz == expected.nnz == 4 * (2 * i.size + len(q))
         assert (matrix(q, []).shape, matrix(q, []).nnz) == ((2 * len(q), 2 * len(q)), 0)
+
+
+def test_laplacian_of_a_path_by_hand():
+    alpha = AlphaInteraction()
+    q = np.array([[0.0], [5.0], [12.0]])
+    a, b = (alpha.adjacency(alpha.sigma_norm(x)) for x in (5.0, 7.0))
+    expected = [[a, -a, 0.0], [-a, a + b, -b], [0.0, -b, b]]
+    np.testing.assert_allclose(alpha.laplacian(q).toarray(), expected, rtol=1e-15)
+    q2 = np.column_stack([q, 0 * q])
+    np.testing.assert_allclose(alpha.laplacian(q2).toarray(), np.kron(expected, np.eye(2)), rtol=1e-15)
 
 
 def test_frozen_hashable_and_portable():

@@ -96,3 +96,32 @@ def test_exactly_at_range_and_at_coincidence_by_hand():
     assert law.energy(0.0, [[5.0], [5.0]], still) == 2.0 * law.alpha.c_star
     u = law.acceleration(0.0, [[5.0], [5.0]], [[0.0], [3.0]])
     assert u.tolist() == [[3.0], [-3.0]]  # a_ij = 1: consensus alone
+
+
+def test_two_agents_by_hand():
+    """ε = 1, distance √24: ‖·‖_σ = 4, √(1 + ε s²) = 5; with h = 0.9 the bump is 1."""
+    alpha = AlphaInteraction(d=3.0, r=50.0, eps=1.0, h=0.9, a=5.0, b=5.0)
+    law = Algorithm1(alpha, Gains(c1_alpha=1.0, c2_alpha=10.0))
+    gap = np.sqrt(24.0)
+    s = 4.0 - (np.sqrt(10.0) - 1.0)
+    expected = 5.0 * s / np.sqrt(1 + s * s) * gap / 5.0 + 10.0 * (2.0 - (-1.0))
+    u = law.acceleration(0.0, [[0.0, 0.0], [gap, 0.0]], [[-1.0, 0.0], [2.0, 0.0]])
+    np.testing.assert_allclose(u, [[expected, 0.0], [-expected, 0.0]], rtol=1e-14)
+    rate = law.energy_rate(0.0, [[0.0, 0.0], [gap, 0.0]], [[-1.0, 0.0], [2.0, 0.0]])
+    assert rate == pytest.approx(-10.0 * 9.0, rel=1e-15)
+
+
+def test_blocks_do_not_change_the_sums(monkeypatch):
+    import flockana.interactions.pair_interaction as module
+    from flockana.kernels.neighbours import pair_blocks
+
+    q, p = random_state(300, 2, 9)
+    alpha = AlphaInteraction()
+    u, rate = alpha.forces(q, p, stiffness=1.0, damping=1.0)
+    energy, hessian = alpha.potential_energy(q), alpha.hessian(q).toarray()
+    monkeypatch.setattr(module, "pair_blocks", lambda q, r: pair_blocks(q, r, block=1, dense=False))
+    u2, rate2 = alpha.forces(q, p, stiffness=1.0, damping=1.0)
+    np.testing.assert_allclose(u2, u, atol=REL * np.abs(u).max())
+    assert rate2 == pytest.approx(rate, rel=REL)
+    assert alpha.potential_energy(q) == pytest.approx(energy, rel=REL)
+    np.testing.assert_allclose(alpha.hessian(q).toarray(), hessian, atol=REL * np.abs(hessian).max())
