@@ -16,7 +16,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
-from functools import cache, cached_property
+from functools import cache
 from multiprocessing import parent_process
 from pathlib import Path
 from threading import RLock, Timer
@@ -55,10 +55,20 @@ class Kernel:
         self.__name__, self.__qualname__ = function.__name__, function.__qualname__
         self.function, self.kept, self.options, self._thaws = function, kept, options, False
         self._compiled: Callable[..., Any] | None = None
+        self._dispatcher: Any = None
 
-    @cached_property
+    @property
     def dispatcher(self) -> Any:
-        """The function as a dispatcher of numba."""
+        """The function as a dispatcher of numba.
+
+        No `cached_property`: in Python 3.11 that holds a lock of its own, which a thread that compiles waits for.
+        """
+        if self._dispatcher is None:
+            with _ONE:
+                self._dispatcher = self._dispatcher or self._decorated()
+        return self._dispatcher
+
+    def _decorated(self) -> Any:
         return _with_cache(self.function, self.kept, lambda numba, cache: numba.njit(cache=cache, **self.options))
 
     @property
@@ -152,12 +162,10 @@ def kernel(function: Callable[..., Any]) -> Kernel:
 class Parallel(Kernel):
     """Twin of a kernel for several threads: the same text, in which `prange` is numba's."""
 
-    @cached_property
-    def dispatcher(self) -> Any:
-        """The twin as a dispatcher of numba."""
+    def _decorated(self) -> Any:
         launch_threads()
         self.function = _renamed(self.function, self.function.__name__, prange=load_numba().prange)
-        return super().dispatcher
+        return super()._decorated()
 
 
 def _renamed(function: Callable[..., Any], name: str, **known: Any) -> Callable[..., Any]:

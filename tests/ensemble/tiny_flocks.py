@@ -89,7 +89,7 @@ def compilations(run):
     """Kernels that this process compiled, rather than load them, since it started."""
     known = [vars(module) for name, module in sys.modules.items() if name.startswith("flockana")]
     kernels = {id(one): one for names in known for one in names.values() if isinstance(one, Kernel)}.values()
-    loaded = [kernel.dispatcher for kernel in kernels if "dispatcher" in vars(kernel)]
+    loaded = [kernel.dispatcher for kernel in kernels if kernel._dispatcher is not None]
     assert loaded
     return sum(dispatcher.stats.cache_misses.total() for dispatcher in loaded)
 
