@@ -1,4 +1,4 @@
-"""Numba decorators that load numba at the first call, and the folder in which compiled code is kept.
+"""Numba decorators that load numba at the first call, and the folder of compiled code.
 
 Kernels load numba when they first compute: a list of scenarios needs no compiler. Compiled code lies in a folder of the
 user's own, by the contents of the source file and of all package files that it imports, so that an edited kernel is
@@ -48,7 +48,7 @@ _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is co
 
 
 class Kernel:
-    """Function that is compiled when it is first called."""
+    """Function compiled at its first call."""
 
     def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
@@ -99,7 +99,7 @@ class Kernel:
             raise origin_of(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
-        """Return the arguments with writable views of read-only arrays, and note that this kernel gets such arrays."""
+        """Return the arguments with writable views of read-only arrays, and record that such arrays occur."""
         code, plain = self.function.__code__, list(arguments)
         for k, each in enumerate(arguments):
             if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
@@ -121,7 +121,7 @@ class Kernel:
 
 
 def _ensure_plain(name: str, result: Any) -> None:
-    """Raise if a kernel called from Python gives it named tuples: an alarm while numba makes one kills the process."""
+    """Raise on named tuples in a kernel's result: an alarm while numba builds one kills the process."""
     if hasattr(result, "instance_class"):
         raise TypeError(f"{name} returns {result}: expected numbers, as kernels that Python calls write into arrays")
     for part in getattr(result, "types", ()):
@@ -142,12 +142,12 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
 
 
 def register_jitable(function: Callable[..., Any]) -> Inlined:
-    """Return a function for kernels to call, which is compiled into them."""
+    """Return a function that kernels can call and that is compiled into them."""
     return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
 
 
 def inlined(function: Callable[..., Any]) -> Inlined:
-    """Return a function for kernels to call, written into their source: for what has one caller.
+    """Return a function that is written into the source of its single calling kernel.
 
     Each function that is compiled by itself costs some tenths of a second.
     """
@@ -155,12 +155,12 @@ def inlined(function: Callable[..., Any]) -> Inlined:
 
 
 def kernel(function: Callable[..., Any]) -> Kernel:
-    """Return a kernel that is kept on disk; as all have the same options, what numba compiles for them is shared."""
+    """Return a kernel cached on disk, with options shared by all kernels."""
     return Kernel(function, True, {"error_model": "numpy", "nogil": True})
 
 
 class Parallel(Kernel):
-    """Twin of a kernel for several threads: the same text, in which `prange` is numba's."""
+    """Multithreaded twin of a kernel: the same text with numba's `prange`."""
 
     def _decorated(self) -> Any:
         launch_threads()
@@ -169,13 +169,13 @@ class Parallel(Kernel):
 
 
 def _renamed(function: Callable[..., Any], name: str, **known: Any) -> Callable[..., Any]:
-    """Return a function with the same text, another name, and other values of some names of its module."""
+    """Return a function with the same text, another name, and changed module globals."""
     code = function.__code__.replace(co_name=name, co_qualname=name)
     return FunctionType(code, function.__globals__ | known if known else function.__globals__, name)
 
 
 def parallel(kernel: Kernel) -> Kernel:
-    """Return a kernel's twin for several threads; its module must know it as ``parallel_`` and the kernel's name.
+    """Return a kernel's multithreaded twin; its module must define ``parallel_`` plus the kernel's name.
 
     Files and symbols of compiled code bear names of functions: it has one of its own.
     """
@@ -234,7 +234,7 @@ def load_numba() -> Any:
 
 @cache
 def launch_threads() -> int:
-    """Start numba's threads, as code for them cannot even be loaded before; return the process's id."""
+    """Start numba's threads, needed before parallel code can be loaded; return the process id."""
     numba, policy = load_numba(), "OMP_WAIT_POLICY"
     with _ONE:
         given = policy in os.environ
@@ -248,7 +248,7 @@ def launch_threads() -> int:
 
 @contextmanager
 def pause_compiling() -> Iterator[None]:
-    """Let no thread compile meanwhile: numba raises where NUMBA_NUM_THREADS changes once its threads run."""
+    """Pause compilation in other threads, as numba raises if NUMBA_NUM_THREADS changes while its threads run."""
     with _ONE:
         yield
 
@@ -262,7 +262,7 @@ def _opened(dispatcher: Any) -> Any:
 
 
 def is_modules_own(known: Any) -> bool:
-    """Return whether the file of a function's module defines it under its name, so that all processes agree on it."""
+    """Return whether a function is defined under its name in its module's file, as all processes see it."""
     return _named(known) and getattr(sys.modules[known.__module__], "__file__", None) is not None
 
 
@@ -288,7 +288,7 @@ def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..
 
 
 def _folder(function: Callable[..., Any]) -> Path | None:
-    """Return the folder of a function's compiled code: beside a bound module, else named after its sources."""
+    """Return the folder of a function's compiled code: beside a bound module, or named after its sources."""
     base = kernels_folder() if is_modules_own(function) else None
     if base is None:
         return None
@@ -299,7 +299,7 @@ def _folder(function: Callable[..., Any]) -> Path | None:
 
 
 def _mark(function: Callable[..., Any], types: Any) -> Path | None:
-    """Return the path of the file that says that some process has compiled a function for these types."""
+    """Return the path of the marker file for code compiled for these types."""
     config, folder = load_numba().config, _folder(function)
     identity = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
     return None if folder is None else folder / f"{sha256([repr(identity)])[:16]}.known"
@@ -333,7 +333,7 @@ def compiling(mark: Path | None = None, name: str = "kernels") -> Iterator[None]
 
 @contextmanager
 def _announced(name: str) -> Iterator[None]:
-    """Say within the block that kernels are compiled, or waited for, as soon as that takes long."""
+    """Announce within the block that kernels are compiled or awaited, once this takes long."""
     show_part(f"compiling {name}")  # beside a bar of tasks
     timer = Timer(_SILENT, _announce, [name])
     timer.daemon = True
@@ -346,7 +346,7 @@ def _announced(name: str) -> Iterator[None]:
 
 
 def _announce(name: str) -> None:
-    """Write one line in a process, if a person reads it: on a terminal or in a notebook, not in worker processes."""
+    """Write one line if a person is watching: on a terminal or in a notebook, not in worker processes."""
     if (sys.stderr.isatty() or "ipykernel" in sys.modules) and parent_process() is None and not _ANNOUNCED:
         _ANNOUNCED.append(name)
         logging.getLogger("flockana").warning(COMPILES.format(name))
@@ -354,7 +354,7 @@ def _announce(name: str) -> None:
 
 @cache
 def kernels_folder() -> Path | None:
-    """Return the folder of compiled code, which this user alone may enter; None, with one warning, if there is none."""
+    """Return the private folder of compiled code; None, with one warning, without one."""
     named = load_numba().config.CACHE_DIR
     places: list[Callable[[], Path]] = [
         lambda: Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "kernels",
@@ -374,7 +374,7 @@ def kernels_folder() -> Path | None:
 
 
 def _private(folder: Path) -> Path:
-    """Return the folder if this user alone can write to it, as its code is executed; raise OSError otherwise."""
+    """Return the folder if only this user can write to it; raise OSError otherwise."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     status = folder.lstat()
     if hasattr(os, "getuid") and (folder.is_symlink() or status.st_uid != os.getuid() or status.st_mode & 0o077):
@@ -385,7 +385,7 @@ def _private(folder: Path) -> Path:
 
 @cache
 def sources_folder(base: Path, digest: str) -> Path:
-    """Return the folder for compiled code of some sources; remove folders that have not been used for long."""
+    """Return the folder of compiled code of some sources; remove long unused folders."""
     folder, now = base / digest, time.time()
     if not folder.is_dir():
         folder.mkdir(mode=0o700, exist_ok=True)

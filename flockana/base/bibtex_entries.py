@@ -1,4 +1,4 @@
-"""Bibliography: BibTeX entries of the sources of laws and theorems."""
+"""BibTeX entries of the sources of laws and theorems."""
 
 from collections.abc import Mapping
 from functools import cache

@@ -36,7 +36,7 @@ def ensure_positive(name: str, value: Any) -> float:
 
 
 def ensure_nonnegative(name: str, value: Any) -> float:
-    """Return `value` as a finite float >= 0 (arguments and errors as `ensure_finite_scalar`)."""
+    """Return `value` as a finite float >= 0; errors as `ensure_finite_scalar`."""
     number = ensure_finite_scalar(name, value)
     if number < 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
@@ -84,7 +84,7 @@ def real_array(value: Any) -> FloatArray:
 
 
 def ensure_numbers(name: str, value: Any, wanted: str) -> FloatArray:
-    """Return `value` as `real_array`, or raise with what is wanted."""
+    """Return `value` as a real float64 array; raise with the expected shape or kind otherwise."""
     try:
         return real_array(value)
     except (TypeError, ValueError, OverflowError):

@@ -15,7 +15,7 @@ _KINK = 1e-4  # relative: slopes to either side that differ by more than that ar
 
 
 class Differences(NamedTuple):
-    """Derivative of a function, and how far the results of two widths differ, relative to its largest entry."""
+    """Derivative of a function, and the difference of two estimates of it, relative to the largest entry."""
 
     matrix: FloatArray
     spread: float

@@ -53,7 +53,7 @@ class ArgumentError(FlockanaError, ValueError):
 
 
 class UnknownNameError(ArgumentError):
-    """Exception for the name of a theorem, scenario, method or the like that does not exist.
+    """Exception for an unknown name of a theorem, scenario, method or the like.
 
     Parameters
     ----------

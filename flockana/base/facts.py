@@ -46,5 +46,5 @@ class PairFacts(ShortRepr):
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """Sentences that name where the pair law is certainly not smooth."""
+        """Sentences naming where the pair law is certainly not smooth."""
         return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()

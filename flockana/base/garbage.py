@@ -1,4 +1,4 @@
-"""Frequency of Python's garbage collection."""
+"""Settings of Python's garbage collection."""
 
 import gc
 from collections.abc import Iterator

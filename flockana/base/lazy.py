@@ -1,4 +1,4 @@
-"""Public names of a package from its stub file, each imported when it is first used."""
+"""Lazy imports of a package's public names, as its stub file lists them."""
 
 import ast
 from collections.abc import Callable
@@ -11,7 +11,7 @@ import lazy_loader
 
 
 def attach_stub(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """Return `__getattr__`, `__dir__` and `__all__` of a package whose ``.pyi`` imports its public names.
+    """Return `__getattr__`, `__dir__` and `__all__` of a package whose ``.pyi`` file imports the public names.
 
     As lazy_loader's function of this name, and names from outside the package as well, under other names if so said.
     """

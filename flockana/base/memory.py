@@ -11,7 +11,7 @@ class ResultCache:
     """Base class of objects that cache results computed from them."""
 
     def cached(self, name: str, compute: Callable[[], _Value]) -> _Value:
-        """Return the result of that name, computed at the first call.
+        """Return a named result of an object, computed at the first call and cached on the object.
 
         Parameters
         ----------

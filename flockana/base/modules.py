@@ -11,7 +11,7 @@ SOURCES = "flockana.sources"
 
 
 def source_files(pattern: str) -> Iterator[Path]:
-    """Yield the files of all sources that fit a pattern below the folder of a source, in order."""
+    """Yield the files of all sources that match a pattern, in order of names."""
     for folder in import_module(SOURCES).__path__:
         yield from sorted(Path(folder).glob(f"*/{pattern}"))
 

@@ -1,4 +1,4 @@
-"""Natural length and time of a law, in which thresholds are measured."""
+"""Natural length and time of a law; thresholds are multiples of these scales."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ LEAST, MOST = 1e-45, 1e45  # sixth powers of such lengths are numbers
 
 @dataclass(frozen=True)
 class Scales:
-    """Natural length and time of a law; thresholds are multiples of them, so no verdict depends on units."""
+    """Natural length and time of a law; thresholds are multiples of both, so no verdict depends on units."""
 
     length: float
     time: float

@@ -76,7 +76,7 @@ def sealed(evidence: _Evidence) -> _Evidence:
 
 
 def seal_of(evidence: Any, modules: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
-    """Return the checksum of all fields of a dataclass."""
+    """Return the checksum of all fields of a dataclass, by name."""
     return {field.name: checksum(getattr(evidence, field.name), modules) for field in fields(evidence)}
 
 

@@ -1,4 +1,4 @@
-"""Representation of parameters and results in at most twelve lines, and as a table in a notebook."""
+"""Short printed form of parameters and results: at most twelve lines, and a table in a notebook."""
 
 import textwrap
 from dataclasses import fields, is_dataclass
@@ -15,14 +15,14 @@ _VALUE, _SHORT = 240, 60  # characters of one value; of one among very many
 
 
 class ShortRepr:
-    """Base class of dataclasses with a repr of at most twelve lines: long values are cut, nothing else."""
+    """Base class of dataclasses with a printed form of at most twelve lines; long values are shortened."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         cls.__repr__ = cls.__repr__  # type: ignore[method-assign]  # its own, which the decorator dataclass leaves
 
     def __repr__(self) -> str:
-        """Return the class with its fields, on several lines if they are long."""
+        """Return the class name with the fields, on several lines if they are long."""
         if not is_dataclass(self):
             return object.__repr__(self)
         for most in (_VALUE, _SHORT):
@@ -44,7 +44,7 @@ def _texts(item: Any, most: int) -> dict[str, str]:
 
 
 def short_text(value: Any, most: int = _VALUE) -> str:
-    """Return a value on one line: of long sequences the first entries, of long objects the class."""
+    """Return a value as text on one line: the first entries of a long sequence, the class of a large object."""
     if isinstance(value, np.ndarray | np.generic):
         text = repr(value.tolist()) if value.size <= _FEW else f"<array of shape {value.shape}>"
     elif isinstance(value, Fraction):

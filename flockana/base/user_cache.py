@@ -1,4 +1,4 @@
-"""Plain data that are computed once for an installation and kept in the user's cache folder."""
+"""Cache of plain data in the user's cache folder, valid for one installation."""
 
 import json
 import os
