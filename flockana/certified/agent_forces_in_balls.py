@@ -32,7 +32,7 @@ class Pull:
     unit: arb | None = None  # ℓ; None for the linear pull
 
     def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
-        """Return x − q_r, the way from the γ-agent."""
+        """Return x − q_r, the vector from the γ-agent to the agent."""
         return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
 
     def _saturation(self, away: Sequence[Any], unit: arb) -> Any:
@@ -67,11 +67,11 @@ class Pull:
         return pull, drag
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """Return the part of dH/dt that its own potential does not balance: −c2γ ⟨v, v − p_r⟩, of a γ-agent at rest."""
+        """Return the part of dH/dt not balanced by the pull's potential: −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
         return -self.damping * (norm2(v) - dot(v, self.declared))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Return the derivative of the force by time, from the motion of q_r."""
+        """Return the time derivative of the pull, from the motion of q_r."""
         pull = self.slopes(t, x, x, Piece.CORE)[0]
         return [-dot(row, self.velocity) for row in pull]
 
@@ -101,7 +101,7 @@ class SphereTerm:
         return self.beta.piece(square(self.clearance(x)))
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """Return how far the clearance is beyond h d_β and d_β, and how fast it moves away."""
+        """Return the distances of the clearance from the switches h d_β and d_β, and their rates."""
         away = x - np.array([float(y) for y in self.centre])
         distance = float(np.linalg.norm(away))
         speed = float(away @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
@@ -118,7 +118,7 @@ class SphereTerm:
         return -self.damping * adjacency * (clearance / distance * across + square(radial))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Return the derivative of the force by time, at rest."""
+        """Return the time derivative of the sphere's force: 0, as the sphere is at rest."""
         return [arb(0)] * len(x)
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:

@@ -43,7 +43,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
 
 
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
-    """Return the equations of an equilibrium in (x, μ, ν) about a computed x̄, and their derivative."""
+    """Return the equations of an equilibrium in (x, μ, ν) near a computed x̄, and their Jacobian."""
     centre, size = [arb(y) for y in x], len(x)
     motions, shifts = u.rotation_tangents(centre), u.translations()
     fixed = motions + shifts
@@ -68,13 +68,13 @@ def _multipliers(u: Structure) -> list[arb]:
 
 
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
-    """Return whether the condition that fixes rotations is regular in the whole box: only the rotation 0 meets it."""
+    """Return whether the condition that fixes rotations is regular in the whole box: no other rotation satisfies it."""
     fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:
-    """Return Newton's method from q, centred, with forces from balls and slopes in floating point."""
+    """Return a refined and centred equilibrium by Newton's method from q: forces in balls, slopes in floating point."""
     start = (q - q.mean(axis=0)).ravel()
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):
@@ -113,7 +113,7 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
 
 
 def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
-    """Return the equilibrium rotated, exactly but for its enclosure, to nearly the best alignment."""
+    """Return the equilibrium rotated to nearly the best alignment, exact up to the enclosure."""
     rotation = _rotation(*(np.array([float(y) for y in z]).reshape(shape) for z in (rest, x)))
     m = shape[1]
     return [dot(row, rest[i : i + m]) for i in range(0, len(rest), m) for row in rotation]

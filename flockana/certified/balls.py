@@ -27,7 +27,7 @@ class Piece(Enum):
 
 
 def ball(x: Any) -> arb:
-    """Return an exact number, or a ball, as a ball at the present precision."""
+    """Return an exact number or a ball as a ball of the current precision."""
     return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
 
 
@@ -51,7 +51,7 @@ def square(x: Any) -> Any:
 
 
 def integrate(function: Callable[[Any, bool], Any], start: arb, end: arb) -> arb:
-    """Return the integral of an analytic function in Arb, which forgets what is raised in it: signals wait."""
+    """Return the integral of an analytic function by Arb; signals are handled afterwards."""
     with defer_sigint(*ALARMS):
         return acb.integral(function, start, end).real
 
@@ -88,7 +88,7 @@ def clamp(x: arb) -> arb:
 
 
 def place(z: Any, h: arb, piece: Piece) -> Any:
-    """Return the place in [0, 1] of a σ-norm on the taper of ρ_h: of a ball on any pieces, or of a series on one."""
+    """Return the position in [0, 1] of a σ-norm on the taper of ρ_h, as a ball or as a series."""
     if piece is Piece.CORE and not isinstance(z, arb):
         return arb_series([0])
     on_taper = (z - h) / (1 - h)

@@ -114,7 +114,7 @@ class Basin(ShortRepr):
         return float(self.radius) / float(self.law.alpha.d)
 
     def above(self, q: Any, p: Any) -> tuple[arb, arb]:
-        """Return upper bounds of a state's distance to the orbit, and of its energy above that of the equilibrium.
+        """Return upper bounds of a state's distance from the orbit and of its energy above the equilibrium.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class Basin(ShortRepr):
 
 @dataclass(frozen=True, eq=False)
 class Proved:
-    """Bounds and shells that prove a basin, as its certificate needs them."""
+    """Bounds and shells that prove a basin, as needed for a certificate."""
 
     structure: Structure
     rest: tuple[arb, ...]

@@ -69,7 +69,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
 
 
 def head(kind: str) -> dict[str, Any]:
-    """Return the entries that every certificate of a kind begins with."""
+    """Return the common first entries of every certificate of a kind."""
     statement, prose = STATEMENTS[kind]
     made_with = {"flockana": __version__, "python-flint": version("python-flint")}
     return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": made_with}
@@ -189,7 +189,7 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
-    """Return error bounds that the steps of a tube justify, with bounds of distances, radii and energy."""
+    """Return the tube's error bounds for a path, with bounds of distances, radii and energy."""
     start = state = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())]
     error, errors, boxes = arb(0), [], []
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):

@@ -208,7 +208,7 @@ class Net:
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
-        """Return the Hessian ∇²U, bordered by the rigid motions that are held."""
+        """Return the Hessian ∇²U, bordered by the fixed rigid motions."""
         blocks = {}
         for (i, j), gap, length in self.pairs(x):
             pull = self.tension(length)
@@ -309,7 +309,7 @@ class Net:
 
 
 def proposed_inverse(matrix: arb_mat) -> arb_mat:
-    """Return nearly the inverse of a matrix of balls; no proof rests on its accuracy."""
+    """Return an approximate inverse of a matrix of balls; no proof depends on its accuracy."""
     return matrix.mid().inv().mid()
 
 

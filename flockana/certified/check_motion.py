@@ -39,7 +39,7 @@ Vector = list[arb]
 
 @dataclass(frozen=True)
 class Motion:
-    """Law of a tube's certificate for n agents in m dimensions; its numbers are exact decimals."""
+    """Right-hand side of a tube certificate's law for n agents in m dimensions, with exact decimals."""
 
     par: AlphaParameters
     gain: Mapping[str, arb]
@@ -73,7 +73,7 @@ class Motion:
         return ((i, j, [b - a for a, b in zip(q[i], q[j], strict=True)]) for i, j in combinations(range(self.n), 2))
 
     def pieces(self, q: Vector) -> list[int | None]:
-        """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if it may be on two."""
+        """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if undecided."""
         norms = (sigma_of_square(norm2(gap), self.par.eps) for _, _, gap in self.gaps(q))
         piece_numbers = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
         return piece_numbers + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
@@ -227,7 +227,7 @@ class Sphere:
         return piece_of(self.height(x), d_beta(self.par), self.par.h)
 
     def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
-        """Return the force along series of position and velocity; on an unknown piece as numbers at the begin."""
+        """Return the force of a sphere along series of position and velocity; constant balls on an unknown piece."""
         if piece is None:
             x, v = [a[0] for a in x], [a[0] for a in v]
         e, distance = self._direction(x)

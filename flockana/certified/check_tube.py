@@ -1,4 +1,4 @@
-"""Independent checker of tube certificates, by another argument than the prover's.
+"""Independent checker of tube certificates, by another method than the prover's.
 
 A certificate holds a path of polynomials in time, one for each coordinate of q and each step, and claims that the run
 from its start is never farther from it than a stated error. That is proved here by another theorem than Lohner's
@@ -79,7 +79,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Run(Motion):
-    """Path of a tube certificate, and the weight w by which its norm weighs positions."""
+    """Path of a tube certificate, and the weight w of positions in the norm of errors."""
 
     weight: arb
 
@@ -105,7 +105,7 @@ class Run(Motion):
         return cls(par, gain, start, velocity, declared, n, m, bounded, spheres, weight)
 
     def follow(self, data: Mapping[str, Any]) -> Iterator[str]:
-        """Check the run step by step, then the claims about all of it."""
+        """Check the run step by step, then the claims about the whole run."""
         size, times = self.n * self.m, [exact(t) for t in data["times"]]
         x0 = [exact(x) for rows in (data["q0"], data["p0"]) for row in rows for x in row]
         ensure(len(times) == len(data["paths"]) + 1 == len(data["errors"]) + 1 and len(x0) == 2 * size, "its length")
@@ -168,7 +168,7 @@ class Run(Motion):
         yield "all of the end lies in the basin: the run converges to its orbit, with matched velocities"
 
     def jumped(self, state: Vector, path: Sequence[Vector], error: arb) -> arb:
-        """Return the error bound after the change from one path to the next."""
+        """Return the error bound after the switch from one path polynomial to the next."""
         return error + self.norm([a - b for a, b in zip(state, self.at(path, arb(0)), strict=True)])
 
     def grown(self, t: arb, h: arb, path: Sequence[Vector], error: arb, bound: arb) -> tuple[arb, Vector]:

@@ -20,7 +20,7 @@ def at_most(x: arb, places: int = 6) -> str:
 
 
 def interval(x: arb, places: int = 6) -> str:
-    """Return the text [lower, upper], rounded outwards."""
+    """Return the text [lower, upper] of an interval, rounded outwards."""
     return f"[{at_least(x, places)}, {at_most(x, places)}]"
 
 
@@ -63,7 +63,7 @@ def _exponent(size: Fraction) -> int:
 
 
 def first_digits(x: arb, places: int) -> str | None:
-    """Return the decimal digits shared by all of a positive ball; None if there are none."""
+    """Return the leading decimal digits common to all numbers of a positive ball; None without any."""
     low, high = at_least(x, places), at_least(x.upper(), places)
     return low if low == high else None
 

@@ -1,4 +1,4 @@
-"""`enclose`: rigorous enclosure of a run, step by step."""
+"""Rigorous enclosure of a run, step by step: `enclose`."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def enclose(
 def _collected(
     march: _March, start: StateSet, span: tuple[float, float], most: int, progress: bool
 ) -> tuple[tuple[float, ...], tuple[StateSet, ...], tuple[Step, ...], str, str]:
-    """Return times, sets and steps up to the end, Ctrl-C or a step that cannot be proved, and a status and message."""
+    """Return times, sets and steps until the run ends or a proof fails, with a status and a message."""
     times, sets, taken_steps = [span[0]], [start], list[Step]()
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
@@ -144,7 +144,7 @@ def _collected(
 
 @dataclass(frozen=True)
 class _March:
-    """Steps of `enclose`: their lengths, the options, and the law's length."""
+    """Steps of `enclose`: lengths, options, and the law's length scale."""
 
     flow: Flow
     length: float
@@ -153,7 +153,7 @@ class _March:
     widest: float
 
     def steps(self, start: StateSet, span: tuple[float, float]) -> Iterator[tuple[float, Step | str]]:
-        """Yield each step with its end; a text instead of a step that cannot be proved."""
+        """Yield each proved step with its final set; yield a message where a proof fails."""
         flow, t, current, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
         while t < span[1]:
             end, step, crosses = self._step(t, current, min(target_step, span[1] - t), span[1])
@@ -171,7 +171,7 @@ class _March:
             yield t, step
 
     def _step(self, t: float, current: StateSet, most: float, last: float) -> tuple[float, Step | None, bool]:
-        """Return the end of the next step, the step if one could be proved, and whether it crosses a switch."""
+        """Return the end of the next step, the step if a proof succeeds, and whether a switch is crossed."""
         flow, shortest, end = self.flow, _SHORTEST / self.flow.pace, t
         step: Step | None = None
         length, crosses = _proposed(flow, current, most)
@@ -196,7 +196,7 @@ class _March:
         return size(self.flow, [arb(x.rad()) for x in step.after.hull])
 
     def _excess(self, step: Step) -> float:
-        """Return by what factor a step's remainder is above the allowed one."""
+        """Return the ratio of a step's remainder to the allowed remainder."""
         return step.added / max(self.remainder * self.length, _PART * self._width(step))
 
 
@@ -225,7 +225,7 @@ def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, boo
 
 
 def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
-    """Yield how far the distance of each pair and agent is beyond a switch, and how fast it grows."""
+    """Yield the distance of each pair and agent from a switch, and the rate at which it grows."""
     switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):
         apart, relative = q[j] - q[i], p[j] - p[i]
@@ -238,7 +238,7 @@ def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
 
 
 def _where(flow: Flow, current: StateSet) -> str:
-    """Return in words which pairs and agents are near a switching distance."""
+    """Return a sentence naming the pairs and agents near a switching distance."""
     names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
     names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
     about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]

@@ -79,7 +79,7 @@ class Flow:
         return [-self.damping * heat, *powers]
 
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
-        """Return the derivatives (∂u/∂q, ∂u/∂p) as square tables, with the number 0 where nothing depends."""
+        """Return the derivatives (∂u/∂q, ∂u/∂p) as square tables; entries without dependence are the number 0."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
         for i, j, piece, apart, relative in self._pairs(q, p, pieces):
@@ -160,7 +160,7 @@ class Flow:
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
-    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and the reaction on j."""
+    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction on j."""
     for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
         table[row * m + k][other * m + h] += value if sign > 0 else -value
 

@@ -1,4 +1,4 @@
-"""Stability of an equilibrium for every choice of gains in a box: the equilibrium is followed, its modes are bounded.
+"""Stability of an equilibrium for all gains in a box: a proof that follows the equilibrium and bounds its modes.
 
 With y = q − q_r an equilibrium of Algorithm 2 solves c1α ∇V(y) + c1γ_i y_i = 0, which only κ_i = c1γ_i/c1α matter to.
 Krawczyk's test for all κ of the box at once encloses it: y_i = c + z_i, Σ z_i = 0, its turn about the γ-agent fixed. A
@@ -55,7 +55,7 @@ class GainBox(ShortRepr):
 
 
 def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
-    """Decide whether an equilibrium stays stable if each gain is off by up to a share, those of the agents one by one.
+    """Decide whether an equilibrium stays stable if each gain, agent by agent, deviates by up to a share.
 
     Proved in ball arithmetic, for the law as it is: for all c1α, c2α and all c1γ, c2γ of the agents in the box, there
     is exactly one equilibrium near that of the nominal gains but for rotations about the γ-agent, it depends on them
@@ -111,7 +111,7 @@ def _corner(law: Algorithm2, *shares: float) -> list[Any]:
 
 
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
-    """Return by what share a link may change in the box for which stability is proved; NaN if it is not proved."""
+    """Return the share by which link lengths may change in the proved box of gains; NaN without a proof."""
     unit: float = getattr(law.alpha, "unit", 1.0)
     rescaled, nothing = in_lengths_of_unit(law), float("nan")
     gains, (n, m) = rescaled.gains, q.shape
@@ -130,14 +130,14 @@ def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
 
 
 def _turns(y: FloatArray) -> FloatArray:
-    """Return orthonormal rotations about the γ-agent, those that move agents, as columns of shape (n m, k)."""
+    """Return orthonormal rotations about the γ-agent, as columns of shape (n m, k)."""
     turns = np.array([(y @ turn.T).ravel() for turn in generators(y.shape[1])]).reshape(-1, y.size)
     basis, sizes, _ = np.linalg.svd(turns.T, full_matrices=False)
     return np.asarray(basis[:, sizes > _ON_A_LINE * sizes.max(initial=0.0)])
 
 
 def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb] | None:
-    """Return balls of the equilibrium's displacement z = y − c for all gain ratios κ of the box; None if unproved."""
+    """Return balls of the equilibrium's displacement z = y − c for all gain ratios κ in the box; None if unproved."""
     n, m = y.shape
     centre, turns = y.mean(axis=0), _turns(y)
     size, k = n * m, turns.shape[1]
@@ -190,7 +190,7 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
 
 
 def _grow_box(equations: Any, slope: Any, centre: list[arb]) -> list[arb] | None:
-    """Return balls that hold the one zero of equations near a centre: radii grow until Krawczyk's test holds."""
+    """Return balls around the unique zero of equations near a centre; radii grow until Krawczyk's test succeeds."""
     radii = [arb(_FINEST)] * len(centre)
     for _ in range(_GROWTHS):
         try:
@@ -211,7 +211,7 @@ def _has_full_rank(matrix: arb_mat) -> bool:
 
 
 def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
-    """Return whether the form ∇²V + κ (1 − 11ᵀ/n) is certainly positive but along rotations, agent 0 left out."""
+    """Return whether the form ∇²V + κ (1 − 11ᵀ/n), agent 0 left out, is certainly positive apart from rotations."""
     # A pair's block in the ball is at least its middle less its radius ρ: the form is at least one of numbers. With
     # s TTᵀ of the middle of a rotation added it exceeds g; across the true one it then exceeds g − s ‖T − middle‖².
     n, m = structure.n, structure.m

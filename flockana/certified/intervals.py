@@ -123,7 +123,7 @@ class _Action:
         return self._from_knee(self.cutoff)
 
     def _from_knee(self, z: arb) -> arb:
-        """Return the integral from h times the cutoff: closed form before it, enclosed by Arb after it."""
+        """Return the integral of the action from h times the cutoff: closed form below, enclosed by Arb above."""
         knee = self.h * self.cutoff
         before = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
         after = arb(0) if z <= knee else integrate(self._on_taper, knee, z.max(knee).min(self.cutoff))
@@ -140,7 +140,7 @@ class _Action:
 
 @cache
 def _action(par: AlphaParameters | BetaParameters, prec: int) -> _Action:
-    """Return the action of a law with its numbers at a precision."""
+    """Return the pair action of a law's parameters at a given precision."""
     if isinstance(par, BetaParameters):
         return _Action(arb(1), arb(-1), -d_beta(par), d_beta(par), d_beta(par), ball(par.h))
     a, b, zero = ball(par.a), ball(par.b), d_alpha(par)

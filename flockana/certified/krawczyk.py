@@ -10,7 +10,7 @@ from flint import arb, arb_mat
 
 
 def column(values: Sequence[arb]) -> arb_mat:
-    """Return a vector as a matrix of one column."""
+    """Return a vector as a matrix with one column."""
     return arb_mat(len(values), 1, list(values))
 
 

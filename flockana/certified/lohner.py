@@ -67,7 +67,7 @@ def variation_order(order: int) -> int:
 
 
 def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
-    """Return a step by a Taylor polynomial; None if it is too long, or a pair may change its piece on the way."""
+    """Return a Taylor step; None if the step is too long, or a pair may change its piece."""
     span, box = hull(arb(0), h), before.hull
     if Piece.SWITCH in (pieces := flow.pieces(box)):
         return None
@@ -109,7 +109,7 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
 def _enclosed(
     flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
 ) -> tuple[list[arb], list[arb]] | None:
-    """Return a box that holds the solutions during a step, and the remainder at its end; None if unproved."""
+    """Return a box that contains the solutions during a step, and the remainder at the end; None without a proof."""
     # If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
     # would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
     growth = _first_growth(reach, h)
@@ -129,7 +129,7 @@ def _enclosed(
 
 
 def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | None:
-    """Return a box that no solution leaves during a step: start + [0, h] x'(box) lies inside it."""
+    """Return a box that the solutions cannot leave during a step: start + [0, h] x'(box) lies inside the box."""
     image = list(start)
     for _ in range(_INFLATIONS):
         growth = _first_growth(image, span.upper())
@@ -144,7 +144,7 @@ def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | 
 
 
 def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
-    """Return the margin by which a candidate box grows: an eighth of its radius, and never 0."""
+    """Return the margin by which a candidate box is enlarged: an eighth of its radius, at least a tiny number."""
     half = len(box) // 2
     far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
     margins = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
@@ -154,7 +154,7 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
 def _variation(
     flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
 ) -> tuple[arb_mat, arb_mat]:
-    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder."""
+    """Return the Taylor enclosure of ∂x(t + h)/∂x(t) over the whole set, and the remainder."""
     # At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest
     # row sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the
     # identity by more than e^{Lh} − 1.
@@ -215,7 +215,7 @@ def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: S
 
 
 def size(flow: Flow, remainder: Sequence[arb]) -> float:
-    """Return the largest coordinate of a box, velocities multiplied by the law's time; for step control only."""
+    """Return the largest coordinate of a box, velocities times the law's time; for step control only."""
     half = len(remainder) // 2
     far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)
@@ -229,7 +229,7 @@ def _blur(flow: Flow, slope: arb_mat) -> float:
 
 
 def _at(coefficients: Sequence[arb], s: arb) -> arb:
-    """Return a polynomial's value at a ball (Horner)."""
+    """Return the value of a polynomial at a ball (Horner's scheme)."""
     total = arb(0)
     for coefficient in reversed(coefficients):
         total = total * s + coefficient

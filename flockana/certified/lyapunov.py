@@ -1,4 +1,4 @@
-"""A strict Lyapunov function in a basin, and the exponential rate that it guarantees.
+"""Strict Lyapunov function in a basin, and the guaranteed exponential rate.
 
 With w the displacement from the best aligned equilibrium and E = U − U* + ½‖v‖², let F = E + ε⟨w, v⟩. Half the squared
 distance to the orbit is P = ½‖w‖² = ½‖x‖² + ½‖x*‖² − max_R ⟨x, R x*⟩: ∇P = w, and ∇²P <= 1, as a maximum of linear
@@ -113,7 +113,7 @@ def decay(bounds: Bounds) -> Decay:
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return θ, κ and τ that suit ε and α best; κ and τ are not positive where α is too large."""
+    """Return the best θ, κ and τ for given ε and α; κ and τ are not positive if α is too large."""
     curvature, surplus, lowest, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     room = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
@@ -122,7 +122,7 @@ def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatAr
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return what is left of the inequality for the speeds: negative if it does not hold."""
+    """Return the slack of the speeds' inequality; negative if the inequality fails."""
     _, kappa, tau = _others(bounds, eps, alpha)
     lowest, sound = float(bounds.least), tau > 0.0
     cost = 1.0 + 0.5 * lowest / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)

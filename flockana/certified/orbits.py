@@ -1,4 +1,4 @@
-"""Orbits of maps in ball arithmetic (Arb): where the exact steps of a scheme lead from an exact start.
+"""Enclosed orbits of maps in ball arithmetic (Arb): exact steps of a scheme from an exact start.
 
 A map of a flock may be chaotic, so that the order of a sum decides where its floating-point orbit is after some hundred
 steps. Here each step is made with balls, of the numbers that the law and the start hold in binary, at a precision that
@@ -43,7 +43,7 @@ class BallOrbit:
 
 
 def has_ball_orbit(law: Any) -> bool:
-    """Return whether a map is an explicit one-step method of a law that is known in balls."""
+    """Return whether a map is an explicit one-step method of a law with a right-hand side in balls."""
     if type(law) is not FixedSteps:
         return False
     try:
@@ -56,7 +56,7 @@ def has_ball_orbit(law: Any) -> bool:
 def enclose_orbit(
     law: Any, t0: float, q0: FloatArray, p0: FloatArray, wanted: Sequence[int], *, budget: float = BUDGET
 ) -> BallOrbit:
-    """Enclose the exact orbit of a scheme at some of its steps; at least the rows before `known` are thin.
+    """Enclose the exact orbit of a scheme at selected steps; at least the rows before `known` are narrow.
 
     The law's parameters, unlike those of a tube, are their binary values; `budget` counts pairs, at 128 bits.
     """
@@ -120,7 +120,7 @@ def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[
 
 
 def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
-    """Return the piece of each pair and agent, and how many pairs may be in range."""
+    """Return the piece of each pair and agent, and the number of pairs that may be in range."""
     places = state[: flow.n * flow.m]
     x = np.array([float(y.mid()) for y in places]).reshape(flow.n, flow.m)
     off = max(float(y.rad()) for y in places)
@@ -135,6 +135,6 @@ def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
 
 
 def _binary(x: Any) -> fmpq:
-    """Return a number as the rational that it is in binary."""
+    """Return a number as the exact rational of its binary form."""
     fraction = Fraction(float(x))
     return fmpq(fraction.numerator, fraction.denominator)

@@ -1,4 +1,4 @@
-"""Decisions without rounding about second-order consensus: is every mode s² + (α + βs) μ of a net stable?
+"""Exact stability decisions for second-order consensus: are all modes s² + (α + βs) μ of a net stable?
 
 Weights and gains count as the rationals of their printed decimals.
 """
@@ -22,7 +22,7 @@ def laplacian_of(weights: Sequence[Sequence[float]]) -> fmpq_mat:
 
 
 def stable_off_agreement(laplacian: fmpq_mat, position: float, velocity: float) -> bool:
-    """Return whether all poles but the two of the agreement lie in the open left half-plane.
+    """Return whether all poles except the two of the agreement motion lie in the open left half-plane.
 
     det(s²I + (α + βs)L) = Σ_k c_k (−1)^(n−k) s^2k (α + βs)^(n−k) with the characteristic polynomial Σ_k c_k μ^k of L;
     Hurwitz's criterion decides its cofactor of s² with rationals.
@@ -55,13 +55,13 @@ def is_hurwitz(coefficients: Sequence[fmpq]) -> bool:
 
 
 def moving_eigenvalues(laplacian: fmpq_mat) -> list[acb]:
-    """Return enclosures of the eigenvalues of L other than 0, each once: roots of its characteristic polynomial."""
+    """Return enclosures of the distinct nonzero eigenvalues of L, as roots of its characteristic polynomial."""
     with ctx.workdps(_DIGITS):
         return [root for root, _ in laplacian.charpoly().numer().complex_roots() if not root.contains(0)]
 
 
 def velocity_threshold(eigenvalues: Sequence[acb]) -> arb:
-    """Return an enclosure of max Im²μ / (Re μ |μ|²), which β²/α must exceed."""
+    """Return an enclosure of max Im²μ / (Re μ |μ|²), the lower limit of β²/α for stability."""
     largest = arb(0)
     for mu in eigenvalues:
         largest = largest.max(mu.imag**2 / (mu.real * (mu.real**2 + mu.imag**2)))

@@ -38,7 +38,7 @@ class PairNumbers:
 
     @classmethod
     def of_alpha(cls, alpha: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
-        """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, by default as decimals."""
+        """Return the numbers of an `AlphaInteraction`, or of exact parameters with ℓ = 1, by default as decimals."""
         eps, h, a, b, d, r = (arb(number(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
         zero, cutoff = (formula_in_balls.sigma_norm(x * x, eps) for x in (d, r))
         return cls(
@@ -47,7 +47,7 @@ class PairNumbers:
 
     @classmethod
     def of_beta(cls, beta: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
-        """Return the numbers of a `BetaInteraction`, by default as decimals."""
+        """Return the pair numbers of a `BetaInteraction`, by default as decimals."""
         eps, h, d, unit = (arb(number(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
         cutoff = formula_in_balls.sigma_norm(d * d, eps)
         return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
@@ -59,7 +59,7 @@ class PairNumbers:
 
     @property
     def switches(self) -> list[float]:
-        """Distances at which pieces meet, in floating point."""
+        """Switching distances between the pieces of the law, in floating point."""
         eps = float(self.eps)
         return [sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (self.knee, self.cutoff)]
 
@@ -77,7 +77,7 @@ class PairNumbers:
         return formula_in_balls.pair(_nonnegative(s2), self, piece)
 
     def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
-        """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
+        """Return the derivatives of `pair` by s², which are continuous across a switch."""
         return formula_in_balls.slopes(_nonnegative(s2), self, piece)
 
     def stiffness(self, s2: arb) -> arb:

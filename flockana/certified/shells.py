@@ -1,4 +1,4 @@
-"""Radial curvatures of U about an orbit of equilibria, shell by shell, and the bounds they give.
+"""Lower bounds of the radial curvature of U about an orbit of equilibria, shell by shell.
 
 Let w be orthogonal to the orbit's tangent at x*, Σ w_i = 0, and t = ‖w‖. If ⟨w, ∇²U(x* + s w) w⟩ >= k_i t² wherever
 s t lies in the shell (t_{i−1}, t_i], then along the segment, ∇U(x*) being 0,
@@ -54,7 +54,7 @@ _DIGITS = 4
 
 @dataclass(frozen=True)
 class LengthCells:
-    """Cached enclosures of F'' and T over cells of lengths about ℓ0, shared by shells."""
+    """Cached enclosures of F'' and T over cells of lengths about ℓ0, shared by all shells."""
 
     u: Structure
     rest: arb
@@ -96,7 +96,7 @@ class LengthCells:
 
 
 def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
-    """Return a β that goes with an α, proposed in floating point at points x, with slack for the proof."""
+    """Return a β that matches an α, proposed in floating point at points x, with slack for the proof."""
     length, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
     most = np.maximum((eta**2 - x**2) / (2.0 * length * rest), 0.0)
     d1 = 2.0 * x * (stiff * rest + along * length) + 2.0 * pull * rest**2
@@ -109,7 +109,7 @@ def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray,
 
 
 def points(reach: float) -> FloatArray:
-    """Return displacements at which floating point evaluates a bond: the shells' ends, denser near 0."""
+    """Return bond displacements for floating-point proposals: the shells' ends, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
     ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
     return reach * np.unique(np.concatenate([inner, ends]))
@@ -117,7 +117,7 @@ def points(reach: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Bond:
-    """Pairs of agents of nearly one length that are in range or may come into it."""
+    """Bond: pairs of agents of nearly equal length that are or may come in range."""
 
     pairs: tuple[tuple[int, int], ...]
     rest: arb
@@ -125,7 +125,7 @@ class Bond:
 
 @dataclass(frozen=True)
 class ProposedBounds:
-    """Bounds for a radius, proposed in floating point: α and β of each bond in each shell, and curvatures."""
+    """Bounds proposed in floating point for a radius: α and β of each bond in each shell, and curvatures."""
 
     radius: float
     along: FloatArray
@@ -139,14 +139,14 @@ class ProposedBounds:
 
 
 class BondTable:
-    """Bonds about an enclosed equilibrium, and the matrices of their bounds."""
+    """Bonds around an enclosed equilibrium, and the matrices of their bounds."""
 
     def __init__(self, law: Any, u: Structure, rest: Balls) -> None:
         self.law, self.u, self.rest = law, u, rest
         self.gaps = {(i, j): (gap, s.sqrt()) for i, j, gap, s in u.pairs(rest)}
 
     def bonds(self, reach: fmpq) -> list[Bond]:
-        """Return pairs grouped by length, without those that stay out of range."""
+        """Return pairs grouped by length, without the pairs that stay out of range."""
         groups: list[list[tuple[int, int]]] = []
         last, same = -np.inf, _ALIKE * self.law.alpha.d
         for pair in sorted(self.gaps, key=lambda pair: float(self.gaps[pair][1])):
@@ -161,7 +161,7 @@ class BondTable:
 
     @cached_property
     def lifts(self) -> arb_mat:
-        """Return Σ g gᵀ/‖g‖² over the rigid motions g, times a large number: a shift of their eigenvalues."""
+        """Return Σ g gᵀ/‖g‖² over the rigid motions g, times a large number, to shift their eigenvalues."""
         total = arb_mat(len(self.rest), len(self.rest))
         stiffest = max(abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values())
         for motion in self.u.rotation_tangents(self.rest) + self.u.translations():
@@ -170,7 +170,7 @@ class BondTable:
         return total
 
     def matrix(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb_mat:
-        """Return c1γ 1 + Σ [α uuᵀ + β (1 − uuᵀ)] over pairs, with rigid motions shifted far up."""
+        """Return c1γ 1 + Σ [α uuᵀ + β (1 − uuᵀ)] over pairs, with the eigenvalues of rigid motions shifted far up."""
         blocks = []
         for bond, a, b in zip(bonds, along, across, strict=True):
             for pair in bond.pairs:
@@ -217,7 +217,7 @@ class BondTable:
         return gain * (alpha.phi_alpha_slope(z) * (length / root) ** 2 + action / root**3), gain * action / root
 
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the matrices by which α and β of each bond are multiplied, and the constant one, in floating point."""
+        """Return the coefficient matrices of α and β of each bond, and the constant matrix, in floating point."""
         size, m = len(self.rest), self.u.m
         motions = np.array([[float(y) for y in g] for g in self.u.rotation_tangents(self.rest) + self.u.translations()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]

@@ -22,7 +22,7 @@ def structural_energy(law: Any, q: Vectors, p: Vectors) -> arb:
 
 
 def pair_energy(law: Any, q: Vectors) -> arb:
-    """Return the pair energy c1α V of a box of states."""
+    """Return the pair energy c1α V on a box of states."""
     squares = (norm2(minus(y, x)) for x, y in combinations(q, 2))
     return gain(law) * sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
 

@@ -47,7 +47,7 @@ class Structure:
 
     @classmethod
     def of(cls, law: Any, n: int, m: int) -> Structure:
-        """Return the exact numbers of a law; raise unless it is Algorithm 1 or 2."""
+        """Return the exact structure of a law; raise unless the law is Algorithm 1 or 2."""
         if type(law) not in (Algorithm1, Algorithm2) or not isinstance(law.alpha, AlphaInteraction):
             raise ArgumentError(
                 f"law = {format_value(law)}: expected Algorithm1 or Algorithm2 with AlphaInteraction, unwrapped"

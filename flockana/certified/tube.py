@@ -1,4 +1,4 @@
-"""Tubes: sets that provably hold a run at its steps, and boxes that hold it between them."""
+"""Tubes: sets that provably contain a run at its steps, and boxes between the steps."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class Tube:
 
     @cached_property
     def boxes(self) -> tuple[list[arb], ...]:
-        """Balls that hold all coordinates of q and then of p, at each step."""
+        """Balls of all coordinates, positions then velocities, at each step."""
         with ctx.workprec(BITS):
             return tuple(one.hull for one in self.sets)
 
