@@ -1,4 +1,4 @@
-"""What a command says: results as tables or JSON, files written, errors in one line, exit status."""
+"""Command output: tables or JSON, files written, one-line errors, exit status."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def show(title: str, *tables: RenderableType) -> Console:
 
 
 def show_facts(facts: Any, as_json: bool, title: str, rows: Any, *more: RenderableType) -> None:
-    """Print facts as JSON, or else a title, a table of rows, and what stands under it."""
+    """Print facts as JSON, or as a title with a table and lines below it."""
     from flockana.report.tables import fact_table
 
     if as_json:
@@ -39,7 +39,7 @@ def show_facts(facts: Any, as_json: bool, title: str, rows: Any, *more: Renderab
 
 
 def show_lines(text: str) -> None:
-    """Print lines as they are, whatever the width; letters that the encoding lacks are written as escapes."""
+    """Print lines unwrapped; letters missing in the encoding are escaped."""
     from rich.console import Console
 
     Console(highlight=False, emoji=False).print(text, markup=False, soft_wrap=True)

@@ -51,7 +51,7 @@ def explore_command(
 
 
 def _first(name: str, folder: str) -> dict[str, str]:
-    """Return the case that the page begins with, a flock of one's own as a saved run in a folder; raise on others."""
+    """Return the page's first case: a saved run, or a user's flock saved as a run in a folder."""
     import os
     from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""A law and positions to start from: of a scenario, a file, or a builder with the user's scale and range."""
+"""Law and start positions of a command: from a scenario, a file, or a builder with given scale and range."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def read_motion(
     at: str | None = None,
     potential: bool = False,
 ) -> tuple[Any, FloatArray, FloatArray | None]:
-    """Return the law of a scenario, file or name, positions, and velocities of a run; the γ-agent is held in place.
+    """Return a law with positions and velocities from a scenario, file or name; the γ-agent is held in place.
 
     `potential` asks for a law that has one; `at` has the positions of a law in a Python file. Without a run the
     velocities are None.
@@ -90,7 +90,7 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
 
 
 def _refuse(name: str, reason: str, **given: object) -> None:
-    """Raise on an option that does not go with this source."""
+    """Raise on an option that does not suit the given source of positions."""
     for option, value in given.items():
         if value is not None:
             raise ArgumentError(f"--{option} {value}: {name} {reason}, and has no such choice; leave it out")
@@ -116,7 +116,7 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
-    """Return the law; raise if it has no potential and the command needs one."""
+    """Return the law; raise if the command needs a potential and the law has none."""
     from flockana.equilibria.potential import ensure_flock_law
 
     return ensure_flock_law(law, m) if potential or (law.terms and law.conservative) else law

@@ -161,7 +161,7 @@ def _defects(q: Any, pairs: LinkArray) -> dict[str, Any]:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the rows of the table: measured facts in words."""
+    """Return the table rows of measured lattice facts."""
     kappa, largest = facts["r"] / facts["d"], facts["largest ratio of the pattern"]
     scale = f"{facts['d']:g} and {facts['r']:g}, κ = {kappa:.5g}"
     if largest is not None:

@@ -117,7 +117,7 @@ def observe_command(
 
 
 def _with_options(text: str) -> str:
-    """Return an error's text with the options of this command in place of the arguments of `read_recording`."""
+    """Return an error message with command-line options in place of the arguments of `read_recording`."""
 
     def option(match: re.Match[str]) -> str:
         pairs = re.findall(r"""["']?(\w+)["']?: (\[[^]]*\]|[^,]+)""", match[1].replace("[...]", "NAME+NAME"))
@@ -162,7 +162,7 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
 
 
 def _columns(text: str | None) -> Any:
-    """Return columns as `read_recording` takes them: by meaning, or the names of all."""
+    """Return columns in the form that `read_recording` expects: by meaning, or all names."""
     if text is None:
         return None
     parts = [part.strip() for part in text.split(",")]
@@ -182,7 +182,7 @@ def _numbers(name: str, text: str) -> list[float]:
 
 
 def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
-    """Return the complete part of a recording, and a sentence on what was left out."""
+    """Return the complete part of a recording, and a sentence about the omitted part."""
     if not rec.gaps:
         return rec, []
     part = rec.complete()
@@ -194,7 +194,7 @@ def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
 
 
 def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> dict[str, Any]:
-    """Return comparison, fit and verdicts, as `recording_page` takes them."""
+    """Return comparison, fit and verdicts, in the form that `recording_page` expects."""
     from flockana.recorded.compare import compare
     from flockana.recorded.fit import fit as fitted
     from flockana.theorems import verify

@@ -33,12 +33,12 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...] = KINDS) -> None:
 
 
 def write_picture(draw: Callable[[Axes], object], path: Path | None, *, m: int = 2) -> None:
-    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name; nothing without one."""
+    """Draw on new axes and save as PNG, SVG or PDF by file name; do nothing without a file."""
     write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
 
 
 def write_figure(draw: Callable[[Figure], object], path: Path | None, *, size: tuple[float, float] = _SIZE) -> None:
-    """Draw on a new figure and write it as PNG, SVG or PDF, by the file's name; nothing without one."""
+    """Draw on a new figure and save as PNG, SVG or PDF by file name; do nothing without a file."""
     if path is None:
         return
     from matplotlib.figure import Figure

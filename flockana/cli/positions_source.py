@@ -85,7 +85,7 @@ def integrated_law(law: Any) -> Any:
 
 
 def law_scales(law: Any) -> tuple[float, float]:
-    """Return (d, r) to measure a law's lattices with; r is 1.2 d where most pairs within r have no preferred length.
+    """Return (d, r) for measuring a law's lattices; r is 1.2 d if most pairs within r have no preferred length.
 
     The contacts of the dead-zone law sit at d₁ (erratum L8), its other pairs in a band.
 
@@ -113,7 +113,7 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, FloatArray, Any
 
 
 def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
-    """Raise on a name that can be neither a file nor a builder, before anything is read.
+    """Raise on a name that is neither an existing file nor a builder.
 
     Examples
     --------
@@ -125,7 +125,7 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
 
 
 def builders() -> tuple[str, ...]:
-    """Return every builder with the form of its size.
+    """Return every builder with the format of its size argument.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The root help: commands in groups, each with one line and one example."""
+"""Root help of the command line: grouped commands, each with one line and one example."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ EXAMPLES = {name: example for group in GROUPS.values() for name, (_, example) in
 
 
 class Groups(TyperGroup):
-    """The root command, whose help lists commands by what they are for."""
+    """Root command with a help page that groups commands by purpose."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the groups of commands, each command with its example below."""

@@ -97,7 +97,7 @@ _FLAGS = {
 
 
 def _with_flags(error: Exception) -> Exception:
-    """Return an error that names options of the command in place of arguments of functions."""
+    """Return an error message with command options in place of function arguments."""
     text = str(error)
     for argument, flag in _FLAGS.items():
         text = text.replace(argument, flag)
@@ -105,14 +105,14 @@ def _with_flags(error: Exception) -> Exception:
 
 
 def _velocities(law: Any, p: Any) -> Any:
-    """Return the velocities that a map of its own keeps; other laws are linearised at rest."""
+    """Return the velocities of a map's state; None for laws linearised at rest."""
     from flockana.laws.discrete import is_own_map
 
     return p if is_own_map(law) else None
 
 
 def rest_of(law: Any, q: Any) -> Any:
-    """Return the equilibrium of a law near positions, or a rest; of a map of its own the positions."""
+    """Return the equilibrium or rest of a law near given positions; for maps without a law, the positions."""
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.rest_without_potential import resting_state
     from flockana.laws.discrete import is_own_map
@@ -128,7 +128,7 @@ def rest_of(law: Any, q: Any) -> Any:
 def _show_loop(
     linear: Any, name: str, count: int, *, delay: bool, norms: bool, as_json: bool, plot: Path | None
 ) -> int:
-    """Show a delayed law by its rightmost roots, or a map by its slowest modes; neither has a picture."""
+    """Show a delayed law by its rightmost roots, or a map by its slowest modes, without a picture."""
     from flockana.base.errors import ArgumentError
     from flockana.stability import DelayLinearisation, VelocityLinearisation
 
@@ -165,7 +165,7 @@ def _show_loop(
 
 
 def _text(value: Any) -> str:
-    """Return a fact as a table shows it: complex numbers, names, numbers."""
+    """Return a fact as table text: complex numbers, names, numbers."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_text(one)}" for key, one in value.items())
     if isinstance(value, list):
@@ -186,7 +186,7 @@ def _finite_margin(name: str, margin: Any) -> dict[str, Any]:
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
-    """Return the slowest modes; of a large flock without the whole spectrum."""
+    """Return the slowest modes; for a large flock without the whole spectrum."""
     from flockana.stability import slowest_modes
 
     return linear.modes[:count] if linear.q.size <= DENSE else slowest_modes(linear, count).modes

@@ -1,4 +1,4 @@
-"""What a command is about: a scenario, a saved run, or a flock or claim of the user's own as ``FILE.py:NAME``."""
+"""Subject of a command: a scenario, a saved run, or a user's flock or claim as ``FILE.py:NAME``."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ KIND = "FILE.py:NAME"
 
 
 def is_own(name: str | None) -> bool:
-    """Return whether a name is that of a Python file, or of an object in one."""
+    """Return whether a name denotes a Python file or an object in one."""
     return name is not None and (name.endswith(".py") or ".py:" in name)
 
 
 def read_case(name: str, seed: int = 0) -> Any:
-    """Return the scenario, the saved run, or what a Python file defines (a flock with the start of its seed)."""
+    """Return the scenario, the saved run, or the object of a Python file (a flock with the start of its seed)."""
     from flockana.dynamics.trajectory import Trajectory
     from flockana.scenarios import Flock, scenario, scenarios
 
@@ -35,7 +35,7 @@ def read_case(name: str, seed: int = 0) -> Any:
 
 
 def read_flock(name: str, seed: int = 0) -> Any:
-    """Return a scenario as `read_case` does; of a run one with its law, start and time span."""
+    """Return a case as `read_case` does; a run becomes a case with its law, start and time span."""
     from flockana.dynamics.trajectory import Trajectory
     from flockana.scenarios import Flock
 
@@ -46,7 +46,7 @@ def read_flock(name: str, seed: int = 0) -> Any:
 
 
 def read_own(name: str) -> Any:
-    """Return the flock, scenario or run that a Python file defines; without a name the only one in it."""
+    """Return the flock, scenario or run of a Python file; without a name the only one."""
     from flockana.dynamics.trajectory import Trajectory
     from flockana.scenarios import Scenario
     from flockana.scenarios.flock import Flock
@@ -57,14 +57,14 @@ def read_own(name: str) -> Any:
 
 
 def read_theorem(name: str) -> Any:
-    """Return the name of a theorem, or the claim of the user's own that a Python file defines."""
+    """Return the name of a theorem, or the user's claim from a Python file."""
     from flockana.theorems import Theorem
 
     return _one_of(name, "claim", (Theorem,), "fl.claim(name, margin) makes one") if is_own(name) else name
 
 
 def read_law(name: str) -> Any:
-    """Return the law that a Python file defines, or that of its flock."""
+    """Return the law of a Python file, or of its flock."""
     from flockana.laws import DiscreteLaw, Law, VelocityLaw
     from flockana.scenarios import Flock, Scenario
 
@@ -73,7 +73,7 @@ def read_law(name: str) -> Any:
 
 
 def _one_of(name: str, kind: str, classes: tuple[type, ...], remedy: str) -> Any:
-    """Return what a file defines under a name, or the only one of these classes; raise unless it is one of them."""
+    """Return a named object of a file, or the only object of given classes; raise otherwise."""
     file, _, wanted = name.partition(".py:")
     path = _path_of(file)
     defined = _names_in(path)
@@ -98,7 +98,7 @@ def _path_of(file: str) -> Path:
 
 
 def _names_in(path: Path) -> dict[str, Any]:
-    """Return what a Python file defines: imported as a module, so that worker processes find its functions."""
+    """Return the names of a Python file, imported as a module so that worker processes find its functions."""
     full = path.resolve()
     if str(full.parent) not in sys.path:
         sys.path.append(str(full.parent))

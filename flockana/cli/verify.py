@@ -199,7 +199,7 @@ def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | 
 
 
 def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool) -> Page:
-    """Return a page's verdict of one theorem on a scenario, or on a saved run as one of its scenario."""
+    """Return the page with the verdict of one theorem on a scenario or a saved run."""
     from flockana.cli.subject import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.report.own_report import own_pages
