@@ -151,7 +151,7 @@ def exercises(source: Path) -> Iterator[Exercise]:
 
 
 def asked(check: str) -> tuple[str, str]:
-    """Return the variable that an exercise's check reads, and the form of its answer.
+    """Return the variable in an exercise's check, and the form of the answer.
 
     Examples
     --------
@@ -185,7 +185,7 @@ def form_check(check: str) -> str:
 
 
 def write(folder: Path, version: str = "student", *, address: str = "", student: str = "") -> list[Path]:
-    """Write a version of all lectures with everything that they import or show; with solutions, the lecturer's too."""
+    """Write one version of all lectures with all imported files; with solutions, also the lecturer's pages."""
     notebooks = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
     books = {f"{name}.ipynb": notebook_bytes(book) for name, book in notebooks.items()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
@@ -209,5 +209,5 @@ def companions() -> dict[str, bytes]:
 
 
 def copy_companions(folder: Path) -> None:
-    """Write `companions` into the folder in which a notebook runs."""
+    """Write the `companions` files into the folder of a notebook."""
     deliver(folder, companions())

@@ -46,7 +46,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
 
 
 def _is_there(path: Path, content: bytes) -> bool:
-    """Return whether a file exists with this content; raise if it exists with other content."""
+    """Return whether a file with this content exists; raise on other content."""
     if not os.path.lexists(path):
         return False
     try:

@@ -1,4 +1,4 @@
-"""Explanatory figures of the lectures: each function draws one idea on given or new axes and returns the axes.
+"""Explanatory figures of the lectures, each drawn on given or new axes.
 
 Lines differ by colour and dash, areas by lightness, so that every figure reads with any colour vision and in grey.
 """
@@ -31,7 +31,7 @@ def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = 
 
 
 def pair_vector(eps: float = 0.1, *, axes: Any) -> Any:
-    """Draw n_ij beside q_j - q_i in the plane, and the lengths of both over the distance, on two axes."""
+    """Draw n_ij beside q_j - q_i in the plane, and both lengths over the distance, on two axes."""
     plane, lengths = _plain(axes[0]), axes[1]
     i, j = np.array([0.0, 0.0]), np.array([6.0, 2.0])
     n = (j - i) / np.sqrt(1.0 + eps * (j - i) @ (j - i))
@@ -251,7 +251,7 @@ def held_at_a_jump(*, axes: Any) -> Any:
 
 
 def crossing_links(*, ax: Any = None) -> Any:
-    """Draw two crossing links of length 1: some two of their ends are within 1/√2 of each other."""
+    """Draw two crossing links of length 1: two of their ends are within 1/√2 of each other."""
     ax = _plain(ensure_axes(ax))
     q = np.array([[-0.5, -0.05], [0.5, 0.05], [0.1, -0.55], [0.02, 0.446]])
     for pair, colour, dash in (((0, 1), BLUE, "-"), ((2, 3), VERMILLION, "--")):

@@ -129,7 +129,7 @@ def _draws(ax: Any, points: Any) -> bool:
 
 
 def is_own(*things: Any) -> bool:
-    """Return whether functions and classes are defined neither in the library nor in a file beside the lectures.
+    """Return whether functions and classes come from the student: neither library nor course files.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
 
 
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
-    """Return whether each of the answers matches another one of the right ones."""
+    """Return whether the answers match the right ones one to one."""
     for b in rights:
         index = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
         if index is None:

@@ -34,7 +34,7 @@ def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
 
 
 def draw_column(student: str, exercise: str, columns: int) -> int:
-    """Return which of the columns a student gets in an exercise: the same for the same name, capitals apart."""
+    """Return the number of a student's column in an exercise: equal names give equal columns, ignoring case."""
     name = " ".join(student.casefold().split())
     return int(sha256([f"{name}/{exercise}"]), 16) % columns
 

@@ -1,4 +1,4 @@
-"""Headers, references and map of the course, from two tables."""
+"""Headers, references and map of the course, generated from two tables."""
 
 import csv
 import re
@@ -116,7 +116,7 @@ def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
 
 
 def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], str] = "`{}`".format) -> None:
-    """Number theorems, lemmas and propositions in a lecture's cells, and mark those that the library has."""
+    """Number theorems, lemmas and propositions in a lecture's cells, and mark those in the library's catalogue."""
     places = count(1)
 
     def numbered(found: re.Match[str]) -> str:
@@ -130,7 +130,7 @@ def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], 
 
 
 def fold_depth(cells: list[Any], lecture: Lecture) -> None:
-    """Fold proofs, questions and sections of depth: text opens at a click, code with its output is collapsed."""
+    """Fold proofs, questions and depth sections: click to open; code is collapsed with its output."""
     folded, head = {"Questions that come up", *lecture.depth}, ""
     for cell in (each for each in cells if not each.metadata.get("tags")):
         if cell.cell_type != "markdown":
@@ -148,7 +148,7 @@ def fold_depth(cells: list[Any], lecture: Lecture) -> None:
 
 
 def fold(title: str, text: str) -> str:
-    """Return a text that opens at a click on its title.
+    """Return text that is folded under its title until clicked.
 
     Examples
     --------

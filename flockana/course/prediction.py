@@ -1,4 +1,4 @@
-"""Predictions: a reader commits to a number or a word, then opens the answer."""
+"""Predictions in notebooks: a reader enters a number or a word, then opens the answer."""
 
 from dataclasses import dataclass
 from html import escape
@@ -9,7 +9,7 @@ from flockana.course.grading import answered, form_of
 
 @dataclass(frozen=True)
 class Prediction:
-    """Question with a reader's guess and the answer, which is told once there is a guess.
+    """Question with a reader's guess; the answer is shown after the guess.
 
     As HTML the answer is folded away, with a guess or without, so that a page that nobody can run has it too.
 

@@ -37,7 +37,7 @@ def slides(source: Path) -> Any:
 
 
 def _slides(cells: list[Any]) -> Iterator[Any]:
-    """Return title, figures with a sentence each, and the code between them, which is run and skipped."""
+    """Yield title, figures with a sentence each, and the code between, which is run but skipped."""
     title = head = ""
     code: list[Any] = []
     for cell in cells:

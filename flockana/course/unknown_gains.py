@@ -1,4 +1,4 @@
-"""Log of a program whose gains a student is to find."""
+"""Log file of a simulation with unknown gains, for students to identify."""
 
 import numpy as np
 
