@@ -7,7 +7,7 @@ _GROWS = 8.0
 
 
 class Pace:
-    """Context of a block of steps: entering gives how many to make, leaving measures how long they took.
+    """Context manager of a block of steps: entering gives the number of steps, leaving measures the time.
 
     Examples
     --------
@@ -23,11 +23,11 @@ class Pace:
         self.steps = min(max(1, first), self.most)
 
     def __enter__(self) -> int:
-        """Return the number of steps."""
+        """Return the number of steps to make in this block."""
         self._started = time.perf_counter()
         return self.steps
 
     def __exit__(self, *_: object) -> None:
-        """Adapt the number."""
+        """Adapt the number of steps to the measured time."""
         took = max(time.perf_counter() - self._started, 1e-9)
         self.steps = min(max(1, int(self.steps * min(_GROWS, _LASTS / took))), self.most)

@@ -1,4 +1,4 @@
-"""Laws that are compiled together with the integrator: many steps in one call (`flockana.kernels.many_steps`)."""
+"""Laws compiled together with the integrator: many steps in one call (`flockana.kernels.many_steps`)."""
 
 from typing import Any
 
@@ -107,7 +107,7 @@ class Engine(Integrator):
         return bool(self.pairs.counts[COUNT] >= 0)
 
     def _system_for(self, several: bool) -> System:
-        """Return the law as steps take it, for one thread or for several: both give the same bits."""
+        """Return the compiled system of a law, for one or several threads with equal bits."""
         return self._form.in_threads(self._system) if several else self._system
 
     @property
@@ -131,12 +131,12 @@ class Engine(Integrator):
         return self.due[: self._sampled], states[: self._sampled], work[: self._sampled]
 
     def _room_for(self, samples: int) -> tuple[FloatArray, FloatArray]:
-        """Return room for the states and the work of samples."""
+        """Return work arrays for the states and work of samples."""
         return np.empty((samples, 3, *self.frame.shape)), np.empty(samples)
 
 
 def engine_of(law: Law, start: Start, plan: Plan) -> Engine | None:
-    """Return the compiled integrator of a law and a method; None without a compiled form, or with too many pairs."""
+    """Return the compiled integrator of a law and a method; None without a compiled form or with too many pairs."""
     tableau = plan.solver.tableau
     form = None if tableau is None else law.compiled(start.q.shape[1])
     if tableau is None or form is None or not start.energetic:

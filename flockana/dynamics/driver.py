@@ -1,4 +1,4 @@
-"""The loop that drives all runs: adaptive and fixed steps, compiled or not, laws with jumps, delayed laws, maps.
+"""Loop that drives all runs: adaptive and fixed steps, compiled or not, laws with jumps, delayed laws, maps.
 
 What differs is in the stepper: which steps it makes, and what ends one. Integrators are compiled with the law
 (`flockana.dynamics.compiled`), interpreted (`flockana.dynamics.interpreted`), or go from switch to switch
@@ -19,7 +19,7 @@ from flockana.laws.velocity import VelocityLaw
 
 
 def drive(make_stepper: Callable[[], Stepper], tally: Tally) -> Iterator[Samples]:
-    """Yield samples and steps of a run as they are made."""
+    """Yield samples and steps of a run as they are computed."""
     stepper = make_stepper()
     tally.notes = stepper.notes
     if stepper.first is not None:
@@ -36,7 +36,7 @@ def drive(make_stepper: Callable[[], Stepper], tally: Tally) -> Iterator[Samples
 
 
 def integrator_of(law: Law | VelocityLaw, start: Start, plan: Plan) -> Integrator:
-    """Return what integrates a law: from switch to switch one with jumps, except in fixed steps; compiled if it can."""
+    """Return the integrator of a law: compiled if possible, from switch to switch for laws with jumps."""
     if isinstance(law, VelocityLaw):
         return VelocityInterpreter(law, start, plan)
     if isinstance(law, SwitchedLaw) and law.located and plan.solver.dt is None:

@@ -1,4 +1,4 @@
-"""Limits on a step so that an evaluation falls into every encounter of two agents: none is leapt over.
+"""Step limits that keep an integrator from stepping over an encounter of two agents.
 
 Forces of finite range are exactly zero beyond it, so an integrator whose evaluations all lie beyond it sees nothing to
 resolve: it may step from before a collision to after it, with an estimated error, and an energy residual, of zero. A
@@ -55,7 +55,7 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Encounters:
-    """Distances and obstacles that no step of a law may leap over."""
+    """Distances and obstacles that no step may skip over."""
 
     radii: FloatArray  # (n, K): distances at which each agent begins or ceases to feel another, rising
     far: float  # how far two agents may go within them in one step
@@ -100,7 +100,7 @@ class Encounters:
         return kernel
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
-        """Return the numbers by which compiled code checks encounters, with agents in the given order."""
+        """Return the numbers for compiled encounter checks, with agents in the given order."""
         few = self.among is not None
         first, second = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
         edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
@@ -113,7 +113,7 @@ class Encounters:
 
     @cached_property
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
-        """Compiled check of obstacles, with the numbers that it reads and the index at which each kind's begin."""
+        """Compiled obstacle check, with its numbers and the start index of each obstacle kind."""
         kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
         numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind.arrays) for kind in kinds]
         starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
@@ -140,7 +140,7 @@ class StepChecks:
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
     def judged(self, order: npt.NDArray[Any], *, compiled: bool = True) -> Judged:
-        """Return the numbers against which compiled code checks steps, with agents in the given order."""
+        """Return the numbers for compiled step checks, with agents in the given order."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
             around, share = self._encounters.around(order, self._toward), self._encounters.compiled(crowd=self._crowd)
@@ -151,13 +151,13 @@ class StepChecks:
         return self._judged
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
-        """Return (length with which to repeat the step, 0 if it is accepted; whether the run ends at a pole)."""
+        """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole)."""
         judged = self.judged(order, compiled=False)
         shorter, singular = checked(block, 0, judged, self._view, kept, self.near)
         return self.examine(block, order, kept) if singular and self.make_room() else (shorter, singular)
 
     def make_room(self) -> bool:
-        """Return whether pairs did not fit into the list; enlarge it, or check pairs block by block from now on."""
+        """Return whether the pair list overflowed; enlarge the list, or check pairs block by block from now on."""
         if (near := with_room(self.near)) is not None:
             self.near = near
             return True

@@ -1,4 +1,4 @@
-"""A law's first results, checked before integration, so that an error names the law and what it returned."""
+"""Check of a law's first results before integration; errors name the law and the returned value."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -34,7 +34,7 @@ def first_call(law: Law | DiscreteLaw | VelocityLaw, t0: float, q0: FloatArray, 
 
 
 def _check_finite(name: str, start: Start, at: str) -> None:
-    """Raise unless accelerations are finite, and so is the energy's rate if there is an energy."""
+    """Raise unless accelerations and the energy's rate (if any) are finite."""
     u, energy = start.u, start.energy
     if not (is_finite := np.isfinite(u).all(axis=1)).all():
         i = int(np.argmin(is_finite))

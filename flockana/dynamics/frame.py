@@ -38,7 +38,7 @@ class Plan(NamedTuple):
         return f"{self.solver.name} gave up at t = {t:g}: {why}"
 
     def describe_cuts(self, steps: int, passed: int) -> str:
-        """Return in words why a run whose fixed steps are cut too often ends here; '' if it goes on."""
+        """Return in words why a run with too many cut fixed steps ends; '' if the run continues."""
         if not self.solver.dt or steps <= _PIECES * (passed + _SPARE):
             return ""
         t = float(self.stops[min(passed, len(self.stops) - 1)])
@@ -63,7 +63,7 @@ class Frame:
 
     @classmethod
     def of(cls, t0: float, q0: FloatArray, p0: FloatArray, *, energetic: bool) -> Frame:
-        """Return the frame of a start."""
+        """Return the moving frame of an initial state."""
         place, velocity = (np.tile(x.mean(axis=0), len(x)) for x in (q0, p0))
         rest = np.zeros(int(energetic))
         origin, drift = np.concatenate([place, velocity, rest]), np.concatenate([velocity, 0.0 * place, rest])

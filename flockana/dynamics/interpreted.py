@@ -70,7 +70,7 @@ class Interpreter(Integrator):
         return u
 
     def _open(self, until: float, first: float | None) -> None:
-        """Return a new solver from the first row towards a time, with the given first step if possible."""
+        """Open a new solver from the first row towards a time, with the given first step if possible."""
         t, y, f = float(self.block.t[0]), *(each[0, : self._solved].copy() for each in self.block[1:3])
         self._course: Callable[[float], FloatArray] | None = None
         sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
@@ -123,7 +123,7 @@ class Interpreter(Integrator):
         return False
 
     def _next_step(self) -> float | None:
-        """Return the step that the solver would make next; None where the last one only led across a switch."""
+        """Return the solver's next step; None if the last step only crossed a switch."""
         h, t = getattr(self._solver, "h_abs", None), float(self.block.t[0])
         return None if h is None or h < _ACROSS * np.spacing(abs(t)) else h
 
@@ -147,7 +147,7 @@ class Interpreter(Integrator):
 
 
 class VelocityInterpreter(Interpreter):
-    """Integrator of a law of first order: it steps positions, and writes rows of positions and velocities."""
+    """Integrator of a first-order law: it steps positions, and writes positions and velocities."""
 
     law: VelocityLaw
 

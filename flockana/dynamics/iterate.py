@@ -1,4 +1,4 @@
-"""The steps of a map, and how a map that stands for a law with a past misses no encounter."""
+"""Steps of a map; encounters between the steps of a law with a past are checked."""
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -29,7 +29,7 @@ def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float],
 
 
 class MapStepper(Stepper):
-    """Steps of a map: sample k holds the state at t0 + k dt and the input that brought it there.
+    """Stepper of a map: sample k holds the state at t0 + k dt and the input of the step before.
 
     Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
     times to keep the nearest steps are given, each once: between its steps a map has no state. A law with a past or a
@@ -59,7 +59,7 @@ class MapStepper(Stepper):
         return self.done >= self.steps
 
     def advance(self) -> int:
-        """Make some steps; those from the first on that is not finite are not accepted."""
+        """Make some steps; reject all steps from the first non-finite one on."""
         t0, dt, first, last = self.t_span[0], self.law.dt, self.done, min(self.done + self.pace.steps, self.steps)
         rows = np.arange(1, last - first + 1)
         if self.wanted is not None:
@@ -85,7 +85,7 @@ class MapStepper(Stepper):
         return count
 
     def _ensure_resolved(self, before: State, after: State, t: float) -> None:
-        """Raise if a step from t on misses an encounter."""
+        """Raise if a step from time t on skips an encounter."""
         h, share = self.law.dt, self.encounters.share(self.law.dt, before, after) if self.encounters else 1.0
         if share < 1.0:
             raise ArgumentError(
@@ -94,7 +94,7 @@ class MapStepper(Stepper):
             )
 
     def _visit(self, times: FloatArray, own: IndexArray) -> tuple[IndexArray, States]:
-        """Return (indices of steps, states after them): those wanted and the last, or all that checks need.
+        """Return (step indices, states after them): the requested steps and the last, or all for checks.
 
         All where encounters are looked at, and where the map has left the finite numbers: which step was the first?
         """
@@ -106,7 +106,7 @@ class MapStepper(Stepper):
         return every, self.law.visit(times, self.q, self.p, self.memory, every)
 
     def samples(self, count: int) -> Iterator[Samples]:
-        """Yield the steps that are wanted."""
+        """Yield the requested steps as samples."""
         if self._kept.size:
             # of all steps a view, of some a copy: the others are let go
             rows = slice(0, self._kept.size) if self._kept.size == len(self._made.t) else self._kept
@@ -120,7 +120,7 @@ class MapStepper(Stepper):
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
-    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near."""
+    """Return unique indices of the steps nearest to requested times; ties go to the earlier step."""
     k = np.maximum(np.ceil((keep - t0) / dt - 0.5), 0.0).astype(np.int64)
 
     def before(steps: IndexArray) -> npt.NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""The source's words for groups, as functions of a run: cohesive, quasi-flock, flock, dynamic flock.
+"""Predicates of Olfati-Saber's paper for groups in a run: cohesive, quasi-flock, flock, dynamic flock.
 
 A run is known at its samples; between them only distances are bounded (`Trajectory.closest_approach`). Links may come
 and go between samples, so predicates about nets speak of the sampled times.
@@ -25,7 +25,7 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
 
 
 def ensure_uninterrupted(run: Ended) -> Ended:
-    """Return the run; raise KeyboardInterrupt if Ctrl-C ended it, for work that needs all of it.
+    """Return the run; raise KeyboardInterrupt if Ctrl-C ended the run early.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Quantities that a run gives: energies, metrics over time, and bounds at all times from its steps."""
+"""Quantities of a run: energies, metrics over time, and bounds at all times from its steps."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class MeasuredRun(ResultCache):
-    """Base of `Trajectory`: what is computed from its samples, steps and law, each once."""
+    """Base class of `Trajectory`: cached quantities computed from samples, steps and law."""
 
     if TYPE_CHECKING:
         t: FloatArray
@@ -181,12 +181,12 @@ class MeasuredRun(ResultCache):
 
     @cached_property
     def path(self) -> Course:
-        """The samples and the solver's own steps between them, in order of time: what bounds at all times rest on."""
+        """Samples and solver steps in order of time, the basis of bounds at all times."""
         return merged(self.t, self.q, self.p, self.u, self.between)
 
     @property
     def resolved(self) -> bool:
-        """Whether the solver's own steps are known, so that the run can be bounded between its samples.
+        """Whether the solver's steps are known, so that bounds between samples exist.
 
         They are of a run that `simulate` made, of its windows and files, and of a map; of arrays from elsewhere, or a
         dump that left steps out, nothing is known between samples, and bounds at all times are the trivial ones.

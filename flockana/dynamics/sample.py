@@ -1,4 +1,4 @@
-"""Samples that integrators yield, and the counts that they keep of a run."""
+"""Samples yielded by integrators, and counts of steps and evaluations of a run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Sample(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Instants of a run, along a first axis: samples, or if not `wanted` the integrator's steps between samples."""
+    """Instants of a run along a first axis: samples, or (if not `wanted`) integrator steps between samples."""
 
     t: FloatArray
     q: FloatArray
@@ -34,13 +34,13 @@ class Samples(NamedTuple):
 
     @classmethod
     def joined(cls, blocks: Sequence[Samples]) -> Samples:
-        """Return instants of several blocks in one, which are wanted if those of the first are."""
+        """Return the instants of several blocks as one, flagged as the first block is."""
         t, q, p, u = (np.concatenate(series) for series in zip(*(block[:4] for block in blocks), strict=True))
         extra = {name: np.concatenate([block.extra[name] for block in blocks]) for name in blocks[0].extra}
         return cls(t, q, p, u, extra, blocks[0].wanted)
 
     def at(self, rows: Any) -> Samples:
-        """Return some of them: views where `rows` is a slice."""
+        """Return selected instants: views where `rows` is a slice."""
         extra = {name: values[rows] for name, values in self.extra.items()}
         return Samples(self.t[rows], self.q[rows], self.p[rows], self.u[rows], extra, self.wanted)
 
@@ -52,7 +52,7 @@ class Samples(NamedTuple):
 
 
 class Start(NamedTuple):
-    """Initial state of a run, and what its law gives there."""
+    """Initial state of a run, with the law's acceleration and energy rate."""
 
     t: float
     q: FloatArray
@@ -86,12 +86,12 @@ class Tally:
     notes: dict[str, Any] = field(default_factory=dict)  # further entries of `Trajectory.stats`
 
     def fail(self, message: str) -> None:
-        """Note that the run ended early, and why."""
+        """Record that the run ended early, and why."""
         self.status, self.message = "failed", message
 
 
 def copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return copies of a map's memory, which the map may overwrite."""
+    """Return copies of a map's memory arrays, safe from changes in place."""
     return {name: np.array(value) for name, value in memory.items()}
 
 

@@ -76,7 +76,7 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
 
 
 def _ensure_intact(run: Any, attributes: Mapping[str, Any], source: Path) -> Any:
-    """Return the loaded run, sealed if it was; raise if a field differs from the one that was saved."""
+    """Return the loaded run, sealed if the saved run was; raise on any changed field."""
     if "seal" not in attributes:
         raise FileError(
             f"{source} is damaged: it has no seal, which every file of a run is written with; run the simulation again"
@@ -97,7 +97,7 @@ def _file_seal(run: Any, made_by: str, modules: Mapping[str, str] = MappingProxy
 
 
 def _format_1_modules() -> dict[str, str]:
-    """Return the module by class that seals of files of format 1 name."""
+    """Return the module name by class in seals of format-1 files."""
     lines = Path(__file__).with_name("format_1_modules.txt").read_text("utf-8").splitlines()
     return {name: module for module, *names in map(str.split, lines) for name in names}
 
@@ -161,7 +161,7 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
 
 
 def _read_between(data: xarray.Dataset) -> Between | None:
-    """Return the steps between the samples from a file's dataset; None if it has none."""
+    """Return the steps between samples from a file's dataset; None without any."""
     if "between_t" not in data:
         return None
     return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})

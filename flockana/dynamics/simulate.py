@@ -1,4 +1,4 @@
-"""Integrate a law by a solver, or make the steps of a map.
+"""Integrate a law with a solver, or make the steps of a map.
 
 Beside the state, ∫ dH/dt is integrated as one more variable, so that every run measures its own error: the residual
 of the energy balance is `Trajectory.energy_residual`.
@@ -183,7 +183,7 @@ def _plan(
     keep: FloatArray | None,
     tolerances: tuple[Any, Any, Any],
 ) -> tuple[Plan, dict[str, Any]]:
-    """Return the plan of a run of a continuous law, and the options that its statistics name."""
+    """Return the plan of a run of a continuous law, and the options listed in its statistics."""
     rtol, atol, max_step = tolerances
     if solver.dt is not None:
         if max_step is not None:
@@ -201,14 +201,14 @@ def _plan(
 
 
 def _beside_switches(law: Law | VelocityLaw, t_span: tuple[float, float]) -> FloatArray:
-    """Return the times at which another law begins to act, each with one just after it, from which this one acts."""
+    """Return the times of law switches, each with the next floating-point time after it."""
     times = law.switches(*t_span)
     both = np.stack([times, times + 4.0 * np.spacing(np.abs(times))], axis=1).ravel()
     return both[(both > t_span[0]) & (both < t_span[1])]
 
 
 def _stacked(kept: list[Samples]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
-    """Return (t, q, p, u, extra) of a run, stacked without holding its samples twice in memory."""
+    """Return the stacked arrays (t, q, p, u, extra) of a run, without two copies of the samples in memory."""
     one, end = kept[0], sum(len(samples.t) for samples in kept)
     t, (q, p, u) = np.empty(end), (np.empty((end, *one.q.shape[1:])) for _ in range(3))
     extra = {key: np.empty((end, *values.shape[1:])) for key, values in one.extra.items()}
@@ -275,7 +275,7 @@ def _collect(
     progress: bool,
     watch: Callable[[Sample], object] | None,
 ) -> tuple[list[Samples], Between | None]:
-    """Drain the integrator: the samples, and its steps between them; on Ctrl-C keep what there is."""
+    """Collect samples and steps from the integrator; on Ctrl-C keep the collected part."""
     blocks, recorder, t_reached = list[Samples](), Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:

@@ -1,4 +1,4 @@
-"""What makes the steps of a run, as the drive loop knows it; and integrators, which write theirs into a block."""
+"""Interfaces for making steps: steppers driven by the loop, and integrators that fill a block."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ _SLUGGISH, _LONG = 1e-3, 5e4  # of steps made in Python this share of the law's 
 
 
 class Stepper(ABC):
-    """Maker of the steps of a run, from its current time on."""
+    """Stepper of a run from its current time on."""
 
     first: Samples | None  # the start, if it is kept
     failure: str = ""  # why the run ends early, if it does
@@ -42,12 +42,12 @@ class Stepper(ABC):
         """Yield what a run keeps of these steps."""
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return in words why a run that made so many steps, the last of them now, ends here; '' if it goes on."""
+        """Return in words why a run ends after this number of steps; '' if it continues."""
         return self.failure
 
     @abstractmethod
     def continue_from(self, count: int) -> None:
-        """Go on from the end of these steps."""
+        """Continue from the end of these steps."""
 
 
 class Integrator(Stepper):
@@ -87,7 +87,7 @@ class Integrator(Stepper):
         return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra)
 
     def samples(self, count: int) -> Iterator[Samples]:
-        """Yield the steps that are not samples, then the samples, in blocks for speed."""
+        """Yield the steps between samples, then the samples, in blocks."""
         # Steps come first: a run that is interrupted after them has no samples whose steps are not known.
         steps = self._samples_of(self.block.t[1 : count + 1].copy(), *self.states(count))
         if self.plan.keep is None:
@@ -104,12 +104,12 @@ class Integrator(Stepper):
             yield both.at(np.argsort(both.t))
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return why the run ends here, with the nearest pair of a law that has a pole where two agents meet."""
+        """Return why the run ends here; for a law with a pole at coincidence, name the nearest pair."""
         text = self.failure or self._describe_stall(steps, count)
         return text.rstrip(".") + self._name_nearest(count) if text and 0.0 in self.law.poles else text
 
     def _describe_stall(self, steps: int, count: int) -> str:
-        """Return in words that the last steps are far too short for the law's own time or the span, '' otherwise."""
+        """Return in words that recent steps are far too short for the law's time or the span; '' otherwise."""
         at, (since, before) = float(self.block.t[count]), self._counted_from
         ahead = self.stops[self.stops > at]
         if self.plan.solver.dt:
@@ -130,7 +130,7 @@ class Integrator(Stepper):
         return text if 0.0 in self.law.poles else text + self._name_nearest(count)
 
     def _name_nearest(self, row: int) -> str:
-        """Return in words which agents are nearest at a row of the block; '' for one agent."""
+        """Return in words which agents are nearest in a row of the block; '' for one agent."""
         from scipy.spatial import cKDTree
 
         n, m = self.frame.shape
@@ -150,6 +150,6 @@ class Integrator(Stepper):
 
 
 def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block."""
+    """Return which times occur in a rising list, faster than `np.isin` for each block."""
     nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
     return np.asarray(nearest == times)

@@ -1,4 +1,4 @@
-"""The solver's own steps between the samples of a run, from which bounds at all times are computed.
+"""Solver steps between the samples of a run, the basis of bounds at all times.
 
 Samples at times of one's own choice need not resolve the motion between them; the solver's steps do. So a run keeps
 those between its samples, in bounded memory: beyond it every other one is left out, and how far the path through the
@@ -22,7 +22,7 @@ _TOGETHER = 256  # steps that came one at a time are put into one array, each: s
 
 
 class Course(NamedTuple):
-    """Samples and steps of a run in order of time; `slack` bounds the error of the path between them, or is None."""
+    """Samples and steps in order of time; `slack` bounds the path's error between them, or is None."""
 
     t: FloatArray
     q: FloatArray
@@ -59,7 +59,7 @@ class Between:
             raise ArgumentError("between: expected rising times and arrays of shape (S, n, m)")
 
     def check_fits(self, t: FloatArray, q: FloatArray) -> None:
-        """Raise unless these are steps between the samples of a run."""
+        """Raise unless these steps lie between the samples of a run."""
         intervals = (len(t) + len(self.t) - 1, q.shape[1])
         if self.q.shape[1:] != q.shape[1:] or (self.slack is not None and self.slack.shape != intervals):
             raise ArgumentError(f"between.q has shape {self.q.shape}: expected steps of the flock of q {q.shape}")
@@ -104,7 +104,7 @@ class Recorder:
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
     def add(self, some: Samples) -> None:
-        """Add samples or steps; all samples before some steps must be added before these."""
+        """Add samples or steps; samples before some steps must be added first."""
         if some.wanted:
             self._samples.append(some)
             return
@@ -123,7 +123,7 @@ class Recorder:
         self._single = []
 
     def between(self) -> Between | None:
-        """Return the steps between the samples; None if there are none."""
+        """Return the steps between the samples; None without any."""
         self._assemble()
         if not (self._steps and self._samples):
             return None
@@ -165,7 +165,7 @@ class Recorder:
 
 
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
-    """Return by how much the path from before to after may be off if the step in the middle is left out."""
+    """Return the largest path error of leaving out the middle one of three steps."""
     knots = (before, middle, after)
     states = (tuple(np.ascontiguousarray(array) for array in (knot.q, knot.p, knot.u)) for knot in knots)
     farthest: FloatArray = detours(tuple(knot.t for knot in knots), *states, slack, later)

@@ -1,4 +1,4 @@
-"""Laws with jumps: the first time within a step at which a pair leaves its smooth piece is located."""
+"""Laws with jumps: location of the first time in a step at which a pair leaves its smooth piece."""
 
 from collections.abc import Callable, Iterator
 
@@ -37,7 +37,7 @@ class SwitchingInterpreter(Interpreter):
         self.first = self.first and self.first._replace(u=self.flow(*start[:3])[0][None])
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `Law.flow`, every pair's piece continued smoothly beyond its edges."""
+        """Return the flow of a law with every pair's piece continued smoothly beyond its edges."""
         return self.law.piece_flow(self.pieces, t, q, p)
 
     def advance(self) -> int:
@@ -58,14 +58,14 @@ class SwitchingInterpreter(Interpreter):
         return 1
 
     def samples(self, count: int) -> Iterator[Samples]:
-        """As of other steps; before them a second step just after the last switch, if nothing else is so near."""
+        """Yield samples as the base class does, with an extra step just after a switch."""
         if self._beside is not None and self._beside.t < min([self.block.t[1], *self.due[:1]]):
             yield self._beside
         self._beside = None
         yield from super().samples(count)
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return why the run ends here: not for short steps, which switches may end, and a slide names its pair."""
+        """Return why the run ends; short steps before switches are no reason, a sliding pair is named."""
         return self.failure
 
     def continue_from(self, count: int) -> None:
@@ -81,7 +81,7 @@ class SwitchingInterpreter(Interpreter):
 
 
 def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:
-    """The first time at which a pair is beyond its piece; None if there is none.
+    """Return the first time in a step at which a pair is beyond its piece; None without one.
 
     Between two turns every distance that could reach an edge is monotone: no pair can have left and be back.
     """

@@ -1,4 +1,4 @@
-"""Absolute tolerances of the adaptive solvers: multiples of the law's own scales, never below what rounding allows."""
+"""Absolute tolerances of adaptive solvers: multiples of the law's scales, never below rounding."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ _COARSER = (
 
 
 class ErrorFloors(NamedTuple):
-    """Absolute errors that a run allows whatever its state: of a coordinate, a velocity, and the energy balance."""
+    """Absolute error limits of a run, independent of its state: coordinate, velocity, energy balance."""
 
     place: float
     speed: float
@@ -58,7 +58,7 @@ def options_in_units(options: Mapping[str, Any], length: float, time: float) -> 
 
 
 def error_floor(scales: Scales | None, start: Start, duration: float, rtol: float, atol: Atol) -> ErrorFloors:
-    """Return absolute tolerances: those given, completed by the law's own speed, or by default a hundredth of `rtol`.
+    """Return absolute tolerances: the given ones with the law's speed, or a hundredth of `rtol` by default.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
@@ -82,7 +82,7 @@ def error_floor(scales: Scales | None, start: Start, duration: float, rtol: floa
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:
-    """Return rounding errors of the largest numbers of a run, and of the distances moved within the time's rounding."""
+    """Return rounding errors of a run's largest numbers, and of the distances moved within the time's rounding."""
     late, far, fast, hard, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
     tick = float(np.spacing(late))
     place, speed, work = (float(np.spacing(x)) for x in (far, fast, much))

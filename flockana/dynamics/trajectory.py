@@ -35,7 +35,7 @@ STATUSES = ("complete", "interrupted", "failed")
 
 
 def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
-    """A read-only view of a series of finite real numbers; the caller's array stays as it was."""
+    """Return a read-only copy of a series of finite real numbers."""
     array = np.asarray(values)
     if np.ma.is_masked(values):
         raise ArgumentError(f"{name}: expected numbers at all samples, got masked ones")
@@ -52,7 +52,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory(MeasuredRun):
-    """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
+    """Sampled run of `simulate`, or a handmade recording, which has metrics and plots but no verdicts.
 
     Parameters
     ----------
