@@ -96,7 +96,7 @@ def next_batches(
 
 
 def _under_way(pending: Pending) -> Batch:
-    """Return the items that workers have begun or will begin next."""
+    """Return the items in progress or next in the workers' queues."""
     return tuple(item for future, batch in pending.items() if future.running() for item in batch)
 
 

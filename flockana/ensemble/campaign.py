@@ -197,7 +197,7 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
-    """Return options with several values and options with one: (axes, fixed)."""
+    """Return options split into (axes with several values, fixed ones)."""
     axes: dict[str, list[Scalar]] = {}
     fixed: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
@@ -247,7 +247,7 @@ def _ensure_theorems(given: Any) -> tuple[str | Theorem, ...] | None:
 
 
 def _named(given: Iterable[Any]) -> Iterator[Any]:
-    """Yield names and theorems; raise on anything else."""
+    """Yield the given theorems with their names; raise on other values."""
     for each in given:
         if not isinstance(each, str | Theorem):
             raise ArgumentError(f"theorems: {format_value(each)}: expected names of theorems, or claims of your own")
@@ -284,7 +284,7 @@ def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str | Theore
 
 
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
-    """Return the key of each run; the source of user functions is part of it."""
+    """Return the key of each run, including the source of user functions."""
     shared = request.to_dict(strict=strict)
     own_names = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own_names)}
@@ -296,7 +296,7 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
 
 
 def _written(function: Any, name: str, strict: bool) -> list[Any]:
-    """Return the line of a user's function, and the values that it holds from outside its text."""
+    """Return the source line of a user's function, and the values captured by the function."""
     cells = (cell.cell_contents for cell in getattr(function, "__closure__", None) or ())
     given = getattr(function, "__defaults__", None), (getattr(function, "__kwdefaults__", None) or {}).values()
     held = (*cells, *(given[0] or ()), *given[1])

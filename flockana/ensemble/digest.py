@@ -1,4 +1,4 @@
-"""Version of the mathematics behind the numbers of stored runs.
+"""Version of the sources behind the numbers of stored runs.
 
 The version is no constant that somebody must remember to raise, or a stale number could be taken for a fresh one. It
 is a digest of all that decides the numbers: every source of the package up to the
@@ -33,7 +33,7 @@ _ENSEMBLE = "ensemble/one_run.py"  # of the ensemble, what makes a record
 
 @cache
 def numerics_version() -> str:
-    """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits."""
+    """Return the version of all sources that determine a run's numbers, 16 hexadecimal digits."""
     root = Path(__file__).resolve().parent.parent
     sources = {str(p.relative_to(root)): p.read_bytes() for p in source_files(root)}
     return cached_digest(sources, Path(cache_from_source(__file__)).parent)
@@ -62,7 +62,7 @@ def _libraries() -> dict[str, str]:
 
 
 def source_files(root: Path) -> list[Path]:
-    """Return the package's modules and data that decide a run's numbers."""
+    """Return the package's modules and data files that determine a run's numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
     pairs = ((p, p.relative_to(root).with_suffix("")) for p in files)
     return sorted(p for p, r in pairs if p == root / _ENSEMBLE or not {*r.parts} & _SILENT)

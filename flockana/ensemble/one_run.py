@@ -26,7 +26,7 @@ COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"
 
 @dataclass(frozen=True)
 class Job:
-    """One run to make."""
+    """One run of an ensemble: a seed and options."""
 
     seed: int
     options: tuple[tuple[str, Scalar], ...] = ()  # of the scenario, sorted by name
@@ -34,7 +34,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Request:
-    """Request for every run of an ensemble; names and numbers only, so it can be sent."""
+    """Settings shared by all runs of an ensemble, as names and numbers that can be sent to a process."""
 
     scenario: str  # a name of the catalogue, or ``"module:function"``
     # which to check; by default all of the scenario's own and what its source reports
@@ -47,7 +47,7 @@ class Request:
     own: tuple[Theorem, ...] = ()  # the user's claims, which `theorems` names
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
-        """Return plain data, for the key of a run; raise on a flock without a written form if `strict`."""
+        """Return plain data for the key of a run; with `strict`, raise on a flock without a written form."""
         plain: Any = None
         if (flock := self.flock) is not None:
             start = ("drawn" if callable(part) else part for part in (flock.q0, flock.p0))  # digested apart

@@ -1,4 +1,4 @@
-"""Classification of runs by their end: flocking, fragmentation, collapse."""
+"""Classification of runs by final state: flocking, fragmentation, collapse."""
 
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ _FORMER = {"deviation_energy": "normalised_deviation_energy"}  # what saved ense
 def phases(
     dataset: "xarray.Dataset", *, contact: float = CONTACT, tolerances: Tolerances | None = None
 ) -> "xarray.DataArray":
-    """Return the phase in which each run of an ensemble ended, as a code into `PHASES`; -1 of a run that failed.
+    """Return the final phase of each run of an ensemble as a code into `PHASES`; -1 for a failed run.
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
     links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched

@@ -14,7 +14,7 @@ SENDABLE = "to be sent to a worker, functions of starts and claims are written w
 
 
 def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Iterator[tuple[Record, ...]]:
-    """Make runs and yield their records; a run that ends its worker is recorded."""
+    """Make runs and yield their records; a run that kills its worker is recorded as failed."""
     try:
         for batch in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
             yield tuple(

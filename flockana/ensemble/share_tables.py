@@ -1,4 +1,4 @@
-"""Results of an ensemble that print, and show themselves in a notebook, as a table of shares."""
+"""Results of an ensemble, printed and shown in notebooks as a table of shares."""
 
 import xarray
 
@@ -10,12 +10,12 @@ _LINES = 12
 
 
 class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
-    """Dataset of an ensemble: it prints as the shares of runs in which claims hold, a part of it as xarray's."""
+    """Dataset of an ensemble, printed as the shares of runs in which claims hold."""
 
     __slots__ = ()
 
     def _table(self) -> tuple[tuple[str, ...], ...]:
-        """Return headings and rows without empty columns; nothing of a part without seeds, claims or status."""
+        """Return headings and rows without empty columns; empty for a part without seeds, claims or status."""
         if not ({"seed", "claim"} <= {*self.dims} and {"status", "run"} <= {*self.data_vars}):
             return ()
         columns = (column for column in zip(_HEADS, *share_cells(shares(self)), strict=True) if any(column[1:]))

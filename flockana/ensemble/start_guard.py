@@ -27,7 +27,7 @@ def can_start_processes(request: Any) -> bool:
 
 
 def unguarded_line() -> int | None:
-    """Return the line of the running script that called, if it is not under a guard."""
+    """Return the line of the running script that made the call, unless it is under a guard."""
     for frame, line in walk_stack(None):
         if frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") in ("__main__", "__mp_main__"):
             path = Path(frame.f_code.co_filename)
@@ -38,7 +38,7 @@ def unguarded_line() -> int | None:
 
 
 def is_guarded(source: str, line: int) -> bool:
-    r"""Return whether a line lies under an ``if`` that asks for ``__name__``."""
+    r"""Return whether a line lies under an ``if`` that tests ``__name__``."""
     return any(
         isinstance(node, ast.If)
         and node.lineno <= line <= (node.end_lineno or node.lineno)
