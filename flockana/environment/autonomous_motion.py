@@ -31,7 +31,7 @@ class Motion:
         self._lock = Lock()  # a piece begins where the one before ends: two threads must not add one each
 
     def at(self, t: float) -> FloatArray:
-        """Return y(t); raise SolverError at a bad time, or one that the motion does not reach."""
+        """Return y(t); raise SolverError at an invalid or unreachable time."""
         if not isfinite(t):
             raise SolverError(f"the γ-agent's own motion was asked for at t = {t}: expected a finite time")
         ahead, k = t >= 0.0, int(abs(t) // self._piece)
@@ -80,7 +80,7 @@ class Forced(ABC):
 
     @property
     def feature(self) -> float | None:
-        """Time in which a spring bends the motion; None under a function, of which nothing is known."""
+        """Time scale in which a spring bends the motion; None for a function."""
         return self.force.feature if isinstance(self.force, Spring) else None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -89,7 +89,7 @@ class Forced(ABC):
 
     @cached_property
     def _motion(self) -> Motion:
-        """The motion from q and p on; raise unless its first acceleration is finite and its time fits."""
+        """Return the motion from q and p on; raise unless its first acceleration is finite and its time valid."""
         q, p, time = np.array(self.q), np.array(self.p), self.time
         with np.errstate(all="ignore"):
             first = self._acceleration(q, p)
@@ -108,7 +108,7 @@ class Forced(ABC):
         return Motion(rate, np.concatenate([q.ravel(), p.ravel()]), units, time)
 
     def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
-        """Return f_r at one position or at several, calling a user's function one position at a time."""
+        """Return f_r at one or several positions, calling a user's function position by position."""
         if q.ndim == 1 or isinstance(self.force, Spring):
             return np.asarray(self.force(q, p), dtype=np.float64)
         return np.array([self.force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)

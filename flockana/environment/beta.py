@@ -18,7 +18,7 @@ _OUTWARD = 1e-6  # how far beyond the surface a push ends, relative to its lengt
 
 
 class Kind(NamedTuple):
-    """Obstacles of one kind, as arrays for the compiled sums."""
+    """Obstacles of one kind, as arrays for compiled sums."""
 
     kernels: ObstacleKernels
     arrays: tuple[FloatArray, Any, FloatArray]  # parameters, where those of each obstacle start, and bounding balls
@@ -107,7 +107,7 @@ class ObstacleField:
 
 
 class InsideObstacleError(ArgumentError):
-    """Exception for a start inside or on an obstacle, where laws are defined but no run may begin."""
+    """Exception for a start inside or on an obstacle, where no run may begin."""
 
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:

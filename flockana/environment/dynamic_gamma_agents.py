@@ -63,7 +63,7 @@ class SystemTarget(Forced, Target):
 
     @property
     def feature(self) -> float | None:
-        """Time scale of a spring; infinite of none, None of a function."""
+        """Time scale of a spring; infinite without one, None for a function."""
         if not isinstance(self.force, Spring):
             return None
         fastest = max(sqrt(abs(self.force.stiffness)), self.force.damping)

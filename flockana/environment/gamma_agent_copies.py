@@ -74,7 +74,7 @@ class Copies(ShortRepr, Forced):
 
     @property
     def feature(self) -> float | None:
-        """Time in which a spring or the coupling bends the motion; None under a function."""
+        """Time scale in which a spring or the coupling bends the motion; None for a function."""
         inner_feature = super().feature
         return (
             None

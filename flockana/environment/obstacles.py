@@ -47,7 +47,7 @@ class Obstacle(ShortRepr, ABC):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order that the scalar function reads."""
+        """Parameters in the order of the obstacle's scalar function."""
 
     @property
     @abstractmethod

@@ -1,4 +1,4 @@
-"""Polygons in the plane; those that are convex have β-agents."""
+"""Polygons in the plane; convex ones have β-agents."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -115,7 +115,7 @@ class SimplePolygon:
 
 
 def _in_parts(function: Any, *rows: FloatArray) -> FloatArray:
-    """Return a function of many rows, evaluated some at a time: shapely makes an object of each."""
+    """Return a function of many rows, evaluated in parts to limit shapely's memory."""
     parts = [function(*(each[k : k + _ROWS] for each in rows)) for k in range(0, len(rows[0]), _ROWS)]
     return np.concatenate([np.empty(0), *parts])
 

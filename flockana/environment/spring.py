@@ -43,7 +43,7 @@ class Spring:
 
     @property
     def feature(self) -> float:
-        """Time in which it bends a motion: the shorter of 1/√|k| and 1/b."""
+        """Time scale of the spring's motion: the shorter of 1/√|k| and 1/b."""
         return min((1.0 / rate for rate in (sqrt(abs(self.stiffness)), self.damping) if rate > 0.0), default=inf)
 
     units: ClassVar[Mapping[str, Powers]] = {

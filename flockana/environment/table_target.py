@@ -16,7 +16,7 @@ from flockana.environment.target import Target
 
 @dataclass(frozen=True)
 class TableTarget(Target):
-    """γ-agent on a smooth path through samples; it is saved with runs.
+    """γ-agent on a smooth path through samples, saved with runs.
 
     Given velocities, the path is cubic between samples and has them there; without, it is the cubic spline, whose
     velocities are continuous. Before the first sample and after the last it rests where the table ends, so that runs
@@ -75,7 +75,7 @@ class TableTarget(Target):
     consistent = True
 
     def acceleration_bound(self, t0: float) -> float | None:
-        """Return the largest ‖d²q_r/dt²‖ of the pieces that reach beyond t0; infinite if the velocity jumps there.
+        """Return the largest ‖d²q_r/dt²‖ of pieces beyond t0; infinite if the velocity jumps there.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Interface of γ-agents: position, velocity, the velocity reported to the law, and what is known of them by formula."""
+"""Interface of γ-agents: position, velocity, velocity reported to the law, and known properties of the path."""
 
 from abc import ABC, abstractmethod
 from math import cos, inf, sin
@@ -92,7 +92,7 @@ class Target(ShortRepr, ABC):
 
     @property
     def feature(self) -> float | None:
-        """Time within which nothing of the path or of p_r hides; infinite of a straight path, None if unknown."""
+        """Time within which the path and p_r have no hidden features; infinite for a straight path, None if unknown."""
         return None
 
     @property

@@ -29,7 +29,7 @@ def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0,
 
 
 class _HarmonicTarget(Target):
-    """γ-agent whose path is given in closed form by `harmonic`, from which all else follows."""
+    """Base class of γ-agents with a path given in closed form by `harmonic`."""
 
     motion = ("position", "rate", "state")
 
