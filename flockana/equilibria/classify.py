@@ -58,7 +58,7 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
 
 
 def classify_spectrum(modes: Spectrum) -> EquilibriumKind:
-    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open."""
+    """Return the kind of a critical point: minimum, saddle, maximum or degenerate, from its spectrum."""
     if modes.negative:
         return "maximum" if modes.negative == modes.eigenvalues.size else "saddle"
     return "degenerate" if modes.zero else "minimum"

@@ -34,7 +34,7 @@ class CollapseDiagram:
     kinds: tuple[tuple[str, ...], ...]  # kind of each equilibrium, ``"failed"`` where there is none
 
     def onset(self) -> FloatArray:
-        """Return the least ratio of the diagram at which agents coincide, for each size; NaN if they never do."""
+        """Return the least collapsing ratio of the diagram for each size; NaN without collapse."""
         return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
 
 
@@ -83,7 +83,7 @@ def natural_ratio(alpha: AlphaInteraction) -> float:
 def threshold(
     collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
 ) -> tuple[float, float]:
-    """Return (largest ratio found safe, least ratio found to collapse), by bisection.
+    """Return (largest safe ratio, smallest collapsing ratio), found by bisection.
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).
@@ -117,7 +117,7 @@ def threshold(
 
 
 def collapse_threshold(alpha: AlphaInteraction, n: int, *, halvings: int = 4) -> tuple[float, float]:
-    """Bracket the ratio c1γ/c1α from which on the relaxed spiral of n agents holds coincident pairs."""
+    """Bracket the ratio c1γ/c1α above which the relaxed spiral of n agents has coincident pairs."""
     return threshold(
         lambda ratio: coincident_pairs(relaxed(alpha, n, ratio).q, CONTACT * alpha.d) > 0,
         lowest=_LOWEST * natural_ratio(alpha),

@@ -50,7 +50,7 @@ def _frame(x: FloatArray) -> list[int]:
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
-    """Return tuples of agents with the frame's distances to the centre and to each other."""
+    """Return tuples of agents with the frame's distances from the centre and from each other."""
     images: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
         images = [
@@ -63,7 +63,7 @@ def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, to
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
-    """Return whether the isometry that maps the frame to its image maps all of x to y."""
+    """Return whether the isometry from the frame to its image maps all of x to y."""
     # The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
     u, _, vt = np.linalg.svd(x[frame].T @ y[list(image)])
     distance, nearest = tree.query(x @ u @ vt)
@@ -71,7 +71,7 @@ def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...]
 
 
 def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:
-    """Return whether a map of places sends as many agents to each place as it holds."""
+    """Return whether a map of positions preserves the number of agents at each position."""
     from scipy.spatial import KDTree
 
     if np.unique(nearest).size == len(nearest):

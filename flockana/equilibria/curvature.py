@@ -31,7 +31,7 @@ _GROUP = 2.0  # eigenvalues within this factor are tried together
 
 
 class Curvatures(NamedTuple):
-    """Eigenvalues of a Hessian off the rigid motions, rising, the sign of each, and the rounding error of all."""
+    """Eigenvalues of a Hessian off the rigid motions, rising, with signs and a common rounding error."""
 
     values: FloatArray
     signs: npt.NDArray[np.int64]
@@ -39,7 +39,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby."""
+    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its variation nearby."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class Landscape:
 
     @cached_property
     def _matrix(self) -> FloatArray:
-        """Hessian with its rigid motions shifted beyond every other eigenvalue."""
+        """Hessian with the eigenvalues of rigid motions shifted beyond all others."""
         hessian: FloatArray = self.here.toarray()
         rigid = self.rigid
         off: Any = hessian - rigid @ (rigid.T @ hessian)
@@ -84,7 +84,7 @@ class Landscape:
         return np.linalg.eigh(self._matrix)[1][:, : self.values.size]
 
     def curvatures(self) -> Curvatures:
-        """Return eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
+        """Return eigenvalues with their signs; 0 where residual force or rounding leaves a sign open."""
         sizes = np.abs(self.values)
         decided = np.zeros(sizes.size, dtype=bool)
         left = np.flatnonzero(sizes > self.rounding)
@@ -103,7 +103,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """Return the change of eigenvalue k on the way to the critical point; infinite if that is not near."""
+        """Return the change of eigenvalue k on the way to the critical point; infinite if the point is far."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -121,7 +121,7 @@ class Landscape:
         return 2.0 * self.force / (float(values[0]) - rounding) if np.all(signs > 0) else float("inf")
 
     def holds(self, energy: float) -> bool:
-        """Return whether a flock with this kinetic energy stays near the minimum, if its energy never rises."""
+        """Return whether a flock with this kinetic energy stays near the minimum, if the energy never rises."""
         # Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4
         # from the minimum, which is lower than here by no more than ρ²/λ.
         if not np.isfinite(self.distance):
@@ -144,7 +144,7 @@ class Landscape:
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """Return the configuration scaled up, scaled down, and shifted unless translations do not matter."""
+        """Return the configuration scaled up, scaled down, and shifted if translations matter."""
         # Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
         centre = self.q.mean(axis=0)

@@ -40,7 +40,7 @@ class Descent(NamedTuple):
 
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
-    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way."""
+    """Return a minimum reached downhill from q; anneal if pairs collapsed on the way."""
     steps, message = 100 * max_iter, "Converged"
     best = relax(potential, q, steps, tol=_ROUGH)
     for heat in _HEATS if pairs_collapsed(potential, q, best) else ():
@@ -52,7 +52,7 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
 
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
-    """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006)."""
+    """Follow x'' = −∇U with a drag that keeps the motion downhill (FIRE: Bitzek et al. 2006)."""
     time_unit, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
     enough = tol * potential.force_scale
     step, mixing, downhill, v = _STEP * time_unit, 0.1, 0, np.zeros_like(q)
@@ -128,7 +128,7 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
 
 
 def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any, near: float) -> bool:
-    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end."""
+    """Return whether a step achieved enough of the predicted decrease of energy, or of force near the end."""
     # The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
     if _largest(force) <= near:
         return _largest(after) < _largest(force)

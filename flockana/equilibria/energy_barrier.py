@@ -1,4 +1,4 @@
-"""Energy needed to bring two agents together, and flock sizes beyond which no state is below c*.
+"""Energy for bringing two agents together, and flock sizes for which no state is below c*.
 
 All energies here are those of V, to be multiplied by c1α.
 """
@@ -26,7 +26,7 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies found for n agents, with and without two coincident agents."""
+    """Lowest known energies of n agents, with and without two coincident agents."""
 
     n: int
     m: int
@@ -88,7 +88,7 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 
 
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
-    """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V."""
+    """Return the interval of lengths with ψ_α < ψ_α(r_α), where a pair lowers V."""
     # They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
     if alpha.c_star <= alpha.far_potential:
         return 0.0, alpha.r

@@ -94,7 +94,7 @@ def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
 
 
 def smallest_strained() -> Equilibrium:
-    """Return the smallest known strict minimum of V with distinct agents that is no α-lattice, read and recomputed."""
+    """Return the smallest known strict minimum of V with distinct agents that is not an α-lattice, recomputed."""
     # Thirteen agents, 24 links of 6.849 to 7.116 for d = 7: one more than a rigid net needs, so the lengths cannot all
     # be d. Found from random starts of 15, by taking away what its stress does not need; no smaller one turned up.
     return read_equilibrium(str(files("flockana.equilibria") / "strained13.json"))

@@ -32,7 +32,7 @@ _TOL = 1e-10
 
 
 class _Callback(ca.Callback):
-    """Base of the functions of the program's unknown that CasADi calls and kernels compute."""
+    """Base class of CasADi functions of the program's unknown, computed by kernels."""
 
     def __init__(self, name: str, program: Program) -> None:
         ca.Callback.__init__(self)
@@ -73,7 +73,7 @@ class _Derivatives(_Callback):
 
 
 class _Watch(ca.Callback):
-    """Iteration callback that stops the solver on Ctrl-C, which CasADi would take for a failure."""
+    """Iteration callback that stops IPOPT on Ctrl-C."""
 
     def __init__(self, size: int, gauge: int) -> None:
         ca.Callback.__init__(self)
@@ -121,7 +121,7 @@ class Program:
         self._solvers: dict[int, Any] = {}
 
     def value(self, x: FloatArray) -> float:
-        """Return the objective at x; NaN inside an obstacle, which makes IPOPT shorten its step."""
+        """Return the objective at x; NaN inside an obstacle, so that IPOPT shortens the step."""
         q = self.d * x.reshape(self.shape)
         if inside_obstacle(self.potential.law, q):
             return float("nan")

@@ -21,7 +21,7 @@ _GAP = 1e-9  # of the largest row sum: eigenvalues that differ by less cannot be
 
 
 class LargeLandscape(Landscape):
-    """`Landscape` that holds only its smallest eigenvalues and its largest."""
+    """`Landscape` with only the smallest and largest eigenvalues."""
 
     @cached_property
     def values(self) -> FloatArray:
@@ -62,7 +62,7 @@ class LargeLandscape(Landscape):
         return (self.here + by * eye_array(self.q.size)).tocsr()
 
     def _off_rigid(self, x: FloatArray) -> FloatArray:
-        """Remove the parts of vectors that are rigid motions."""
+        """Remove the rigid-motion parts of vectors."""
         return x - self.rigid @ (self.rigid.T @ x)
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:

@@ -20,7 +20,7 @@ _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is 
 
 
 def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
-    """Return the law; raise unless its forces are gradients without jumps in m dimensions."""
+    """Return the law; raise unless its forces are continuous gradients in m dimensions."""
     if not (isinstance(law, SumOfTerms) and law.conservative and law.term(PairTerm)):
         raise ArgumentError(
             "expected a sum of a pair term and others whose forces are gradients, such as Algorithm1, Algorithm2, "
@@ -48,12 +48,12 @@ class Potential:
 
     @property
     def pinned(self) -> bool:
-        """Whether the potential hangs on the flock's place: a translation of all agents changes it."""
+        """Whether a translation of all agents changes the potential."""
         return any(term.invariance != "rigid motions" for term in self.law.terms)
 
     @property
     def force_scale(self) -> float:
-        """Unit of force: that of the law, or else of its pair law."""
+        """Unit of force: the law's, or else the pair law's."""
         unit_force = self.law.scales
         return self.gain * self.pair.strength if unit_force is None else unit_force.force
 

@@ -1,4 +1,4 @@
-"""Resting states of laws without a potential, by Newton's method on the forces, or the velocities of first order."""
+"""Resting states of laws without a potential, by Newton's method on forces or velocities."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ _SHORTEN = 0.5  # factor on a step, as often as the force grows by it
 
 
 def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
-    """Return positions near q0 where the force on every agent at rest, or its velocity, vanishes (Newton)."""
+    """Return positions near q0 where all forces on resting agents, or all velocities, vanish (Newton)."""
     # Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
     first_order = isinstance(law, VelocityLaw)
     if not first_order and not isinstance(ensure_law(law), Law):

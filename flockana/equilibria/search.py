@@ -1,4 +1,4 @@
-"""Distinct equilibria from many starts, random discs and lattice patches, minimised in parallel, ranked by energy."""
+"""Distinct equilibria from many starts (random discs and lattice patches), found in parallel, ranked by energy."""
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
@@ -46,7 +46,7 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     steps = [tuple(step) for step in cube.tolist() if abs(np.linalg.norm(np.array(step) @ basis) - 1.0) < 1e-9]
 
     def beside(site: tuple[int, ...]) -> list[tuple[int, ...]]:
-        """Return the sites next to one."""
+        """Return the neighbouring sites of a lattice site."""
         return [tuple(a + b for a, b in zip(site, step, strict=True)) for step in steps]
 
     starts = []
