@@ -156,7 +156,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
 
 
 def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return bounds of each coordinate of each agent in the search space, shape (n, m)."""
+    """Return bounds of each agent's coordinates in the search space, shape (n, m)."""
     if region is None:
         low, high = q.min(axis=0), q.max(axis=0)
         room = _ROOM * float((high - low).max()) or 1.0

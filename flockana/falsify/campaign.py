@@ -185,7 +185,7 @@ def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
 
 
 class _Record:
-    """Statuses and margins of all evaluations, and the worst case found."""
+    """Statuses and margins of all evaluations, and the worst case so far."""
 
     def __init__(self) -> None:
         self.rows: list[dict[str, tuple[str, float]]] = []

@@ -36,7 +36,7 @@ _KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Counterexample(ShortRepr):
-    """Law, start and claim that a run from there refutes.
+    """Counterexample: law, start, and the claim refuted by the run from there.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Return the known keyword arguments of `simulate` among data."""
+    """Return the known keyword arguments of `simulate` in a mapping."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")

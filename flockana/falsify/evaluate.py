@@ -91,6 +91,6 @@ class Problem:
 
 
 def units(verdict: Verdict) -> dict[str, float]:
-    """Return the unit of each margin on a run, in which margins of different claims can be compared."""
+    """Return the unit of each margin on a run, for comparing margins of different claims."""
     sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
     return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}

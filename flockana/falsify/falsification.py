@@ -119,7 +119,7 @@ class Falsification:
 
     @property
     def history(self) -> FloatArray:
-        """Least margin of the claim up to each evaluation, shape (evaluations,); NaN before the first that has one."""
+        """Least margin of the claim up to each evaluation, shape (evaluations,); NaN before the first margin."""
         return self.least(self.claim)
 
     def least(self, claim: str) -> FloatArray:
@@ -144,7 +144,7 @@ class Falsification:
 
     @property
     def broken(self) -> tuple[str, ...]:
-        """Every claim refuted by a run of the search."""
+        """Claims refuted by some run of the search."""
         return tuple(name for name in self.statuses if self.refuting(name))
 
     def worst_status(self, claim: str) -> str:

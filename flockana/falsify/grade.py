@@ -1,4 +1,4 @@
-"""Grade that the search minimises: lower the nearer a run comes to refuting the claim.
+"""Grade minimised by the search: lower the nearer a run comes to refuting the claim.
 
 Refuted runs are graded in [-3, -2], judged ones in (-1, 1.001], vacuous ones from 2 on, failed ones 1000. So a search
 that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met. A run
@@ -17,7 +17,7 @@ _LEAD = 1e-3  # of a surrogate: less than a step of any count, so it orders only
 
 
 def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float | None = None) -> float:
-    """Return a number for a claim on a run: the lower, the nearer the run comes to refuting the claim."""
+    """Return the grade of a claim on a run: lower the nearer the run comes to refuting the claim."""
     # A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
     margin = float("nan") if claim.margin is None else float(claim.margin)
     aid = 0.0 if lead is None else _LEAD * lead
@@ -33,6 +33,6 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return how far the unmet hypotheses are from being met, at most 1 for each, summed."""
+    """Return the summed shortfall of unmet hypotheses, at most 1 for each."""
     unmet = [h.margin for h in hypotheses if h.status == "unmet"]
     return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet))
