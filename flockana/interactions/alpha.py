@@ -112,7 +112,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @cached_property
     def c(self) -> float:
-        """|a − b|/√(4ab), which makes φ(0) = 0."""
+        """Shift c = |a − b|/√(4ab), which makes φ(0) = 0."""
         return (self.b - self.a) / (2.0 * sqrt(self.a) * sqrt(self.b))
 
     @cached_property
@@ -137,7 +137,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def facts(self) -> PairFacts:
-        """Facts proved of φ_α for all parameters; a derived class that changes φ_α names its own."""
+        """Facts proved of φ_α for all parameters."""
         if type(self) is not AlphaInteraction:
             return super().facts
         smooth, weight, inside = (Fact("met", text) for text in _PROOFS)
@@ -150,7 +150,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def far_potential(self) -> float:
-        """ψ_α(r_α)."""
+        """Far potential ψ_α(r_α) of a pair out of range."""
         return float(self.par[kernel.FAR])
 
     @property
@@ -165,7 +165,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def feature(self) -> float:
-        """Narrowest feature: the length d of repulsion; attraction ends at the range, and the adjacency only falls."""
+        """Length of the narrowest feature: the desired distance d."""
         return self.d
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
@@ -186,7 +186,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
         return float(np.abs(forces).max())
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
-        """Return parameters for the kernels, and Chebyshev panels of ψ_α with the constants for which ψ_α(d_α) = 0."""
+        """Return kernel parameters, and Chebyshev panels of ψ_α with constants that make ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
         taper = one_by_one(kernel.phi_alpha, par)
@@ -248,5 +248,5 @@ class AlphaInteraction(Tabulated, PairInteraction):
         return evaluate(_PSI_ALPHA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return a_ij as the source has it: a function of the σ-norm z = ‖q_j − q_i‖_σ, not of the distance."""
+        """Return a_ij as a function of the σ-norm z = ‖q_j − q_i‖_σ, as in the source."""
         return evaluate(_ADJACENCY_ALPHA, z, self.par)

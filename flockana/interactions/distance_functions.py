@@ -1,4 +1,4 @@
-"""Functions of the distance of two agents, in one vocabulary, and the list entries by which a law names those it reads.
+"""Functions of the distance of two agents, in one vocabulary, and their entries in a law.
 
 A function has an `energy`, a `force` = −dV/ds (positive repels), an `adjacency` a_ij by which velocities are averaged,
 and a `range` beyond which two agents do not feel each other; what it lacks is 0.
@@ -46,7 +46,7 @@ class Corner(NamedTuple):
 
 
 class PairCorner(NamedTuple):
-    """Pair of agents that stands at a corner of a function that the law reads."""
+    """Pair of agents at a corner of one of the law's functions."""
 
     i: int
     j: int
@@ -81,7 +81,7 @@ class DistanceFunction(ShortRepr, ABC):
     @property
     @abstractmethod
     def range(self) -> float:
-        """Distance beyond which the function is 0, in the user's unit of length; infinite if there is none."""
+        """Distance beyond which the function is 0, in the user's unit; infinite without one."""
 
     @abstractmethod
     def inner(self, s2: FloatArray) -> InnerValues:
@@ -105,7 +105,7 @@ class DistanceFunction(ShortRepr, ABC):
 
     @property
     def facts(self) -> PairFacts:
-        """Facts over all distances, by name: met for those in `proofs`, unmet for those in `faults`."""
+        """Facts over all distances, by name: met for `proofs`, unmet for `faults`."""
         answers = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
         answers |= {name: Fact("met", text) for name, text in self.proofs.items()}
         if self.faults:
@@ -179,7 +179,7 @@ class DistanceFunction(ShortRepr, ABC):
         return shaped(self.values(s).force, s)
 
     def adjacency(self, s: Any) -> Any:
-        """Return the adjacency a_ij, by which velocities are averaged; 0 without one.
+        """Return the adjacency a_ij, the weight of velocity averaging; 0 without one.
 
         Parameters
         ----------
@@ -225,7 +225,7 @@ class DistanceFunction(ShortRepr, ABC):
 
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
-    """Return whether values on the two sides of a distance differ by more than rounding; unknown ones do not."""
+    """Return whether values on both sides of a distance differ beyond rounding; unknown values do not."""
     threshold = max(_CHANGED * max(abs(below), abs(above)), _SMALL * np.abs(usual[np.isfinite(usual)]).max(initial=0.0))
     return not abs(below - above) <= threshold and not (np.isnan(below) and np.isnan(above))
 
@@ -237,7 +237,7 @@ def shaped(values: FloatArray, s: Any) -> Any:
 
 @dataclass(frozen=True)
 class LawFunction:
-    """Function of the distance that a law reads, with the gains before it and the pairs between which it acts."""
+    """Function of the distance in a law, with its gains and the pairs on which it acts."""
 
     name: str  # in words, such as "pair law"
     function: DistanceFunction | None  # None if the law does not say what it reads
@@ -254,7 +254,7 @@ class LawFunction:
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Corners of the parts of the function that the law reads."""
+        """Corners of the used parts of the function."""
         if self.function is None:
             return ()
         gains = {"force": self.stiffness, "adjacency": self.damping}
@@ -302,7 +302,7 @@ class Within(DistanceFunction):
 
 @dataclass(frozen=True)
 class UnknownEdges(DistanceFunction):
-    """Distances at which some force begins, ends or jumps, of which nothing else is known."""
+    """Distances at which an unknown force begins, ends or jumps."""
 
     distances: tuple[float, ...]
 
@@ -316,5 +316,5 @@ class UnknownEdges(DistanceFunction):
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """A jump of unknown height at each distance."""
+        """Corners of unknown height, one at each distance."""
         return tuple(Corner(s, "force", "jump", np.nan, np.nan) for s in self.distances)

@@ -1,4 +1,4 @@
-"""Pair law from a formula: sympy derives potential and slopes, compiled as a hand-written law is."""
+"""Pair law from a formula: potential and slopes by sympy, compiled like a hand-written law."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units
 
 @dataclass(frozen=True, repr=False)
 class FormulaInteraction(PairInteraction):
-    """Pair law given by a formula as text, with numbers for its parameters; `pair_law` accepts sympy too.
+    """Pair law given by a formula as text, with values of its parameters; `pair_law` also accepts sympy.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def length(self) -> float:
-        """Length d, at which neighbours are held."""
+        """Desired distance d of neighbours."""
         return self.d
 
     @property
@@ -136,7 +136,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """Sentences for the user: where the force changes its sign besides d or is infinite, what jumps at the range.
+        """Remarks for the user: further sign changes of the force, infinite force, jumps at the range.
 
         The signs are those at 255 distances; `facts.zeros` has the places between them.
 
@@ -159,12 +159,12 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def resting_distance(self) -> float | None:
-        """Length d if two agents rest there; else the first distance at which repulsion gives way to attraction."""
+        """Length d if two agents rest there; else the first distance at which repulsion turns into attraction."""
         rising = [s for s, up in self._parts.zeros if up]
         return self.d if self.d in rising or not rising else rising[0]
 
     def __repr__(self) -> str:
-        """Return the call that makes the law, with its remarks."""
+        """Return the call that builds the law, with its remarks."""
         what = f"{self.potential!r}" if self.potential else f"force={self.force_formula!r}"
         numbers = f", parameters={dict(self.parameters)}" if self.parameters else ""
         call = f"pair_law({what}, adjacency={self.adjacency_formula!r}, range={self.r:g}, length={self.d:g}{numbers})"
@@ -188,7 +188,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def coincidence(self) -> bool:
-        """Whether the force has a limit where two agents meet."""
+        """Whether the force has a limit at distance 0."""
         return self._parts.coincidence
 
     @property
@@ -203,7 +203,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters for the kernels: r², ψ(r), ε, series at 0, cuts, constants of the formula."""
+        """Kernel parameters: r², ψ(r), ε, series at 0, cuts, constants of the formula."""
         return self._parts.par
 
     @property

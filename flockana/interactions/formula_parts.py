@@ -1,4 +1,4 @@
-"""Compiled form of a formula's law: source of its scalar functions, parameters, facts."""
+"""Compiled form of a formula law: source text of its scalar functions, parameters, facts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Texts = tuple[str, str, str, str, str | None]
 
 @dataclass(frozen=True, eq=False)
 class FormulaParts:
-    """Formula with its numbers, ready to be compiled (see `FormulaInteraction`)."""
+    """Formula with parameter values, ready for compilation (see `FormulaInteraction`)."""
 
     cut: PiecewiseFormula
     texts: Texts
@@ -150,7 +150,7 @@ class _PreciseForce:
         return float(_norm(s, self.eps)) if self.eps else s * s
 
     def of_mark(self, mark: float) -> float:
-        """Return s² or z at a cut that is given in s or z."""
+        """Return s² or z at a cut given in s or z."""
         return mark if self.eps else mark * mark
 
     def piece(self, s: float) -> int:
@@ -214,7 +214,7 @@ class _PreciseForce:
         return 0.5 * (left + right)
 
     def ends(self) -> tuple[str, ...]:
-        """Return in words what does not vanish at the range, where the law ends."""
+        """Return in words which quantities do not vanish at the range, where the law ends."""
         force = -self.force(self.r, len(self.cut.pieces) - 1)
         adjacency = float(self._weights[-1](self.y(self.r)))
         sizes = (force, self.strength, "the force"), (adjacency, float(np.abs(self.looks[1]).max()), "the adjacency")
@@ -264,7 +264,7 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
 
 
 def _far(view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
-    """Return the potential ψ at the range, which pairs beyond it keep."""
+    """Return the potential ψ at the range, the constant of pairs out of range."""
     far = float(panels[-1, 2:].sum()) if forces else view.energy(view.r)  # of powers of 1
     return far if forces or isfinite(far) else inf
 

@@ -10,7 +10,7 @@ from flockana.interactions.formula import FormulaInteraction
 
 
 class PairLawWarning(UserWarning):
-    """Warning about what a pair law lacks: a pole or a jump, or a force that changes its sign again."""
+    """Warning about defects of a pair law: a pole, a jump, or an extra sign change of the force."""
 
 
 def pair_law(
@@ -23,7 +23,7 @@ def pair_law(
     parameters: Mapping[str, float] | None = None,
     units: Mapping[str, Powers] | None = None,
 ) -> FormulaInteraction:
-    """Return a pair law from a formula, compiled as fast as a hand-written one, for every law that takes one.
+    """Return a pair law from a formula, compiled like a hand-written one, for all laws that accept one.
 
     Formulas are sympy expressions, text or numbers, in the distance s, or in the σ-norm z with a parameter ``eps``;
     r and d mean range and length, r_z and d_z their σ-norms, and every other name is a parameter. Pieces are

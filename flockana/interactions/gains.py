@@ -81,7 +81,7 @@ class Gains(ShortRepr):
         return _column(self.c2_gamma)
 
     def check_agents(self, n: int) -> None:
-        """Raise unless there is one per-agent gain for each agent."""
+        """Raise unless the number of per-agent gains equals the number of agents."""
         for name in PER_AGENT:
             gain = getattr(self, name)
             if isinstance(gain, tuple) and len(gain) != n:
@@ -91,7 +91,7 @@ class Gains(ShortRepr):
 if TYPE_CHECKING:
 
     class GainsField:
-        """Field of a law that is given as `Gains` or as a dictionary, and read as `Gains`."""
+        """Field of a law for gains, given as `Gains` or as a dictionary."""
 
         def __get__(self, law: object, kind: type | None = None) -> Gains: ...
         def __set__(self, law: object, value: Gains | Mapping[str, Any]) -> None: ...

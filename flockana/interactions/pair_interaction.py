@@ -49,7 +49,7 @@ def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> Inne
 
 
 class Tabulated(ABC):
-    """Law whose parameters and panels are computed together, once."""
+    """Base class of pair laws whose parameters and panels are computed once, together."""
 
     @abstractmethod
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
@@ -64,12 +64,12 @@ class Tabulated(ABC):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters in the order that the kernels read."""
+        """Parameters in the order of the kernels."""
         return self._parts[0]
 
     @property
     def panels(self) -> FloatArray:
-        """Chebyshev panels of the potential, where it is in no closed form."""
+        """Chebyshev panels of a potential without a closed form."""
         return self._parts[1]
 
 
@@ -139,7 +139,7 @@ class PairInteraction(DistanceFunction):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order that the kernels read."""
+        """Parameters in the order of the kernels."""
 
     @property
     @abstractmethod
@@ -176,7 +176,7 @@ class PairInteraction(DistanceFunction):
 
     @cached_property
     def _constants(self) -> FloatArray:
-        """Return `par` as kernels take it in the inner loop."""
+        """Return `par` in the form used by kernels in the inner loop."""
         return thawed(self.par)
 
     def potential_energy(self, q: FloatArray) -> float:
@@ -312,7 +312,7 @@ _MOST_COUNTED = 1e140  # units of ℓ²: φ squares them
 
 
 def ensure_lengths(law: Any, printed: str) -> None:
-    """Check d, r, eps, unit and h of a law of the σ-norm, and that rounding confuses no σ-norm with 0, ∞ or another."""
+    """Check d, r, eps, unit and h of a σ-norm law, and that rounding keeps its σ-norms distinct, nonzero and finite."""
     normalise(law, ensure_positive, "d", "r", "eps", "unit")
     normalise(law, ensure_finite_scalar, "h")
     d, r, eps, unit = law.d, law.r, law.eps, law.unit

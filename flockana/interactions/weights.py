@@ -24,7 +24,7 @@ class Weight(DistanceFunction):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order that the kernels read."""
+        """Parameters in the order of the kernels."""
 
     @property
     def range(self) -> float:
@@ -45,7 +45,7 @@ _RATIONAL = lift_weight(rational, rational_slope)
 
 @dataclass(frozen=True)
 class RationalWeight(Weight):
-    """Weight a(s) = K (1 + s²/ℓ²)^−β of Cucker and Smale, written K′/(σ² + s²)^β there: ℓ = σ, K = K′/σ^2β.
+    """Weight a(s) = K (1 + s²/ℓ²)^−β of Cucker and Smale, with K = K′/σ^2β and ℓ = σ in their symbols.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class RationalWeight(Weight):
         return self.length * sqrt(expm1(log(2.0) / self.decay)) if self.decay > 1e-3 else inf
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
-        """Return bounds of |da/ds|, which rises up to ℓ/√(2β + 1) and falls beyond, on geometric parts of all lengths.
+        """Return bounds of |da/ds|, which peaks at ℓ/√(2β + 1), on geometric parts of all lengths.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class SingularWeight(Weight):
         normalise(self, ensure_positive, "strength", "decay", "length")
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
-        """Return bounds of |da/ds|, which falls, on geometric parts of all lengths; infinite on the part at 0.
+        """Return bounds of the decreasing |da/ds| on geometric parts of all lengths; infinite on the part at 0.
 
         Parameters
         ----------
