@@ -1,4 +1,4 @@
-"""Runge-Kutta steps with error control, over a list of pairs that is kept up.
+"""Runge-Kutta steps with error control over an updated list of pairs.
 
 What a step may not leap over, and what its energies say, is looked at once it is made (`flockana.kernels.step_checks`).
 """
@@ -14,7 +14,7 @@ from flockana.kernels.verlet import COUNT
 
 
 class Block(NamedTuple):
-    """Several steps: the states between which they lead, one row each."""
+    """Block of several steps: one row for each state between them."""
 
     t: Any  # times
     y: Any  # vectors
@@ -23,7 +23,7 @@ class Block(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room for a step: the rates of its stages, and a vector."""
+    """Work space of a step: stage rates, and a vector."""
 
     rates: Any
     trial: Any
@@ -67,7 +67,7 @@ def step_of(block, k, room):
 
 @inlined
 def march(block, k, h, ends, system, method, room, pairs):
-    """Make a step from row k of a block to the next; `ends` are the time at which it ends at the latest, and the last.
+    """Make a step from row k of a block to the next; `ends` are its latest end time and the final time.
 
     The step has the length h, if its error allows it, or, if h is 0, one that is chosen here.
     """

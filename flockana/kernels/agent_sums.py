@@ -1,4 +1,4 @@
-"""Sums over agents, coordinate by coordinate, in four lanes: quick, and the same to the bit on every processor."""
+"""Sums over agents, coordinate by coordinate in four lanes, with equal bits on every processor."""
 
 import numpy as np
 
@@ -61,7 +61,7 @@ def squared_deviations(x):
 
 @kernel
 def slope_along(x, y, c, flat):
-    """Return by how much y_ic grows with x_ic, by least squares over a hundred agents; `flat` if undefined."""
+    """Return the least-squares slope of y_ic over x_ic for a hundred agents; `flat` if undefined."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
     centre = squares = products = 0.0
     for i in range(0, n, stride):
@@ -93,7 +93,7 @@ def pull_to(u, x, v, place, velocity, c1, c2):
 
 @kernel
 def put(values, into):
-    """Copy an array to the front of another; both are contiguous.
+    """Copy an array to the front of another one; both are contiguous.
 
     numba's own assignment also compiles the text of an error, for a second or two.
     """

@@ -1,4 +1,4 @@
-"""Weights of the distance for velocity consensus alone, and their sums (`flockana.kernels.weight_sums`)."""
+"""Weights of velocity consensus as functions of distance, and their sums (`flockana.kernels.weight_sums`)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ def lift_weight(weight: Callable[..., float], slope: Callable[..., float]) -> We
 
 @register_jitable
 def rational(s2, par):
-    """Return the rational weight K (1 + s²/ℓ²)^−β, by the logarithm: no power of a number near 1 is rounded."""
+    """Return the rational weight K (1 + s²/ℓ²)^−β, computed by the logarithm."""
     return par[STRENGTH] * exp(-par[DECAY] * log1p(s2 / (par[LENGTH] * par[LENGTH])))
 
 

@@ -38,7 +38,7 @@ def as_they_are(par):
 
 @cache
 def as_tuple(count: int) -> Kernel:
-    """Return a function that puts parameters into registers, which no array can alias: the law is vectorised."""
+    """Return a function that loads parameters into registers, so that the law is vectorised."""
     values = "".join(f"par[{k}], " for k in range(count))
     text = (
         f"from flockana.jit import register_jitable\n\n\n@register_jitable\ndef unpacked(par):\n    return ({values})\n"

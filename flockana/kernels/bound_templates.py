@@ -1,4 +1,4 @@
-"""Modules from templates and from generated text: ordinary source, bound to the functions and numbers of one law.
+"""Modules from templates and generated text, bound to the functions and numbers of one law.
 
 A template is a module of its own, in which a comment marks the lines that may be replaced. A bound module is written to
 a file that is named by a digest of its text, so that numba keeps what it compiles of it.
@@ -25,7 +25,7 @@ _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re
 
 @cache
 def bound(template: str, **bindings: Any) -> ModuleType:
-    """Return the module of a template with its names bound; the same module for the same bindings."""
+    """Return the module of a template with bound names; equal bindings share one module."""
     spec = find_spec(template)
     text = Path(spec.origin).read_text("utf-8")  # type: ignore[union-attr, arg-type]
     functions, left = {}, dict(bindings)
@@ -47,7 +47,7 @@ def bound(template: str, **bindings: Any) -> ModuleType:
 
 
 def made(text: str, name: str, **functions: Kernel) -> ModuleType:
-    """Return a module with the given source text, in which the given functions are known by their names."""
+    """Return a module with the given source text and the given functions as its globals."""
     named = {mine: it for mine, it in functions.items() if is_modules_own(it)}
     sources = sorted({_source(it) for it in named.values()})
     imports = (f"from {it.__module__} import {it.__name__} as {mine}" for mine, it in sorted(named.items()))
@@ -81,7 +81,7 @@ def _of_text(text: str) -> str:
 
 
 def _from_file(text: str, name: str, digest: str) -> ModuleType | None:
-    """Return the module of a file, written unless it exists with the same text; None if it cannot be written."""
+    """Return the module from its cached file, written if needed; None if the folder is not writable."""
     base = kernels_folder()
     if base is None:
         return None

@@ -13,7 +13,7 @@ from flockana.kernels.agent_sums import square_between
 
 @kernel
 def _root(parent, i):
-    """Return the first known agent of i's component, and shorten the path to it."""
+    """Return the root of agent i's component, and shorten the path to the root."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -22,7 +22,7 @@ def _root(parent, i):
 
 @kernel
 def unite(parent, first, second):
-    """Put both ends of every link into one component; `parent` begins as 0 … n − 1."""
+    """Merge the components of both ends of every link; `parent` starts as 0 … n − 1."""
     for k in range(first.size):
         a, b = _root(parent, first[k]), _root(parent, second[k])
         if a < b:

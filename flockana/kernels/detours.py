@@ -1,4 +1,4 @@
-"""Distance between the paths of a long step and those through a middle one: the error of leaving a step out.
+"""Distance between the path of a long step and the paths through a middle state, the error of omitting a step.
 
 Both are quintics (`flockana.kernels.quintic_paths`). The long one is parted at the middle by de Casteljau; the
 difference of two curves stays in the hull of the differences of their control points.
@@ -12,7 +12,7 @@ from flockana.kernels.quintic_paths import polygon
 
 @register_jitable
 def _parted(points, share):
-    """Return the control points of a curve's part up to `share`, and those of its rest."""
+    """Return the control points of a curve's part up to `share`, and of the rest."""
     a0, a1, a2, a3, a4, a5 = points
     b0, b1, b2 = a0 + share * (a1 - a0), a1 + share * (a2 - a1), a2 + share * (a3 - a2)
     b3, b4 = a3 + share * (a4 - a3), a4 + share * (a5 - a4)
@@ -25,7 +25,7 @@ def _parted(points, share):
 
 @kernel
 def detours(times, first, middle, last, slack0, slack1):
-    """Return how far each agent's path from the first state (q, p, u) to the last may be from that through the middle.
+    """Return each agent's largest path deviation between the direct step and the path through the middle state.
 
     The parts of the path through the middle have slacks.
     """

@@ -1,4 +1,4 @@
-"""α-forces on directed nets: every agent has a range of its own, and may look ahead only."""
+"""α-forces on directed nets: each agent has its own range, and may see ahead only."""
 
 from math import sqrt
 
@@ -12,7 +12,7 @@ from flockana.kernels.scalars import sigma_norm, taper
 
 @kernel
 def sight(q, p, i, j, s2, reach2, width, slow2, h):
-    """Return how well agent i sees j, from 0 to 1: by its range, and by its cone, with the bump of the angle's 1 − cos.
+    """Return the visibility of agent j for agent i, 0 to 1: by range and by cone, with the bump of the angle's 1 − cos.
 
     `width` is 1 − cos of half the angle of view; 2 is all round. An agent much slower than √slow2 looks all round.
     """
@@ -59,7 +59,7 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
 
 @kernel
 def seen_edges(q, p, first, second, reach, width, slow2, h, least):
-    """Return (head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
+    """Return (head, tail) of the directed edges among given pairs: head sees tail above the least visibility."""
     head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
     for k in range(first.size):
         s2 = square_between(q, first[k], second[k])

@@ -10,7 +10,7 @@ _HIGH, _MIDDLE, _LOW = 1.5707963267341256, 6.077100506303966e-11, 2.022266248795
 
 @inlined
 def _of_quarter(x, m):
-    """Return sin(x − ½πm), of an argument at most ½π in size, by its series: y and a rest whose parts need not wait."""
+    """Return sin(x − ½πm) for arguments up to ½π by its series: y and a remainder for parallel evaluation."""
     y = ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW
     x2 = y * y
     x4 = x2 * x2

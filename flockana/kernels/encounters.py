@@ -1,4 +1,4 @@
-"""Whether a step leapt over an encounter: two agents in and out of each other's reach between two evaluations.
+"""Check of a step for skipped encounters: two agents in and out of each other's reach between two evaluations.
 
 The paths of a step are the quintics through its ends (`flockana.kernels.quintic_paths`). Paths of many agents are not
 kept, but made again for the few pairs that may matter.
@@ -30,7 +30,7 @@ class Ends(NamedTuple):
 
 
 class Around(NamedTuple):
-    """Distances and obstacles over which no step may leap (`flockana.dynamics.encounters.Encounters`)."""
+    """Distances and obstacles that no step may skip (`flockana.dynamics.encounters.Encounters`)."""
 
     radii: Any  # (n, K): distances at which each agent begins or ceases to feel another
     far: Any  # how far two may go within them
@@ -48,7 +48,7 @@ class Around(NamedTuple):
 
 
 class PairRoom(NamedTuple):
-    """Work space for one pair: halved curves and their spans; control points, reaches, allowances, radii."""
+    """Work space of one pair: halved curves, time spans, control points, reaches, allowances, radii."""
 
     stack: Any
     spans: Any
@@ -60,7 +60,7 @@ class PairRoom(NamedTuple):
 
 @inlined
 def pair_room(radii):
-    """Return work space for a pair of agents with so many radii each."""
+    """Return work space for a pair of agents with a given number of radii."""
     points = np.empty((2, 6, 3))
     points[:] = 0.0
     return PairRoom(
@@ -83,7 +83,7 @@ def relative_curve(points, curve):
 
 @inlined
 def _ahead(points, s, far, room):
-    """Return the share of the step from s to the pair's next closest approach, or over a way of `far`; -1 if it parts.
+    """Return the share of the step at the pair's next closest approach, or after a path of `far`; -1 if the pair parts.
 
     `room` is for six control points.
     """
@@ -105,7 +105,7 @@ def _ahead(points, s, far, room):
 
 @inlined
 def _visit(points, edge, far, stack, spans):
-    """Return the share of the step at which a pair that starts beyond `edge` is first well within it, at most 1.
+    """Return the share of the step at which a pair from beyond `edge` is first well within it, at most 1.
 
     Well within is at its closest approach, or as soon as it has gone `far` there.
     """
@@ -164,7 +164,7 @@ def steepest(slope):
 
 @inlined
 def common_way(ends):
-    """Return (mean, slope, centre) of all agents' control points relative to the first of them: 6 × 3, twice, and 3.
+    """Return (mean, slope, centre) of all agents' control points relative to the first: 6 × 3, 6 × 3, and 3.
 
     The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
     steep.
@@ -187,7 +187,7 @@ def common_way(ends):
 
 @inlined
 def farthest_ways(ends, common):
-    """Return bounds of the longest way of an agent relative to the common one, and of its allowance, to rounding."""
+    """Return bounds of the longest agent path relative to the common one, and of its rounding allowance."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
     n, m = q0.shape
     way2 = most2 = most3 = 0.0
@@ -212,7 +212,7 @@ def farthest_ways(ends, common):
 
 @inlined
 def band(common, farthest, edges, far):
-    """Return (low, high), the distances at a step's beginning between which a pair may cut the step short.
+    """Return (low, high), the initial distances between which a pair may shorten the step.
 
     Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
     way and twice the longest way beside it.
@@ -224,7 +224,7 @@ def band(common, farthest, edges, far):
 
 @inlined
 def _stays_beyond(ends, i, j, edge):
-    """Return whether a pair that starts beyond `edge` stays there, by its control points along its first line."""
+    """Return whether a pair that starts beyond `edge` stays there, by its control points along the initial line."""
     h, q0, p0, u0, q1, p1, u1 = ends
     s2 = d1 = d2 = d3 = d4 = d5 = 0.0
     s, z = h / 5.0, h * h / 20.0
@@ -239,7 +239,7 @@ def _stays_beyond(ends, i, j, edge):
 
 @inlined
 def share_of_listed(ends, common, between, around, first, second, share):
-    """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
+    """Return the largest share of the step, up to the given one, in which no listed pair skips an encounter.
 
     `common` are the mean control points and the largest allowance. Only pairs are looked at whose distance is within a
     band where the step begins.

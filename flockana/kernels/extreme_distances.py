@@ -1,4 +1,4 @@
-"""Least and greatest distances of a flock at many instants: for few agents all pairs are faster than any search."""
+"""Least and greatest distances of a flock at many instants; for few agents by testing all pairs."""
 
 from math import inf, sqrt
 
@@ -44,7 +44,7 @@ def _square(x, i, place):
 
 @kernel
 def _farthest(x, place):
-    """Return (agent, squared distance) of the agent farthest from a place."""
+    """Return (agent, squared distance) of the agent farthest from a point."""
     agent, most = 0, 0.0
     for i in range(len(x)):
         s2 = _square(x, i, place)

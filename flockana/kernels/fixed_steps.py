@@ -1,4 +1,4 @@
-"""Fixed steps of a compiled law as a map: exact steps, nothing checked or made again, many in one call."""
+"""Fixed steps of a compiled law as a map: many unchecked steps in one call."""
 
 from typing import Any, NamedTuple
 
@@ -9,7 +9,7 @@ from flockana.kernels.runge_kutta import rate_of
 
 
 class Coefficients(NamedTuple):
-    """Coefficients of a method of fixed steps, its step, and the range of pairs."""
+    """Coefficients of a fixed-step method, its step, and the range of pairs."""
 
     a: Any  # weights of the stages, and in its last row those of the step
     c: Any  # their times, as shares of the step
@@ -41,7 +41,7 @@ def _finite(y):
 
 @kernel
 def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
-    """Write (q, p, u) after the steps wanted, numbered from 1; return whether the pairs fit into the list.
+    """Write (q, p, u) after the requested steps, numbered from 1; return whether the pair list sufficed.
 
     `times` are those at which steps begin; `kicks` has a row of changes of the velocities for each step, or none. Pairs
     are listed anew for each input, not by `system`, so that the order of sums hangs on the positions alone. y is

@@ -15,7 +15,7 @@ _MOVING, _OMEGA, _ROWS, _FIRST = range(4)
 
 
 def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -> Any:
-    """Return the numbers of a push."""
+    """Return the kernel parameters of a push."""
     head = [float(moving), omega, float(len(constant))]
     return np.concatenate([head, np.ravel(constant), np.ravel(cosine), np.ravel(sine)])
 

@@ -23,7 +23,7 @@ from flockana.kernels.integral_tables import on_panels
 
 
 def generated(text: str, name: str) -> Kernel:
-    """Return the function of a name that a text defines, for compiled and interpreted use.
+    """Return a named function defined in a text, for compiled and interpreted use.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def generated(text: str, name: str) -> Kernel:
 def generated_kernels(
     pair: str, slope: str, potential: str, adjacency_slope: str, norm: str | None = None
 ) -> PairKernels:
-    """Return the sums over pairs of a law whose scalar functions are generated, the same for the same texts."""
+    """Return the pair sums of a law with generated scalar functions; equal texts share one module."""
     texts = {"pair": pair, "slope": slope, "potential": potential, "adjacency_slope": adjacency_slope}
     functions = (generated(text, name) for name, text in texts.items())
     return lift(*functions, norm=None if norm is None else generated(norm, "norm"))

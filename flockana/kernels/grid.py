@@ -27,7 +27,7 @@ def _ends(x, k):
 
 @kernel
 def _closed_up(q, width, most):
-    """Return a flock whose gaps along each coordinate are closed up: whoever is within range stays so.
+    """Return a flock with gaps along each coordinate closed up; pairs within range stay so.
 
     Gaps are empty ones of a row of `most` bins, which are as fine as cells once the widest gaps are closed.
     """
@@ -52,7 +52,7 @@ def _closed_up(q, width, most):
 
 @kernel
 def sort_into_grid(q, side):
-    """(order, start, rows): agents by cell, first agent of each cell, and where the later adjacent rows of cells are.
+    """Return (order, start, rows): agents by cell, first agent of each cell, and offsets of later adjacent cell rows.
 
     Cells are numbered row by row, along the longest side last if the flock is large, with an empty margin around. What
     is adjacent to cell c, each two cells once, is the rest of c, cell c + 1, and of each row d in `rows` the cells
@@ -110,7 +110,7 @@ def sort_into_grid(q, side):
 
 @inlined
 def empty_cuts(n):
-    """Return room for the number of slabs of n agents, where each begins and the last one ends: one empty slab."""
+    """Return an array for the slab boundaries of n agents, set to one empty slab."""
     cuts = np.empty((_SLABS if n >= LARGE else 1) + 2, np.int64)
     cuts[0], cuts[1], cuts[2] = 1, 0, 0
     return cuts
@@ -118,7 +118,7 @@ def empty_cuts(n):
 
 @kernel
 def cut_into_slabs(start, rows, cuts):
-    """Write the number of slabs of a grid, and the cells at which they begin and end; return the number.
+    """Write and return the number of slabs of a grid, with the first and last cells of each.
 
     A slab is layers of cells across the longest side: only cells of the slab itself and of the next are adjacent to
     its own and later than they, so that all even slabs may add to both agents of their pairs at once, and all odd ones.

@@ -1,4 +1,4 @@
-"""Panels of polynomials for an integral that has no closed form: built once, to rounding, and evaluated by kernels.
+"""Polynomial panels of an integral without closed form: built once to rounding, evaluated by kernels.
 
 What leads from values to coefficients is the same for every panel: three matrices, whose products are summed here. The
 solvers of linear algebra, which sum otherwise on other processors, have no part in it.
@@ -61,14 +61,14 @@ def series_of(values: FloatArray) -> FloatArray:
 
 
 def _times(rows: FloatArray, matrix: FloatArray) -> FloatArray:
-    """Return rows times a matrix, summed in an order that no processor changes."""
+    """Return rows times a matrix, summed in the same order on every processor."""
     product: FloatArray = (rows[..., :, None] * matrix).sum(axis=-2)
     return product
 
 
 @cache
 def _cosines() -> FloatArray:
-    """Return T_j(x_k) = cos πj(2k + 1)/2N, shape (N, N), each from the first quadrant, so no errors add up."""
+    """Return T_j(x_k) = cos πj(2k + 1)/2N, shape (N, N), each from the first quadrant for accuracy."""
     quadrant = np.append(np.cos(0.5 * np.pi / NODES * np.arange(NODES)), 0.0)
     turns = np.outer(2 * np.arange(NODES) + 1, np.arange(NODES)) % (4 * NODES)  # a quadrant has N steps
     turns = np.minimum(turns, 4 * NODES - turns)

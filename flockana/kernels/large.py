@@ -1,4 +1,4 @@
-"""Which functions serve a flock: those of large ones go slab by slab, by one thread or by several."""
+"""Choice of functions by flock size: slab by slab for large flocks, with one thread or several."""
 
 import sys
 from functools import cache
@@ -15,7 +15,7 @@ from flockana.kernels.verlet import CROWDED, Pairs, covers, listed_anew, no_pair
 
 
 def lister(*, large: bool, several: bool = False) -> Kernel:
-    """Return what lists pairs anew: those of large flocks in slabs, by several threads or one."""
+    """Return the pair-listing function: in slabs for large flocks, with one thread or several."""
     if not large:
         return listed_anew
     return listed_by_threads if several else listed_in_slabs
@@ -23,19 +23,19 @@ def lister(*, large: bool, several: bool = False) -> Kernel:
 
 @cache
 def as_callback(listing: Kernel) -> Any:
-    """Return a `lister` as a callback for compiled code."""
+    """Return a pair-listing function as a callback for compiled code."""
     return callback_like(listing, 0, np.empty((1, 1)), 0.0, no_pairs(1, 1))
 
 
 def parallel_twin(kernel: Kernel) -> Kernel:
-    """Return what `flockana.jit.parallel` made of a kernel; the kernel itself if nothing was."""
+    """Return the multithreaded twin of a kernel; the kernel itself without one."""
     twin: Kernel = getattr(sys.modules[kernel.__module__], f"parallel_{kernel.__name__}", kernel)
     return twin
 
 
 @cache
 def work_of(*, large: bool, several: bool = False) -> Work:
-    """Return what steps do beside the law, of large flocks or not, for one thread or for several."""
+    """Return the step functions other than the law, by flock size and number of threads."""
     covering, combining = (covered_by_threads, combined_by_threads) if several else (covers, combine)
     if several:
         launch_threads()
@@ -48,7 +48,7 @@ def work_of(*, large: bool, several: bool = False) -> Work:
 
 
 def fill(pairs: Pairs, q: Any, reach: float, several: bool = False) -> Pairs:
-    """List the pairs closer than `reach`; return the list, with as much room as they need unless they are CROWDED."""
+    """List the pairs closer than `reach`; return the list, enlarged as needed unless CROWDED."""
     while lister(large=len(q) >= LARGE, several=several)(q, reach, pairs) < CROWDED:
         pairs = with_room(pairs) or pairs
     return pairs

@@ -1,4 +1,4 @@
-"""A law as compiled integrators take it: one generated module that sums its terms, as two callbacks.
+"""Compiled form of a law: one generated module that sums its terms, with two callbacks.
 
 A term is two kernels: ``act(t, x, v, u, numbers, panels, listed)`` adds to u and returns the power, ``energy(t, x, v,
 numbers, panels, listed)`` returns the potential energy (`flockana.kernels.listed`). Obstacles of a kind are guarded by
@@ -26,14 +26,14 @@ _GUARD = "def guard(points, allowance, numbers, starts, shell, far, share):\n"
 
 
 class LawFunctions(NamedTuple):
-    """Force and power, and potential energy of a law, for compiled code to be handed."""
+    """Force-and-power and energy functions of a law, as callbacks for compiled code."""
 
     force: Any
     energy: Any
 
 
 class LawNumbers(NamedTuple):
-    """Numbers that a law's functions read: numbers and panels of all terms, and where those of each begin."""
+    """Numbers read by a law's functions: numbers and panels of all terms, with start indices."""
 
     numbers: Any
     panels: Any
@@ -71,7 +71,7 @@ def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = Fals
 
 @cache
 def guard_of(kinds: tuple[Kernel, ...]) -> Any:
-    """Return one guard of obstacles of several kinds, compiled; its numbers are those of all kinds in one vector."""
+    """Return one compiled guard for obstacles of several kinds, with all numbers in one vector."""
     numba = load_numba()
     vector, real = numba.float64[::1], numba.float64
     lines = [

@@ -1,4 +1,4 @@
-"""Data of a term beside the state, and the numbers of a pair term."""
+"""Data of a term apart from the state, and the numbers of a pair term."""
 
 from typing import Any, NamedTuple
 
@@ -8,7 +8,7 @@ from flockana.jit import kernel
 
 
 class Listed(NamedTuple):
-    """Pairs listed for a term, the frame from which x and v are seen, and room for a block of pairs."""
+    """Pairs listed for a term, the frame of x and v, and work space for a block of pairs."""
 
     frame: Any  # (2, m): its place and velocity
     first: Any  # the pairs: uint32

@@ -1,4 +1,4 @@
-"""Many steps of a compiled law in one call: each is checked, and repeated with a shorter one if it fails."""
+"""Many steps of a compiled law in one call; each is checked, and repeated with a shorter one on failure."""
 
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ class Advanced(NamedTuple):
 
 @inlined
 def _record(y, f, order, frame, out):
-    """Write positions, velocities and accelerations in the agents' own order; return the work."""
+    """Write positions, velocities and accelerations in the original order of agents; return the work."""
     n, m = order.size, frame.shape[1]
     for i in range(n):
         agent = np.int64(order[i])
@@ -39,7 +39,7 @@ def _record(y, f, order, frame, out):
 
 @kernel
 def record(block, order, view, states, work):
-    """Write states and work at the ends of the first steps of a block, in the agents' own order.
+    """Write states and work at the ends of a block's first steps, in the original order of agents.
 
     The room is numpy's, for large pages (`flockana.kernels.pair_sums.forces`).
     """
@@ -51,7 +51,7 @@ def record(block, order, view, states, work):
 
 @inlined
 def _sampled(step, due, method, states, work, system, pairs):
-    """Write the samples (q, p, u) that are due within a step, in the agents' own order."""
+    """Write the samples (q, p, u) due within a step, in the original order of agents."""
     slope = np.empty(step.y.size)
     stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):

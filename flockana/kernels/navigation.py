@@ -1,4 +1,4 @@
-"""The pull to a γ-agent whose path is a + bt + c cos ωt + s sin ωt, for compiled integrators.
+"""Pull to a γ-agent with the path a + bt + c cos ωt + s sin ωt, for compiled integrators.
 
 `numbers` are: whether the energy is that in the moving frame, ℓ of the bounded pull (0 for the linear one), the number
 of gains (1, or one per agent), ω, f and then a, b, c, s, e; p_r = f dq_r/dt + e; then c1γ and c2γ.

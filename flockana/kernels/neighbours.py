@@ -1,4 +1,4 @@
-"""Every pair closer than a range, once each, in O(n) time and memory at bounded density.
+"""Neighbour search: every pair closer than a range, once, in O(n) time and memory at bounded density.
 
 This is the only place that searches: links, forces, energies and Hessians all loop over the blocks of pairs it
 yields. Blocks keep memory O(n) even where every agent is within range of every other. Small flocks are searched

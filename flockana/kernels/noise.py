@@ -1,4 +1,4 @@
-"""Random numbers that are a function of where and when they are used: no generator, no state, no order of calls.
+"""Random numbers as a function of seed, agent and step, without a generator state.
 
 A number is a hash of (seed, step, agent, partner, channel), by the finaliser of SplitMix64, as counter-based
 generators do it. Integers and one exact conversion give it, so that every processor has the same bits.

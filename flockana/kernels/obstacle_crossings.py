@@ -1,4 +1,4 @@
-"""Whether a step leapt over an obstacle: an agent in and out of its reach between two evaluations.
+"""Check of a step for skipped obstacles: an agent in and out of reach between two evaluations.
 
 The paths of a step are the quintics through its ends, given by their control points (`flockana.kernels.quintic_paths`).
 """

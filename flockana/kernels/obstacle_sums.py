@@ -150,7 +150,7 @@ def _visit(curve, edge, far, par, here, room):
 
 @kernel
 def guard(points, allowance, numbers, shell, far, most):
-    """Return the share of the step, at most the one given, in which no agent leaps over an obstacle's surroundings.
+    """Return the share of the step, up to the given one, in which no agent skips an obstacle's surroundings.
 
     An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """

@@ -1,4 +1,4 @@
-"""Obstacles as terms of a law: the numbers that their compiled functions read.
+"""Numbers of obstacle terms for compiled functions.
 
 They are: how many obstacles of one kind there are, m, the range r', gains c1 and c2, the law's parameters; then where
 the parameters of each obstacle begin (K + 1), its ball (m + 1 each), and its parameters.
@@ -16,14 +16,14 @@ STARTS = BETA + BETA_AREA + 1  # after the parameters of the law
 
 
 def body_numbers(reach: float, c1: float, c2: float, law: Any, pars: Any, starts: Any, balls: Any) -> Any:
-    """Return the numbers that the compiled functions of an obstacle term read."""
+    """Return the numbers of an obstacle term for its compiled functions."""
     count, m = balls.shape[0], balls.shape[1] - 1
     return np.concatenate([[count, m, reach, c1, c2], law, starts, balls.ravel(), pars])
 
 
 @register_jitable
 def bodies_of(numbers):
-    """Return (parameters of all obstacles, index at which each obstacle's begin, bounding balls)."""
+    """Return (parameters of all obstacles, start index of each obstacle, bounding balls)."""
     count, m = np.int64(numbers[COUNT]), np.int64(numbers[DIMENSION])
     balls, starts = STARTS + count + 1, np.empty(count + 1, np.int64)
     pars = balls + count * (m + 1)

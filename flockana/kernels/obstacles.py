@@ -1,4 +1,4 @@
-"""From the closest-point map of one convex obstacle to sums over all agents and obstacles of its kind.
+"""Compiled sums over agents and obstacles of one kind, from the kind's closest-point map.
 
 An obstacle kind is one scalar function, ``project(q, p, par, gap, rate) -> clearance``: it writes the gap q̂ − q from
 the agent to its β-agent and the β-agent's velocity dq̂/dt into the last two arguments, and returns the signed distance
@@ -26,12 +26,12 @@ class ObstacleKernels:
 
     @property
     def turns(self) -> bool:
-        """Whether the kind defines how p̂ turns."""
+        """Whether the obstacle kind defines how p̂ turns."""
         return self.turn is not None
 
     @property
     def sums(self) -> ModuleType:
-        """Return the module of all sums."""
+        """Return the module of all compiled sums."""
         return bound("flockana.kernels.obstacle_sums", project=self.project, turn=self.turn or no_turn)
 
     def __getattr__(self, name: str) -> Any:
@@ -43,13 +43,13 @@ class ObstacleKernels:
 
 @register_jitable
 def no_turn(q, p, e, par, out):
-    """Write zeros: on a flat face p̂ = Dp with a constant D, so p̂ does not turn."""
+    """Write zeros, the rotation rate of p̂ on a flat face."""
     out[:] = 0.0
 
 
 @register_jitable
 def project_nothing(q, p, par, gap, rate):
-    """Return infinity, the distance of an obstacle that is not there."""
+    """Return infinity, the distance from an absent obstacle."""
     return np.inf
 
 
@@ -60,7 +60,7 @@ def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | Non
 
 @register_jitable
 def project_ball(q, p, centre, radius, along, gap, rate):
-    """Write the β-agent on a sphere about `centre`, which moves at `along`: for spheres and rims of other bodies.
+    """Write the β-agent on a sphere about `centre`, which moves at `along`; also for rims of other bodies.
 
     `along` must be tangent to the sphere at the agent's foot (or zero); of `centre` the first m components are read.
     """
@@ -83,7 +83,7 @@ def project_ball(q, p, centre, radius, along, gap, rate):
 
 @register_jitable
 def turn_ball(q, p, e, centre, radius, p_centre, e_centre, out):
-    """Write how the velocity on a sphere turns as the agent moves along e and the centre along e_centre.
+    """Write the turning rate of the velocity on a sphere, as the agent moves along e and the centre along e_centre.
 
     −(μ/ρ) [⟨a,e⟩ Pp + ⟨a,p⟩ Pe + a ⟨Pe,p⟩], symmetric in p and e, both relative to the centre; ⟨a,p⟩ sees no centre
     that moves tangentially.

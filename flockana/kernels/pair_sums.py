@@ -72,7 +72,7 @@ def _add(count, pairs, room, x, v, u, par, gains):
 
 @register_jitable
 def _gather(x, limit, listed, begin, end, pairs, s2):
-    """Keep the pairs of a part of a list that are within range; return their number."""
+    """Keep the pairs of a list's part that are within range; return their number."""
     (first, second), near = listed, pairs
     count = 0
     if x.shape[1] != M:
@@ -143,7 +143,7 @@ parallel_act, parallel_energy = parallel(act), parallel(energy)
 
 @register_jitable
 def _linked(x, ends, begin, end, near, s2):
-    """Write a part of the links, given as numbers of agents in turns, as pairs with their squared distances."""
+    """Write some of the links, stored as alternating agent numbers, as pairs with squared distances."""
     for k in range(begin, end):
         i, j, square = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
         for c in range(M):
@@ -154,7 +154,7 @@ def _linked(x, ends, begin, end, near, s2):
 
 @kernel
 def act_links(t, x, v, u, numbers, panels, listed):
-    """Add the forces of links to u and return their power; `numbers` are c1, c2, the count of links, they, and par."""
+    """Add the forces of links to u and return their power; `numbers` are c1, c2, link count, links, and par."""
     total, links, near = 0.0, np.int64(numbers[2]), listed.near
     par, pairs = as_tuple(numbers[3 + 2 * links :]), (near[0], near[1])
     room = (listed.room[0], listed.room[1], listed.room[2])
@@ -177,7 +177,7 @@ def energy_links(t, x, v, numbers, panels, listed):
 
 @inlined
 def _sweep(cells, start, rows, flock, r2, par, gains, pairs, room):
-    """The forces of a flock (q, p, u) sorted into a grid, between agents in some cells and later ones."""
+    """Add the forces between agents in some grid cells and later agents to a sorted flock (q, p, u)."""
     (x, v, forced), (first, second), s2 = flock, pairs, room[0]
     count, total = np.int64(0), 0.0  # typed: of a literal, `_add` would be compiled once more
     if x.shape[1] != M:
@@ -225,7 +225,7 @@ def forces(q, p, r, numbers, c1, c2, u, room):
 
 @register_jitable
 def _sweep_slab(own, low, high, start, rows, flock, r2, numbers, gains):
-    """`_sweep` over the cells of a slab."""
+    """Sum pair forces (`_sweep`) over the cells of a slab."""
     pairs, par = (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)), as_tuple(numbers)
     room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     return _sweep((low, high), start, rows, flock, r2, par, gains, pairs, room)
@@ -233,7 +233,7 @@ def _sweep_slab(own, low, high, start, rows, flock, r2, numbers, gains):
 
 @kernel
 def forces_in_slabs(q, p, r, numbers, c1, c2, u, room):
-    """As `forces` for a large flock: even slabs at once, then odd ones."""
+    """Add all pair forces of a large flock, as `forces` does: even slabs at once, then odd slabs."""
     order, start, rows = sort_into_grid(q, r)
     x, v, forced, cuts, marker, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
     slabs, r2 = cut_into_slabs(start, rows, cuts), max(r * r, 5e-324)
@@ -259,7 +259,7 @@ parallel_forces_in_slabs = parallel(forces_in_slabs)
 
 @kernel
 def forces_of(q, p, first, second, numbers, c1, c2, u):
-    """Add the forces over given pairs that are within range; return the sum as `forces` does."""
+    """Add the forces over given pairs within range; return the dissipation sum, as `forces` does."""
     total, par = 0.0, as_tuple(numbers)
     room, pairs = (
         (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)),

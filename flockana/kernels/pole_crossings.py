@@ -1,4 +1,4 @@
-"""Whether a step leapt over a pole: a distance at which two agents' potential is infinite or their force undefined.
+"""Check of a step for skipped poles: distances of infinite potential or undefined force between two agents.
 
 No motion crosses a pole, so a step whose path does is no motion. Paths are the quintics through the ends of the step
 (`flockana.kernels.quintic_paths`); those of many agents are not kept, but made again for the few pairs that may matter.
@@ -15,7 +15,7 @@ _NEAR = 1e-3  # of the way to a pole that is left where a step begins: a path th
 
 @inlined
 def _stage_crosses(curve, edge, inward):
-    """Return whether a pair at a stage of a Runge-Kutta step, halfway or at its end, is beyond a distance."""
+    """Return whether a pair at a Runge-Kutta stage, halfway or at the end, is beyond a distance."""
     for stage in range(3):
         along, bent = (0.5 if stage < 2 else 1.0), (0.0, 0.25, 0.5)[stage]
         start2 = product = way2 = 0.0
@@ -32,7 +32,7 @@ def _stage_crosses(curve, edge, inward):
 
 @inlined
 def _crosses(room, pole, toward):
-    """Return whether a pair's path goes the share `toward` of its way to the pole from where it begins."""
+    """Return whether a pair's path covers the share `toward` of its initial distance from the pole."""
     stack = room.stack
     relative_curve(room.points, stack[0])
     begin = np.sqrt(stack[0, 0, 0] ** 2 + stack[0, 0, 1] ** 2 + stack[0, 0, 2] ** 2)
@@ -47,7 +47,7 @@ def _crosses(room, pole, toward):
 
 @kernel
 def crossing_listed(ends, ways, poles, toward, first, second):
-    """Return whether a listed pair crosses a pole in a step; `ways` are steepest slope and longest way beside it."""
+    """Return whether a listed pair crosses a pole in a step; `ways` are the steepest slope and longest path."""
     h, q0, p0, u0, q1, p1, u1 = ends
     room, (steep, way), m = pair_room(0), ways, q0.shape[1]
     for k in range(first.size):

@@ -1,4 +1,4 @@
-"""How close two agents come *between* samples: quintics through (q, p, u), bounded by their control points.
+"""Distance of two agents *between* samples: quintics through (q, p, u), bounded by control points.
 
 Between two samples a path is taken for the quintic Q that matches position, velocity and acceleration at both ends. In
 Bernstein form it stays in the convex hull of its control points, so subdivision bounds the distance of a pair from
@@ -28,7 +28,7 @@ def _norm(x):
 
 @register_jitable
 def polygon(a, b, out, back, bend0, bend1):
-    """Write the control points of a coordinate's quintic from a to b: of h p/5 and h² u/20 at both ends, and linear."""
+    """Write the control points of a coordinate's quintic from a to b, with h p/5 and h² u/20 at both ends."""
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
@@ -48,7 +48,7 @@ def quintic(h, a, p0, u0, b, p1, u1, out):
 
 @kernel
 def bernstein(h, q0, p0, u0, q1, p1, u1):
-    """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
+    """Return Bernstein control points (n, 6, 3), reach (n,) and error allowance (n,) of every agent's quintic.
 
     The reach bounds how far an agent gets from its first point. The allowance, which it includes, bounds how far the
     motion is from the quintic where the interval resolves it (see above).
@@ -72,7 +72,7 @@ def reach_of(c):
 
 @kernel
 def centred(points, allowance):
-    """Take the flock's common drift out of the control points, in place, and return the reaches that are left.
+    """Subtract the flock's common drift from the control points in place; return the remaining reaches.
 
     No distance between agents changes.
     """
@@ -100,7 +100,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
 
 @kernel
 def _start(points, reach, i, j, stop, stack):
-    """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
+    """Load the pair's relative curve into the stack, unless its ends exclude a distance below stop."""
     s2 = 0.0
     for x in range(3):
         s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
@@ -129,7 +129,7 @@ def _hull_bound(c):
 
 @kernel
 def _halve(stack, spans, top):
-    """Halve the curve stack[top] by de Casteljau: its left half goes on top of it, the right half stays in place."""
+    """Halve the curve stack[top] by de Casteljau: the left half is pushed, the right half stays."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
     middle = 0.5 * (left + right)
     for level in range(6):
@@ -251,7 +251,7 @@ def touching_pairs(points, reach, first, second, tol, out):
 
 @kernel
 def _largest_distance(stack, spans, enough, tol):
-    """Return (upper bound, parameter) of how far the curve stack[0] gets from 0, within tol or up to `enough`."""
+    """Return (upper bound, parameter) of the curve stack[0]'s largest distance from 0, within tol or up to `enough`."""
     proven, best, where = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
@@ -275,7 +275,7 @@ def _largest_distance(stack, spans, enough, tol):
 
 @kernel
 def farthest(points, allowance, floor, tol):
-    """Return (upper bound, agent, parameter) of how far any agent gets from the centre; `floor` is known to be reached.
+    """Return (upper bound, agent, parameter) of the largest agent distance from the centre, at least `floor`.
 
     Changes the control points. The centre's allowance is the mean one.
     """
@@ -302,7 +302,7 @@ def farthest(points, allowance, floor, tol):
 
 @kernel
 def farthest_in_turn(t, states, slack, floors, tols):
-    """Return the upper bound of `farthest` in each interval; arguments as of `closest_of_few`."""
+    """Return the upper bound of `farthest` in each interval; arguments as in `closest_of_few`."""
     (q, p, u), upper = states, np.empty(len(t) - 1)
     for k in range(len(t) - 1):
         points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])

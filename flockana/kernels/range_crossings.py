@@ -35,7 +35,7 @@ def _squared(points, i, j, r, out):
 
 @kernel
 def _halve(stack, top):
-    """Halve the polynomial stack[top]: its left half goes on top of it, the right half stays in place."""
+    """Halve the polynomial stack[top]: the left half is pushed, the right half stays."""
     c = stack[top]
     for level in range(11):
         stack[top + 1, level] = c[0]
@@ -54,7 +54,7 @@ def _slopes(c):
 
 @kernel
 def _follow(stack, widths, band, slope_band, was_out):
-    """Return (was out of range, what is known of entries) along stack[0], known to `band` and `slope_band`."""
+    """Return (was out of range, status of entries) along stack[0], up to `band` and `slope_band`."""
     side = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:

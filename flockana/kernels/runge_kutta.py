@@ -17,7 +17,7 @@ from flockana.kernels.verlet import COUNT
 
 
 class Method(NamedTuple):
-    """A method (`flockana.solvers.tableau.Tableau`), and the tolerances of a run."""
+    """Runge-Kutta method (`flockana.solvers.tableau.Tableau`) with the tolerances of a run."""
 
     a: Any
     c: Any
@@ -33,7 +33,7 @@ class Method(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step: its start and length, the vectors at both ends, the rates of its stages, and room for a vector."""
+    """Work arrays of a step: start, length, vectors at both ends, stage rates, and a spare vector."""
 
     t: Any
     h: Any
@@ -44,7 +44,7 @@ class Step(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Functions of large arrays that one thread runs or several, as callbacks with the same results."""
+    """Functions of large arrays for one or several threads, as callbacks with equal results."""
 
     listed: Any  # `flockana.kernels.verlet.listed_anew`
     covers: Any
@@ -72,7 +72,7 @@ STRIP = 1024  # components at once: what is summed over the stages stays in the 
 
 @register_jitable
 def combine_strip(begin, y, h, weights, rates, rows, count, out):
-    """`combine` for the components of a strip."""
+    """Combine stage rates (`combine`) for the components of a strip."""
     end = min(begin + STRIP, y.size)
     total, start = out[begin:end], y[begin:end]
     total[:] = 0.0
@@ -94,7 +94,7 @@ def combine(y, h, weights, rates, rows, count, out):
 
 @kernel
 def frame_at(t, view, frame):
-    """Write place and velocity of the frame that the vectors are seen from."""
+    """Write position and velocity of the vectors' reference frame."""
     start, origin, drift = view
     for c in range(origin.size):
         frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
@@ -102,7 +102,7 @@ def frame_at(t, view, frame):
 
 @kernel
 def rate_of(t, y, f, system, pairs):
-    """Write the rate of the vector y into f; pairs are listed anew unless the list holds all within reach."""
+    """Write the rate of the vector y into f; list pairs again unless the list is still complete."""
     n, m, law, frame, (reach, skin) = system.order.size, system.frame.shape[1], system.law, system.frame, system.reach
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
@@ -119,7 +119,7 @@ def rate_of(t, y, f, system, pairs):
 
 @kernel
 def energy_of(t, y, system, pairs):
-    """Return the energy H of a vector whose pairs are listed: potential, and kinetic in the law's frame."""
+    """Return the energy H of a vector with listed pairs: potential plus kinetic energy in the law's frame."""
     n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
     x, v, total = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m), 0.0
     frame_at(t, system.seen_from, frame)
@@ -136,7 +136,7 @@ def energy_of(t, y, system, pairs):
 
 @kernel
 def stages_of(step, method, begin, end, system, pairs):
-    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
+    """Compute stages `begin` to `end` of a step; `reached` is its end after the last stage."""
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
         into = step.reached if s == method.stages else step.trial
@@ -149,7 +149,7 @@ def stages_of(step, method, begin, end, system, pairs):
 
 @inlined
 def interpolated(theta, step, method):
-    """Write the vector at a share θ of the step into its room."""
+    """Write the vector at a share θ of the step into the step's spare array."""
     interpolant = method.interpolant
     count, powers = interpolant.shape
     weights = np.empty(count)
@@ -168,7 +168,7 @@ def _allowed(k, size, floor):
 
 @inlined
 def error_of(step, method):
-    """Return the estimated error of a step over what is allowed, as scipy's solvers weigh it."""
+    """Return the estimated error of a step relative to its tolerance, weighted as in scipy's solvers."""
     h, y, stop, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
         weights, square, other = method.estimates[estimate], 0.0, square
@@ -192,7 +192,7 @@ def error_of(step, method):
 
 @kernel
 def _weighed(a, b, y, method):
-    """Return the root mean square of a − b over what is allowed."""
+    """Return the root mean square of a − b relative to the tolerance."""
     total = 0.0
     for k in range(y.size):
         total += ((a[k] - b[k]) / (_allowed(k, y.size // 2, method.floor) + abs(y[k]) * method.rtol)) ** 2
@@ -201,7 +201,7 @@ def _weighed(a, b, y, method):
 
 @inlined
 def first_step(span, step, method, system, pairs):
-    """Return the length of the first step, as scipy's solvers choose it; the second rate is overwritten."""
+    """Return the length of the first step by scipy's rule; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
     rest = np.empty(y.size)
     rest[:] = 0.0

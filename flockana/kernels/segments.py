@@ -1,4 +1,4 @@
-"""Whether segments meet and how far apart they are, with signs of determinants bounded against rounding.
+"""Crossing and distance of segments, with signs of determinants bounded against rounding.
 
 Signs of determinants are taken in floating point where a bound of the rounding error vouches for them (Shewchuk 1997)
 and are handed back as UNSURE where it does not.
@@ -69,7 +69,7 @@ def meet(c, d, a, b):
 
 @kernel
 def _overlap(a, b, c, planes):
-    """Return whether the links a–b and a–c of one agent share more than it: they run the same way."""
+    """Return whether the links a–b and a–c of one agent run the same way and overlap."""
     unsure = False
     for k in range(planes):
         t = (k + 1) % 3
@@ -143,7 +143,7 @@ def foot(p, a, b):
 
 @kernel
 def between(a, b, c, d):
-    """Return the distance of two segments that do not cross: at an end of one, or along their common normal."""
+    """Return the distance of two segments that do not cross, at an end or along their common normal."""
     nearest = min(min(foot(a, c, d), foot(b, c, d)), min(foot(c, a, b), foot(d, a, b)))
     uu, uv, vv, uw, vw = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
@@ -162,7 +162,7 @@ def between(a, b, c, d):
 
 @kernel
 def crossing_signs(x, links, a, b, planes):
-    """`cross` of links a[k] and b[k] for every k: 1, 0 or UNSURE; positions x are padded to (n, 3)."""
+    """Return `cross` of links a[k] and b[k] for every k: 1, 0 or UNSURE; positions x are padded to (n, 3)."""
     signs = np.empty(a.size, np.int64)
     for k in range(a.size):
         signs[k] = cross(x, links[a[k], 0], links[a[k], 1], links[b[k], 0], links[b[k], 1], planes)

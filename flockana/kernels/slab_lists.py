@@ -1,4 +1,4 @@
-"""Lists of pairs of large flocks: slabs are listed at once, by all threads, each into a part of the list."""
+"""Pair lists of large flocks: all threads list slabs at once, each into its part of the list."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from flockana.kernels.verlet import MOST, later_agents, list_cells, list_pairs, 
 
 @register_jitable
 def _most_pairs(start, rows, begin, end):
-    """Number of pairs of the agents in some cells, at most."""
+    """Return an upper bound of the number of pairs of the agents in some cells."""
     total = 0
     for cell in range(begin, end):
         size = np.int64(start[cell + 1] - start[cell])
@@ -19,7 +19,7 @@ def _most_pairs(start, rows, begin, end):
 
 @kernel
 def list_slabs(q, reach, first, second, cuts):
-    """As `list_pairs`, with the same list; write the number of slabs, and where the pairs of each begin and end."""
+    """List pairs slab by slab, as `list_pairs`; write the number of slabs and the bounds of each one's pairs."""
     cuts[0], cuts[1], cuts[2], count = 1, 0, 0, 0
     if not reach > 0.0:
         return count
@@ -57,11 +57,11 @@ parallel_list_slabs = parallel(list_slabs)
 
 @kernel
 def listed_in_slabs(q, reach, pairs):
-    """As `listed_anew`, slab by slab."""
+    """Renew a pair list slab by slab, with the result of `listed_anew`."""
     return noted(list_slabs(q, reach, pairs.first, pairs.second, pairs.cuts), q, reach, pairs)
 
 
 @kernel
 def listed_by_threads(q, reach, pairs):
-    """As `listed_in_slabs`, by several threads."""
+    """Renew a pair list slab by slab with several threads, as `listed_in_slabs`."""
     return noted(parallel_list_slabs(q, reach, pairs.first, pairs.second, pairs.cuts), q, reach, pairs)

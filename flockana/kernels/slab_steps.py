@@ -1,4 +1,4 @@
-"""Work of the steps of large flocks beside forces and lists, by all threads, with the results of one."""
+"""Step work of large flocks apart from forces and lists, on all threads, with the results of one."""
 
 import numpy as np
 
@@ -11,14 +11,14 @@ _PARTS = 64  # of the agents
 
 @kernel
 def combine_strips(y, h, weights, rates, rows, count, out):
-    """As `flockana.kernels.runge_kutta.combine`."""
+    """Combine stage rates, as `flockana.kernels.runge_kutta.combine`, strip by strip."""
     for strip in prange((y.size + STRIP - 1) // STRIP):
         combine_strip(np.int64(strip) * STRIP, y, h, weights, rates, rows, count, out)
 
 
 @kernel
 def ways_between(q, reference, along, low, high):
-    """Write the least and greatest way of each part of the agents along each coordinate, beside the common stretch."""
+    """Write the least and greatest displacement of each part of the agents per coordinate, less the common stretch."""
     n, m = q.shape
     for part in prange(_PARTS):
         begin, end = np.int64(part) * n // _PARTS, (np.int64(part) + 1) * n // _PARTS
@@ -35,13 +35,13 @@ parallel_combine_strips, parallel_ways_between = parallel(combine_strips), paral
 
 @kernel
 def combined_by_threads(y, h, weights, rates, rows, count, out):
-    """As `flockana.kernels.runge_kutta.combine`, by several threads."""
+    """Combine stage rates with several threads, as `flockana.kernels.runge_kutta.combine`."""
     parallel_combine_strips(y, h, weights, rates, rows, count, out)
 
 
 @kernel
 def covered_by_threads(pairs, q, within):
-    """As `flockana.kernels.verlet.covers`, by several threads."""
+    """Check a pair list with several threads, as `flockana.kernels.verlet.covers`."""
     reference, m = pairs.places, q.shape[1]
     along, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
     for stretched in range(2 if pairs.reach[0] > 0.0 else 0):

@@ -29,7 +29,7 @@ class Rules(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """Data that steps are checked against."""
+    """Data for checking steps."""
 
     around: Any  # `flockana.kernels.encounters.Around`
     rules: Any
@@ -44,7 +44,7 @@ def empty_ledger() -> Any:
 
 @inlined
 def balanced(first, last, work, balance, ledger):
-    """Return the fraction of a step that the balance of energies and work accepts; update the ledger.
+    """Return the accepted fraction of a step by the balance of energy and work; update the ledger.
 
     A residual that does not fall when the step is halved is not the integrator's: the law's rate is not that of its
     energy, or all is rounding. Then steps stand as they are.
@@ -83,7 +83,7 @@ def ends_of(block, k, n, m):
 
 @inlined
 def checked(block, k, judged, view, kept, near):
-    """Return (length to repeat step k with, 0 if it is accepted; whether the run ends at a pole or pairs lack room)."""
+    """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole or for lack of room)."""
     around, rules, ledger, share_allowed = judged
     t, at, share = block.t[k], block.t[k + 1], 1.0
     h = at - t

@@ -1,4 +1,4 @@
-"""What share of a step stands: no agent leaps over an obstacle, no pair over an encounter or a pole.
+"""Accepted share of a step: no agent skips an obstacle, no pair skips an encounter or a pole.
 
 A template (`flockana.kernels.bound_templates`): a run compiles only the checks that its law needs.
 """
@@ -26,7 +26,7 @@ _BLOCK = 2**16  # pairs looked at together where a list of all would not fit int
 
 @inlined
 def _at_rest(t, h, points, view):
-    """Return the same paths in the frame in which the obstacles are at rest."""
+    """Return the paths in the frame in which the obstacles are at rest."""
     places, m = points.copy(), view[1].size
     frame = np.empty((2, m))
     for k in range(6):
@@ -39,7 +39,7 @@ def _at_rest(t, h, points, view):
 
 @inlined
 def _share_of(ends, whole, around, first, second, share):
-    """Return the share of a step that some pairs allow, if less than `share`; negative if one crosses a pole."""
+    """Return the share of a step allowed by given pairs, if less than `share`; negative if a pole is crossed."""
     common, ways, between = whole
     if POLES and not around.few:
         beside = steepest(common[1]), ways[0] + ways[1]
@@ -54,7 +54,7 @@ def _share_of(ends, whole, around, first, second, share):
 
 @inlined
 def _share_of_crowd(ends, whole, around, share):
-    """Return `_share_of` over all close pairs, found block by block without a list."""
+    """Return the share of a step allowed by all close pairs, found block by block without a list."""
     q0, within = ends.q0, whole[2][1]
     (n, m), cell, row = q0.shape, np.int64(0), np.int64(0)  # typed, as in `advance`
     grid, x = sort_into_grid(q0, within), np.empty(q0.shape)
@@ -70,7 +70,7 @@ def _share_of_crowd(ends, whole, around, share):
 
 @kernel
 def share_of_step(t, ends, around, view, kept, near):
-    """Return the accepted fraction of a step; it is negative if it is POLE, TOO_MANY or NO_ROOM.
+    """Return the accepted fraction of a step; negative codes are POLE, TOO_MANY and NO_ROOM.
 
     The list `kept` is the integrator's, `near` that of these checks, which is made anew where neither holds all pairs
     that may meet.

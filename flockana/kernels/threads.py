@@ -1,4 +1,4 @@
-"""Threads of a run: how many, and whether code for several may run now.
+"""Threads of a run: their number, and whether multithreaded code may run now.
 
 Such code gives the same bits as its serial twin, which therefore runs wherever several threads are not safe: in a
 process that was forked after threads had begun, and beside another run of this process, as not all of numba's
@@ -62,7 +62,7 @@ def several_threads(threads: int | None = None) -> Iterator[bool]:
 
 @contextmanager
 def limited_threads(threads: int | None) -> Iterator[None]:
-    """Let `several_threads` use so many inside, unless it is given a number itself."""
+    """Limit `several_threads` to a default number of threads inside the block."""
     token = _LIMIT.set(threads)
     try:
         yield

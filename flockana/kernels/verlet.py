@@ -1,4 +1,4 @@
-"""Verlet list: the pairs within a range and a skin, valid until relative displacements exceed the skin.
+"""Verlet list: pairs within a range plus a skin, valid until relative displacements exceed the skin.
 
 A list is a half list of two index arrays with room to spare, which kernels fill in place. Agents sorted by cell keep
 what a pair needs close in memory.
@@ -14,7 +14,7 @@ from flockana.kernels.grid import empty_cuts, sort_into_grid
 
 
 class Pairs(NamedTuple):
-    """List of pairs, which kernels fill: two index arrays, places and reach of its making, and counts."""
+    """Pair list filled by kernels: two index arrays, reference positions and reach, and counts."""
 
     first: Any  # uint32
     second: Any
@@ -32,13 +32,13 @@ MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
 def spatial_order(q: Any, side: float) -> Any:
-    """Return an order of the agents in which those in one cell follow each other."""
+    """Return an order of the agents that keeps the agents of a cell together."""
     return sort_into_grid(q, side)[0]
 
 
 @inlined
 def later_agents(start, rows, cell):
-    """Return with how many agents one of a cell may be listed, at most."""
+    """Return an upper bound of the number of agents listed with one agent of a cell."""
     count = np.int64(start[cell + 2] - start[cell])
     for row in range(rows.size):
         there = np.int64(cell) + np.int64(rows[row])
@@ -48,7 +48,7 @@ def later_agents(start, rows, cell):
 
 @register_jitable
 def list_cells(x, grid, limit, cells, lists, count):
-    """List the pairs of the agents in some cells from a place on; return where they end, or as `list_pairs`."""
+    """List the pairs of agents in some cells from an index on; return the end index, or as `list_pairs`."""
     (order, start, rows), (first, second), m = grid, lists, x.shape[1]
     for cell in range(cells[0], cells[1]):
         begin, end = start[cell], start[cell + 1]
@@ -95,7 +95,7 @@ def list_pairs(q, reach, first, second):
 
 @kernel
 def covers(pairs, q, within):
-    """Return whether a list still holds every pair that is closer than `within`.
+    """Return whether a list still contains every pair closer than `within`.
 
     A motion that all share brings no two nearer, and one that stretches each coordinate by a factor brings them nearer
     by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.
@@ -123,7 +123,7 @@ def covers(pairs, q, within):
 
 @kernel
 def noted(count, q, reach, pairs):
-    """Note what a new list was made from, and return its count."""
+    """Record the positions of a new list, and return its count."""
     put(q, pairs.places)
     pairs.reach[0] = reach if count >= CROWDED else 0.0
     pairs.counts[COUNT] = count
@@ -133,7 +133,7 @@ def noted(count, q, reach, pairs):
 
 @kernel
 def listed_anew(q, reach, pairs):
-    """List the pairs closer than `reach` in place of an old list; return their count, as `list_pairs` does."""
+    """Replace an old list by the pairs closer than `reach`; return their count, as `list_pairs` does."""
     count = list_pairs(q, reach, pairs.first, pairs.second)
     pairs.cuts[0], pairs.cuts[1], pairs.cuts[2] = 1, 0, max(count, 0)
     return noted(count, q, reach, pairs)
@@ -146,7 +146,7 @@ def no_pairs(n: int, m: int) -> Pairs:
 
 
 def with_room(pairs: Pairs) -> Pairs | None:
-    """Return an empty list with the room that the last one lacked, or twice as much; None if it lacked none."""
+    """Return an empty list with the lacking room, or twice the room; None if the last list sufficed."""
     if (lacking := -int(pairs.counts[COUNT])) <= -CROWDED:
         return None
     room = max(lacking, 2 * pairs.first.size)

@@ -1,4 +1,4 @@
-"""Velocity consensus alone, with any weight of the distance: a template (`flockana.kernels.bound_templates`).
+"""Velocity consensus with any weight of the distance: a template (`flockana.kernels.bound_templates`).
 
 A weight is a scalar function of the squared distance and of its parameters. The numbers of a term are the gain, whether
 it is divided by the number of agents, the range (infinite for all pairs) and the parameters.
@@ -38,7 +38,7 @@ def match(x, v, gain, r2, par, u):
 
 @kernel
 def act(t, x, v, u, numbers, panels, listed):
-    """Add velocity consensus as a term of a law, over all pairs or those of the list, and return its power."""
+    """Add velocity consensus as a term of a law, over all or listed pairs, and return its power."""
     gain, r2, par = numbers[0], numbers[2] * numbers[2], numbers[3:]
     if numbers[1] != 0.0:
         gain /= len(x)
