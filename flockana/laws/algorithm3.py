@@ -19,7 +19,7 @@ from flockana.laws.terms.term import Term
 
 
 def ensure_obstacles(given: Any) -> tuple[Obstacle, ...]:
-    """Return obstacles as a tuple, or raise if something among them is none."""
+    """Return obstacles as a tuple; raise on entries that are not obstacles."""
     if not isinstance(given, Iterable) or getattr(given, "ndim", 1) == 0:  # numpy's numbers are iterable by type alone
         raise ArgumentError(f"obstacles = {format_value(given)}: expected a sequence such as (Sphere((5, 0), 1),)")
     obstacles = tuple(given)

@@ -38,7 +38,7 @@ _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Composition(GainedLaw):
-    """Law that `compose` puts together; an absent term is None, empty or has the gain 0.
+    """Law built by `compose`; an absent term is None, empty or has gain 0.
 
     u_i = c1α Σ_j φ n_ij + c2α Σ_j a_ij (p_j − p_i) + β-agents + γ-feedback + feedforward d²q_r/dt² + (α − β‖p_i‖²) p_i.
 
@@ -169,7 +169,7 @@ class Composition(GainedLaw):
         return tuple(terms)
 
     def structural_energy(self, q: Any, p: Any) -> float:
-        """Return the energy that never rises unless a term adds some: in the moving frame if nothing fixes the place.
+        """Return the energy that never rises without energy sources; in the moving frame unless the position is fixed.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ def compose(
     speed: tuple[float, float] | None = None,
     **unknown: Any,
 ) -> Algorithm1 | Algorithm2 | Algorithm3 | Composition:
-    """A law from its terms, each given by its part and gains; gains not given are the defaults of `Gains`.
+    """Build a law from its terms, given by parts and gains; missing gains are the defaults of `Gains`.
 
     Parameters
     ----------
@@ -304,7 +304,7 @@ def compose(
 
 
 def _ensure_parts(part: str, value: Any, **belonging: Any) -> None:
-    """Raise if an option is given without the part of the law that it belongs to."""
+    """Raise if an option is given without its part of the law."""
     for name, gain in belonging.items():
         if value is None and gain is not None and gain is not False:
             raise ArgumentError(f"{name} = {gain!r} without its part: give {part}=..., or leave {name} out")

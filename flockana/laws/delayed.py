@@ -19,7 +19,7 @@ _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for roun
 
 @dataclass(frozen=True)
 class Delayed(Wrapper):
-    """Law whose agents act on states that are `delay` old; before the start, `history` or uniform motion.
+    """Law on states that are `delay` old; before the start, `history` or uniform motion.
 
     Without a history, agents under a law of first order rested before the start.
 
@@ -115,7 +115,7 @@ class Delayed(Wrapper):
 
     @property
     def clocks(self) -> tuple[float, ...]:
-        """The positive delay common to all agents, at whose multiples the solution has kinks; else empty."""
+        """Positive delay common to all agents, the interval of the solution's kinks; else empty."""
         return (self.delay,) if isinstance(self.delay, float) and self.delay > 0.0 else ()
 
     def check_dimension(self, m: int) -> None:  # noqa: D102

@@ -41,7 +41,7 @@ _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are coun
 
 @dataclass(frozen=True)
 class Reaching(DistanceFunction):
-    """The pair law with another range, at which its bump ends; its distance d stays."""
+    """Pair law with another range, where its bump ends; the distance d is unchanged."""
 
     alpha: AlphaInteraction
     r: float
@@ -53,7 +53,7 @@ class Reaching(DistanceFunction):
 
     @property
     def feature(self) -> float:
-        """Length of repulsion; a run watches the ranges."""
+        """Length of repulsion; the ranges are watched by a run's own checks."""
         return min(self.alpha.d, self.r)
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:  # noqa: D102
@@ -67,7 +67,7 @@ class Reaching(DistanceFunction):
 
 @dataclass(frozen=True)
 class DirectedNet(WrappingLaw):
-    """Law of Olfati-Saber whose agents see others within ranges of their own, and in a cone ahead of them.
+    """Law of Olfati-Saber with individual ranges of sight, and a cone of view ahead of each agent.
 
     u_i = Σ w_ij (c1α φ_α n_ij + c2α a_ij (p_j − p_i)) over the j that i sees, in which the bump ends at agent i's own
     range (a_ij ≠ a_ji then), and the other terms as they are. A range at most d makes an agent that repels and never
@@ -136,7 +136,7 @@ class DirectedNet(WrappingLaw):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The pair law, once for each range, heard by the agents that have it."""
+        """Pair law once for each range, with the agents that have this range."""
         gains = self.law.gains.c1_alpha, self.law.gains.c2_alpha
         if not isinstance(self.ranges, tuple):
             return (LawFunction("the pair law", self._with_range(self.ranges), *gains),)
@@ -146,12 +146,12 @@ class DirectedNet(WrappingLaw):
         )
 
     def features(self) -> tuple[Feature, ...]:
-        """Return those of the pair law with the agents' own ranges, and of the law's other parts."""
+        """Return the features of the pair law with the agents' ranges, and of the law's other parts."""
         others = (term for term in self.law.terms if not isinstance(term, PairTerm))
         return (*map(function_feature, self.functions), *(one for term in others for one in term.features()))
 
     def _with_range(self, r: float | None) -> DistanceFunction:
-        """Return the pair law with another range; its bump ends there, its distance d stays."""
+        """Return the pair law with another range, where its bump ends; the distance d is unchanged."""
         return self.alpha if r is None else Reaching(self.alpha, r)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
@@ -172,7 +172,7 @@ class DirectedNet(WrappingLaw):
         return float((_SLOW * self.law.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the input, and NaN as no energy is known."""
+        """Return the input, with NaN for the unknown energy rate."""
         u, reach = np.zeros(q.shape), self._reach(len(q))
         for term in self.law.terms:
             if isinstance(term, PairTerm):
@@ -184,7 +184,7 @@ class DirectedNet(WrappingLaw):
         return u, float("nan")
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:
-        """Return (∂u/∂q, ∂u/∂p), sparse: of each agent's own pair law as its cone sees it, and of the other terms."""
+        """Return (∂u/∂q, ∂u/∂p), sparse: each agent's pair law in its cone of view, plus the other terms."""
         pairs = [term for term in self.law.terms if isinstance(term, PairTerm)]
         rest = [term.derivatives(t, q, p) for term in self.law.terms if not isinstance(term, PairTerm)]
         by_position, by_velocity = zip(*(self._pair_derivatives(term, q, p) for term in pairs), *rest, strict=True)
@@ -215,7 +215,7 @@ class DirectedNet(WrappingLaw):
     def _sight_slopes(
         self, delta: FloatArray, ahead: FloatArray, s2: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the sight w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
+        """Return the visibility w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
         sight, by_delta, by_own = np.ones(len(s2)), np.zeros(delta.shape), np.zeros(delta.shape)
         if self._width >= 2.0:
             return sight, by_delta, by_own
@@ -263,7 +263,7 @@ class DirectedNet(WrappingLaw):
 
 
 def _rows(n: int, m: int, *entries: tuple[Any, Any, FloatArray]) -> Any:
-    """Return the sparse matrix (n m, n m) of blocks at (row, column); blocks at one place add up."""
+    """Return the sparse matrix (n m, n m) of blocks at (row, column); repeated blocks add up."""
     from scipy.sparse import csr_array
 
     rows, columns, blocks = (np.concatenate(part) for part in zip(*entries, strict=True))

@@ -50,7 +50,7 @@ class DiscreteLaw(LawOfMotion):
 
     @property
     def continuous(self) -> Law | None:
-        """Continuous law that the map steps, its parameter `law`; None if it steps none."""
+        """Continuous law that the map discretises, its parameter `law`; None without one."""
         inner = vars(self).get("law")
         return inner if isinstance(inner, Law) else None
 
@@ -66,7 +66,7 @@ class DiscreteLaw(LawOfMotion):
 
     @property
     def scales(self) -> Scales | None:
-        """Length and time scales of the law that is stepped."""
+        """Length and time scales of the discretised law."""
         return None if self.continuous is None else self.continuous.scales
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -107,7 +107,7 @@ class DiscreteLaw(LawOfMotion):
         return self._step_by_step(times, q, p, memory, np.arange(1, steps + 1))
 
     def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
-        """Return the results of some of the steps that begin at the times given; `simulate` asks for this.
+        """Return the results of selected steps that begin at given times, as `simulate` needs them.
 
         Once the state is not finite it stays so, as the steps in between are not seen. At most `steps_at_once` are
         asked for at a time.
@@ -130,7 +130,7 @@ class DiscreteLaw(LawOfMotion):
     def _step_by_step(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States:
-        """Return what `visit` does, by calls of `step`."""
+        """Return the results of `visit` by repeated calls of `step`."""
         states, memories, marks, lost = [], [], set(wanted.tolist()), False
         for k, t in enumerate(times[: wanted[-1]].tolist(), 1):
             if not lost:
@@ -149,7 +149,7 @@ class DiscreteLaw(LawOfMotion):
 
 
 def is_own_map(law: Any) -> bool:
-    """Return whether a law is a map that steps no continuous law."""
+    """Return whether a law is a map that does not discretise a continuous law."""
     return isinstance(law, DiscreteLaw) and law.continuous is None
 
 

@@ -1,4 +1,4 @@
-"""A law whose agents are pushed by a disturbance: a force of time, a table, a sinusoid, white noise."""
+"""Law with a disturbance: a force in time, a table, a sinusoid, white noise."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Disturbed(Wrapper):
 
     @property
     def stepped(self) -> bool:  # type: ignore[override]
-        """Whether there is noise."""
+        """Whether noise requires fixed steps."""
         return self.intensity > 0.0
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
@@ -136,11 +136,11 @@ class Disturbed(Wrapper):
         return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(called(t / time)))
 
     def _called(self, t: float) -> Any:
-        """Return the constant force, or that of a function at a time; None without a force."""
+        """Return the constant force, or a function's force at a time; None without a force."""
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def features(self) -> tuple[Feature, ...]:
-        """Return those of the law, and how fast the push changes; None of a function of time."""
+        """Return the features of the law and of the push; None width for a function of time."""
         times = [inf, *np.diff([] if self.times is None else self.times)]
         swings = 0.25 / self.frequency if self.swing is not None and self.frequency > 0.0 else inf
         width = None if callable(self.force) else float(min(swings, *times))
@@ -175,7 +175,7 @@ class Disturbed(Wrapper):
         return self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
 
     def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
-        """Return `kick` of `count` steps of length h from step `first` on, stacked."""
+        """Return the stacked `kick` of `count` steps of length h from step `first` on."""
         if not self.intensity:
             return np.zeros((count, *shape))
         return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
@@ -192,7 +192,7 @@ class Disturbed(Wrapper):
         return None if self.stepped else self.compiled_push(m)
 
     def compiled_push(self, m: int) -> Compiled | None:
-        """The law with its pushes and without its noise, as `compiled` gives it."""
+        """Return the compiled law with its pushes but without noise, as `compiled` gives it."""
         inner = self.law.compiled_push(m)
         form = None if callable(self.force) or self.times else inner
         if form is None:
@@ -212,7 +212,7 @@ class Disturbed(Wrapper):
 
 
 def _pushes(name: str, value: Any, least: int) -> Any:
-    """Return finite numbers with `least` axes or one more as nested tuples; None stays None."""
+    """Return finite numbers with `least` or `least + 1` axes as nested tuples; None stays None."""
     if value is None:
         return None
     shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"

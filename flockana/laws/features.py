@@ -1,4 +1,4 @@
-"""Narrowest features of a law's parts, which the steps of a run must resolve."""
+"""Narrowest features of a law's parts, to be resolved by the steps of a run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Feature(NamedTuple):
-    """Narrowest rise and fall of one part of a law: over a distance of agents, or in time."""
+    """Narrowest rise or fall of one part of a law, over distance or in time."""
 
     name: str  # of the part, in words
     of: Literal["pairs", "agents", "time"]  # what must not leap over it within a step
@@ -21,7 +21,7 @@ class Feature(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """Law or term that does not say what it reads."""
+    """Feature of a law or term that does not declare its functions."""
 
     whose: str
 

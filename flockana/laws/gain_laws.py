@@ -29,7 +29,7 @@ def ensure_gains(law: Any) -> None:
 
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
-    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ."""
+    """Return d, and the time in which the leading term (c1α, c1γ, c2α or c2γ) moves an agent by d."""
     rates = (
         np.sqrt(gains.c1_alpha * alpha.strength / alpha.length),
         np.sqrt(np.max(gains.c1_gamma)),
@@ -40,7 +40,7 @@ def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
 
 
 class GainedLaw(SumOfTerms):
-    """A sum of terms with `gains`: c1α is 1/time², c2α 1/time, unless pair law or weight carry a time of their own."""
+    """Sum of terms with `gains`: c1α is 1/time², c2α 1/time, unless pair law or weight have their own time unit."""
 
     alpha: Any  # the pair law; a composition may lack one
     gains: GainsField

@@ -1,4 +1,4 @@
-"""Laws that act in turn, each for its length of time: nets that switch by a schedule."""
+"""Switching laws: each acts in turn for its length of time, for nets on a schedule."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from flockana.laws.wrapper_base import needs_steps
 
 @dataclass(frozen=True)
 class _Turns:
-    """Laws in turn, of whichever order."""
+    """Base class of laws that act in turn, of either order."""
 
     laws: Any
     lengths: Any
@@ -50,19 +50,19 @@ class _Turns:
         return np.concatenate([[0.0], np.cumsum(self.lengths)])
 
     def _begin(self, turn: int) -> float:
-        """Return when a turn begins, counted from 0."""
+        """Return the start time of a turn, counted from 0."""
         rounds, place = divmod(turn, len(self.laws))
         return self.since + float(self._ends[place] + (rounds * self._ends[-1] if rounds else 0.0))
 
     def _turn(self, t: float) -> int:
-        """Return the turn at a time, the earlier one where two meet."""
+        """Return the number of the turn at a time; the earlier one at a switch."""
         turn = len(self.laws) * max(0, int((t - self.since) / self._ends[-1]) - 1)
         while self._begin(turn + 1) < t:
             turn += 1
         return turn
 
     def acting(self, t: float) -> Any:
-        """Return the law that acts at a time; at a switch the one before it, and before `since` the first."""
+        """Return the acting law at a time; at a switch the earlier one, before `since` the first."""
         return self.laws[self._turn(t) % len(self.laws)]
 
     def switches(self, start: float, stop: float) -> FloatArray:
@@ -144,7 +144,7 @@ class InTurn(_Turns, Law):  # type: ignore[override]
         return self.acting(t).flow(t, q, p)[0], float("nan")
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        """Return the derivatives of the law that acts at a time."""
+        """Return the derivatives of the acting law at a time."""
         return self.acting(t).derivatives(t, q, p)
 
 
@@ -177,10 +177,10 @@ class VelocityInTurn(_Turns, VelocityLaw):  # type: ignore[override]
         return v
 
     def slopes(self, t: float, q: FloatArray) -> Any:
-        """Return the slopes of the law that acts at a time."""
+        """Return the slopes of the acting law at a time."""
         return self.acting(t).slopes(t, q)
 
     def acceleration(self, t: float, q: FloatArray) -> FloatArray:
-        """Return d²q/dt² along the motion of the law that acts at a time."""
+        """Return d²q/dt² along the motion of the acting law at a time."""
         u: FloatArray = self.acting(t).acceleration(t, q)
         return u

@@ -43,7 +43,7 @@ _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field"
 
 
 def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
-    """Return the first pair interaction among parameters, or in laws among them; None if its range is infinite."""
+    """Return the first pair interaction among parameters or inner laws; None if its range is infinite."""
     for value in parameters:
         pair = value.pair if isinstance(value, LawOfMotion) else value
         if isinstance(pair, PairInteraction):
@@ -97,7 +97,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
 
     @property
     def continuous(self) -> Law | None:
-        """The continuous law: the law itself, or the one that a map steps; None if there is none."""
+        """Continuous law: the law itself, or the one discretised by a map; None without one."""
         return None
 
     @property
@@ -123,7 +123,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         return tuple(feature for part in self._parts() for feature in part.features())
 
     def _parts(self) -> Iterator[Any]:
-        """Yield the terms, or the inner law, that say what the law reads, and what says nothing of it."""
+        """Yield the parts of a law (terms or inner law) that declare its functions."""
         inner = vars(self).get("law")
         wraps = isinstance(inner, LawOfMotion)
         parts = (inner,) if wraps else self.terms
@@ -136,7 +136,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
             yield Unknown(type(self).__name__)
 
     def corners_at(self, q: Any, tolerance: float = 1e-9) -> tuple[PairCorner, ...]:
-        """Return the pairs that stand where a function that the law reads jumps or bends.
+        """Return the pairs at a jump or bend of a function of the law.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         return tuple(dict.fromkeys(pairs))
 
     def term(self, kind: type[_Term]) -> _Term | None:
-        """The first term of a kind, None if there is none.
+        """Return the first term of a kind, None without one.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
 
     @property
     def scales(self) -> Scales | None:
-        """The natural length and time of the law, which thresholds are multiples of; None if it has none of its own."""
+        """Natural length and time of the law, the units of thresholds; None without its own."""
         return None
 
     @property
@@ -218,7 +218,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
 
     @property
     def poles(self) -> tuple[float, ...]:
-        """Distances between agents at which the potential is infinite or the force has no limit; none is crossed.
+        """Distances between agents with infinite potential or undefined force; no run crosses them.
 
         Those of the law's pair interaction, if it has one, and 0 of a weight with a pole. A run that meets one ends as
         failed.
@@ -232,11 +232,11 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         return None
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one."""
+        """Return the energy whose rate `Law.flow` returns, unchecked; NaN without an energy."""
         return float("nan")
 
     def switches(self, start: float, stop: float) -> FloatArray:
-        """Return the times in [start, stop) after which another law acts, rising; at each the one before acts still.
+        """Return the times of law switches in [start, stop), rising.
 
         Parameters
         ----------
@@ -246,17 +246,17 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         return np.empty(0)
 
     def check_dimension(self, m: int) -> None:  # nothing to check unless a subclass says so
-        """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this."""
+        """Raise if the law is not defined in m dimensions; overridden by laws with vector parameters."""
 
     def check_agents(self, n: int) -> None:  # as `check_dimension`
-        """Raise if the law is not for n agents; a law with a parameter per agent overrides this."""
+        """Raise if the law is not for n agents; overridden by laws with per-agent parameters."""
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if the law must not be started from this state; `simulate` asks before it integrates."""
+        """Raise if the law must not start from this state; called by `simulate` before integration."""
         self.check_agents(len(q))
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:
-        """Return the measures of a run that only this law has; `Trajectory.metrics` shows them.
+        """Return the law's own measures of a run, shown by `Trajectory.metrics`.
 
         Parameters
         ----------
@@ -290,7 +290,7 @@ class Law(LawOfMotion):
 
     @abstractmethod
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Acceleration u of shape (n, m) and dH/dt in closed form (NaN for a law without energy), unchecked."""
+        """Return acceleration u of shape (n, m) and dH/dt in closed form (NaN without energy), unchecked."""
 
     def _checked(self, t: Any, q: Any, p: Any) -> tuple[float, FloatArray, FloatArray]:
         q, p = ensure_state(q, p)
@@ -299,7 +299,7 @@ class Law(LawOfMotion):
         return ensure_finite_scalar("t", t), q, p
 
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow`; raise unless it is an array of real numbers in the flock's shape and a real number."""
+        """Return `flow`; raise unless it is a real array in the flock's shape and a real number."""
         flow: Any = self.flow(t, q, p)
         name, at = type(self).__name__, f"at t = {t:g}"
         if not isinstance(flow, tuple) or len(flow) != 2:
@@ -344,7 +344,7 @@ class Law(LawOfMotion):
         return self.compiled(m)
 
     def block(self, solver: Any) -> Block | None:
-        """Return the law's own compiled block of steps by a solver, ``(times, q, p, wanted) -> (q, p, u)``.
+        """Return the law's own compiled block of solver steps, ``(times, q, p, wanted) -> (q, p, u)``.
 
         None unless a law has one; a block may give None where it does not serve. Arguments and results are those of
         `DiscreteLaw.visit`.

@@ -1,4 +1,4 @@
-"""What has a start beside its law, such as a flock or a scenario."""
+"""Objects with a law and a start, such as a flock or a scenario."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -9,4 +9,4 @@ class WithStart(ABC):
 
     @abstractmethod
     def law_and_start(self, seed: int) -> tuple[Any, Any, Any, tuple[float, float]]:
-        """Return the law, positions, velocities and time span; what is drawn is drawn from the seed."""
+        """Return the law, positions, velocities and time span; random parts are drawn from the seed."""

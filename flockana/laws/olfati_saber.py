@@ -27,7 +27,7 @@ def ensure_one_gain(gains: Gains) -> None:
 
 
 def paper_pair(law: Any) -> AlphaInteraction:
-    """Return a law's pair law; raise unless it is the paper's, the only one for which φ_α's properties are proved."""
+    """Return a law's pair law; raise unless it is Olfati-Saber's, whose φ_α has proved properties."""
     ensure_kind("alpha", law.alpha, AlphaInteraction, "AlphaInteraction(...), as proofs need it")
     return law.alpha
 

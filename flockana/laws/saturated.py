@@ -83,7 +83,7 @@ class Saturated(Wrapper):
         return bounded, rate + float(np.sum((bounded - u) * velocity))
 
     def slopes(self, u: FloatArray) -> FloatArray:
-        """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise where an input is at it.
+        """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise exactly at the limit.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Laws that are sums of terms: force, power, energy and derivatives come from the terms, one by one."""
+"""Laws that are sums of terms: force, power, energy and derivatives are summed term by term."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class SumOfTerms(Law):
     @property
     @abstractmethod
     def terms(self) -> tuple[Term, ...]:
-        """The summands, in the order in which they are added."""
+        """Terms of the law, in the order of summation."""
 
     @property
     def moving(self) -> bool:
-        """Whether the energy is that in the frame of the centre of mass."""
+        """Whether the energy is measured in the frame of the centre of mass."""
         return any(term.moving for term in self.terms)
 
     @property
@@ -62,7 +62,7 @@ class SumOfTerms(Law):
         return u, rate
 
     def compiled(self, m: int) -> Compiled | None:
-        """Return the law's terms in compiled form; None if a term has none, or needs agents unsorted beside a list."""
+        """Return the law's terms in compiled form; None if a term has none."""
         if not overrides_consistently(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels: list[TermKernel] = []
@@ -87,7 +87,7 @@ class SumOfTerms(Law):
         return assembled(by_position), assembled(by_velocity)
 
     def derivation(self, m: int = 2) -> EnergyIdentity:
-        """Potential, force, energy and dH/dt with its closed form, for every number of agents; prints as LaTeX.
+        """Return potential, force, energy and dH/dt in closed form, for every number of agents, with LaTeX output.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Laws whose acceleration jumps across surfaces in space: what `simulate` must know to stop at each switch."""
+"""Laws with acceleration jumps across surfaces in space, at which `simulate` must stop."""
 
 from abc import abstractmethod
 from typing import ClassVar, NamedTuple
@@ -13,14 +13,14 @@ Pieces = npt.NDArray[np.int8]
 
 
 class Margins(NamedTuple):
-    """Distances of pairs to the edges of their pieces, negative beyond, and the side of the nearer edge."""
+    """Distances of pairs from the edges of their pieces (negative beyond), and the side of the nearer edge."""
 
     inside: FloatArray
     upper: npt.NDArray[np.bool_]
 
 
 class SwitchedLaw(Law):
-    """A law made of smooth pieces, one for each pair of agents, that meet in jumps.
+    """Law with smooth pieces for each pair of agents, separated by jumps.
 
     A piece is an interval of the pair's distance. Where `located` is true, `simulate` integrates the pieces held as
     they are, stops where the first pair leaves its own, and goes on with the next; where a pair is driven back from
@@ -45,7 +45,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """Return how far each pair is from leaving its piece.
+        """Return each pair's distance from leaving its piece.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def held_speed(self, push: float) -> float:
-        """Return the radial speed up to which a pair counts as held at a surface.
+        """Return the radial speed below which a pair counts as held at a surface.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class SwitchedLaw(Law):
         """
 
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Return a description of what slides along the surface just crossed; None if nothing does.
+        """Return a description of the sliding mode on the surface just crossed; None without one.
 
         Parameters
         ----------

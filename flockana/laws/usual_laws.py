@@ -1,4 +1,4 @@
-"""Laws that need no target, with their usual parameters: to be tried on a flock, or compared with a recording."""
+"""Laws without a target, with usual parameters, for trial on a flock or comparison with a recording."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from flockana.laws.olfati_saber import Algorithm1
 
 @dataclass(frozen=True)
 class Candidate:
-    """Law that needs no target, with the scale of a flock to try it on."""
+    """Law without a target, with the scale of a flock for a trial."""
 
     law: type[Law]
     length: float = 7.0  # distance of neighbours
@@ -20,7 +20,7 @@ class Candidate:
 
 @cache
 def candidates() -> Mapping[str, Candidate]:
-    """Return the candidates by name, for people: Algorithm 1, and those in the `CANDIDATES` of the sources' laws."""
+    """Return the candidate laws by name: Algorithm 1, and the `CANDIDATES` of the sources' laws."""
     named = {"Algorithm 1": Candidate(Algorithm1, span=20.0)}
     for module in source_modules("laws"):
         named |= getattr(module, "CANDIDATES", {})

@@ -33,7 +33,7 @@ _SECOND_ORDER = frozenset(name for name in vars(Law) if not name.startswith("_")
 
 
 class _NoSecondOrderError(ArgumentError, AttributeError):
-    """Error of what a law of first order lacks; `hasattr` sees that it does."""
+    """Error for an attribute that laws of first order lack, seen by `hasattr`."""
 
 
 class VelocityLaw(LawOfMotion):
@@ -174,14 +174,14 @@ class VelocityLaw(LawOfMotion):
 
 
 def first_order(law: Any) -> VelocityLaw | None:
-    """Return the law of first order that a law is, wraps or steps; None of a law of second order."""
+    """Return the law of first order behind a law, wrapper or map; None for a law of second order."""
     while law is not None and not isinstance(law, VelocityLaw):
         law = getattr(law, "__dict__", {}).get("law")
     return law
 
 
 def start_velocities(law: Any, t: float, q: Any, p: Any) -> Any:
-    """Return the velocities of a start that gives none: those of a law of first order, else 0."""
+    """Return default start velocities: those of a law of first order, else 0."""
     if p is not None:
         return p
     core = first_order(law)

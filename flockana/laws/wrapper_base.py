@@ -1,4 +1,4 @@
-"""Base classes of laws that wrap a law, and the data of a step that they read."""
+"""Base classes of laws that wrap a law, and the step data for them."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Step:
         self._drawn: dict[tuple[int, int], tuple[int, FloatArray]] = {}
 
     def normal(self, seed: int, channel: int, shape: tuple[int, ...]) -> FloatArray:
-        """Return independent standard normal numbers of this step: a function of seed, channel and step alone.
+        """Return independent standard normal numbers of this step, determined by seed, channel and step.
 
         Parameters
         ----------
@@ -86,20 +86,20 @@ def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -
 
 
 def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, count: int) -> FloatArray:
-    """Return what `Step.normal` gives of the steps from `first` on, stacked."""
+    """Return the stacked `Step.normal` numbers of the steps from `first` on."""
     blocks = range(first // _BLOCK, (first + count - 1) // _BLOCK + 1)
     numbers = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
     return numbers[first % _BLOCK :][:count]
 
 
 class HearingLaw(Law):
-    """A law without terms all of whose input comes from differences to others that an agent hears."""
+    """Law without terms, with an input from heard differences to neighbours alone."""
 
     @abstractmethod
     def heard_input(
         self, own: tuple[FloatArray, FloatArray], heard: tuple[FloatArray, FloatArray], linked: Any
     ) -> FloatArray:
-        """Return accelerations from own and heard positions and velocities, as `View` has them, unchecked.
+        """Return accelerations from own and heard positions and velocities of a `View`, unchecked.
 
         Parameters
         ----------
@@ -113,7 +113,7 @@ class HearingLaw(Law):
 
 
 class WrappingLaw(Law):
-    """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
+    """Law around another one, `law`, with the same target, obstacles, scales and energy."""
 
     law: Any  # Law; or VelocityLaw, where a wrapper takes it
 
@@ -131,7 +131,7 @@ class WrappingLaw(Law):
         return self.law.surfaces
 
     def switches(self, start: float, stop: float) -> FloatArray:
-        """Return those of the law within.
+        """Return the switching times of the inner law.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class WrappingLaw(Law):
 
 
 class Wrapper(WrappingLaw):
-    """Law with one imperfection of the control loop added; it wraps any law, another wrapper too.
+    """Law with one imperfection of the control loop added; wraps any law, including wrappers.
 
     A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says
     whether it can be integrated by fixed steps only, because it has a past, a clock or chance.
@@ -171,7 +171,7 @@ class Wrapper(WrappingLaw):
 
     @abstractmethod
     def input(self, step: Step, view: View) -> FloatArray:
-        """Return accelerations from the states that agents know, shape (n, m), unchecked.
+        """Return accelerations from the agents' known states, shape (n, m), unchecked.
 
         Parameters
         ----------
@@ -200,17 +200,17 @@ class Wrapper(WrappingLaw):
 
     @property
     def moving(self) -> bool:
-        """Whether the law's energy is that in the frame of the centre of mass."""
+        """Whether the law's energy is measured in the frame of the centre of mass."""
         return bool(getattr(self.law, "moving", False))
 
     @property
     def memory(self) -> float:
-        """Longest time that the law looks back."""
+        """Return the longest memory of the law."""
         return 0.0
 
     @property
     def clocks(self) -> tuple[float, ...]:
-        """Times that a step must divide."""
+        """Periods that a step must divide."""
         return ()
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
@@ -221,14 +221,14 @@ class Wrapper(WrappingLaw):
 
     @property
     def wrappers(self) -> Iterator[Wrapper]:
-        """This wrapper and the wrappers within, the outermost first."""
+        """Wrappers of the law, outermost first."""
         yield self
         if isinstance(self.law, Wrapper):
             yield from self.law.wrappers
 
     @property
     def core(self) -> Any:
-        """The law within all wrappers."""
+        """Innermost law, without wrappers."""
         return self.law.core if isinstance(self.law, Wrapper) else self.law
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
@@ -239,7 +239,7 @@ class Wrapper(WrappingLaw):
 
 
 def needs_steps(law: Any) -> bool:
-    """Return whether a law can be run by fixed steps only."""
+    """Return whether a law requires fixed steps."""
     return isinstance(law, Wrapper) and any(one.stepped for one in law.wrappers)
 
 
@@ -254,7 +254,7 @@ def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
 
 
 def input_of(law: Law | VelocityLaw, step: Step, view: View) -> FloatArray:
-    """Return the accelerations of a law, wrapped or not, in a step from what the agents know.
+    """Return the accelerations of a law, wrapped or not, in a step, from the agents' information.
 
     Of a law of first order these are velocities: x' = v(t, x) is stepped in the place of p' = u, with x in `view.p`.
     """
@@ -268,7 +268,7 @@ def input_of(law: Law | VelocityLaw, step: Step, view: View) -> FloatArray:
 
 
 def _heard_input(law: Law, view: View) -> FloatArray:
-    """Return the input of a sum of terms whose pair terms use what each agent hears of the others."""
+    """Return the input of a sum of terms, with pair terms evaluated on each agent's heard states."""
     u, n = np.zeros_like(view.q), len(view.q)
     heard = (view.q[None], view.p[None]) if view.heard is None else view.heard
     if isinstance(law, HearingLaw):
@@ -300,7 +300,7 @@ def _has_pairs(law: Any) -> bool:
 
 
 def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Return the input of any law, evaluated for each agent by itself, which knows its own state and hears others'."""
+    """Return the input of any law, evaluated agent by agent with own states known and others' states heard."""
     n, u = len(view.q), np.empty_like(view.q)
     q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
     for i in range(n):
@@ -319,7 +319,7 @@ def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, 
 
 
 def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """φ n per difference and a_ij of pairs at these differences."""
+    """Return φ n per difference and a_ij of pairs at given differences."""
     index = np.arange(len(here))
     weight, adjacency, _ = term.pair.kernels.terms(
         np.vstack([here, here + away]), index, len(index) + index, term.pair.par
@@ -328,7 +328,7 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
 
 
 def ensure_hears(law: Law | VelocityLaw) -> None:
-    """Raise unless the law's pair terms are known, so that heard states can enter them alone, or be left out."""
+    """Raise unless the law's pair terms are known, so that heard states can be used in them alone."""
     core = law.core if isinstance(law, Wrapper) else law
     if not isinstance(core, HearingLaw) and not _has_pairs(core):
         raise ArgumentError(

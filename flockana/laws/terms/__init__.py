@@ -1,1 +1,1 @@
-"""The summands of a law, one file each: the pair term, the pull to the γ-agent, the repulsion from obstacles."""
+"""Terms of laws, one per file: the pair term, the pull to the γ-agent, the repulsion from obstacles, and others."""

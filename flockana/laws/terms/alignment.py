@@ -49,11 +49,11 @@ class AlignmentTerm(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The weight."""
+        """Weight function of the alignment."""
         return (LawFunction("the alignment weight", self.weight, 0.0, self.gain, mean=self.mean),)
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if two agents coincide whose weight has a pole there."""
+        """Raise if two agents coincide at a pole of the weight."""
         if not self.weight.coincidence:
             ensure_apart(q, "the alignment weight has a pole there")
 

@@ -1,4 +1,4 @@
-"""Forces along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
+"""Forces along an agent's own velocity: drag slows the agent, speed control holds its speed."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,7 +13,7 @@ from flockana.laws.terms.term import Term, TermKernel
 
 @dataclass(frozen=True)
 class AlongVelocity(Term):
-    """u_i = (α − β‖p_i‖²) p_i: a drag where α < 0, else a thrust; with β > 0 it holds agents at the speed √(α/β).
+    """u_i = (α − β‖p_i‖²) p_i: drag for α < 0, else thrust; β > 0 holds agents at the speed √(α/β).
 
     It has no potential. Its power is Σ (α − β‖p_i‖²)‖p_i‖² under an energy in the given frame, and
     Σ (α − β‖p_i‖²)⟨p_i, p_i − p_c⟩ under one in the moving frame, which of a drag −c p_i is −c Σ‖v_i‖². A drag takes
@@ -29,7 +29,7 @@ class AlongVelocity(Term):
 
     @property
     def centre_decouples(self) -> bool:
-        """Whether shape and centre of mass decouple: under plain drag they do, under speed control not."""
+        """Whether shape and centre of mass decouple: true for plain drag, false for speed control."""
         return self.brake == 0.0
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

@@ -1,4 +1,4 @@
-"""Velocity consensus by itself, over a net other than that of the potential."""
+"""Velocity consensus without forces, over a net different from the potential's."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 @dataclass(frozen=True)
 class Consensus(Term):
-    """u_i = c Σ_j a_ij (p_j − p_i) with the adjacency of a pair interaction, whose forces are left out.
+    """u_i = c Σ_j a_ij (p_j − p_i) with the adjacency of a pair interaction, without its forces.
 
     It has no potential, and takes energy: its power is −c pᵀL̂p, in every frame.
     """
@@ -30,7 +30,7 @@ class Consensus(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The net, of which the adjacency alone is read."""
+        """Net of the consensus, used for its adjacency only."""
         return (LawFunction("the consensus net", self.net, 0.0, self.damping),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

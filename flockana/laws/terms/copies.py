@@ -29,7 +29,7 @@ class CopiesTerm(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return how fast the copies move."""
+        """Return the time features of the copies' motion."""
         return (target_feature(self.copies),)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102

@@ -28,7 +28,7 @@ class TargetFeedforward(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return how fast the γ-agent turns."""
+        """Return the time features of the γ-agent's motion."""
         return (target_feature(self.target),)
 
     @property

@@ -1,4 +1,4 @@
-"""The link term: a pair law among the pairs of a net that does not change, however far apart they are."""
+"""Link term: a pair law on a fixed net of pairs, at any distance."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,7 +28,7 @@ class LinkTerm(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The pair law along the links."""
+        """Pair law of the links."""
         return (LawFunction("the link potential", self.pair, self.stiffness, self.damping, edges=self.links),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

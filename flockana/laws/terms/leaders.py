@@ -40,11 +40,11 @@ class Leaders(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The adjacency within the groups."""
+        """Adjacency within the groups."""
         return (LawFunction("the net of each group", self.pair, 0.0, self.damping),)
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the net of each group, and how fast the leaders turn."""
+        """Return the net features of each group, and the time features of the leaders."""
         return (*super().features(), *map(target_feature, self.leaders))
 
     @cached_property

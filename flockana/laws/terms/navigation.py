@@ -50,7 +50,7 @@ class Navigation(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return how fast the γ-agent turns."""
+        """Return the time features of the γ-agent's motion."""
         return (target_feature(self.target),)
 
     @property
@@ -63,7 +63,7 @@ class Navigation(Term):
 
     @cached_property
     def _gains(self) -> tuple[FloatArray, FloatArray]:
-        """c1γ and c2γ, one each or one per agent."""
+        """Gains c1γ and c2γ, each a number or one per agent."""
         c1, c2 = np.broadcast_arrays(*(np.ravel(gain) for gain in (self.gains.c1_gamma, self.gains.c2_gamma)))
         return c1.astype(np.float64), c2.astype(np.float64)
 
@@ -77,7 +77,7 @@ class Navigation(Term):
         self.gains.check_agents(n)
 
     def _bend(self, x: FloatArray) -> FloatArray:
-        """√(1 + ‖x_i‖²/ℓ²), by which σ₁ bends the pull of each agent, shape (n,); 1 for the linear pull."""
+        """Return √(1 + ‖x_i‖²/ℓ²), the divisor of each agent's bounded pull, shape (n,); 1 for the linear pull."""
         if self.unit is None:
             return np.ones(len(x))
         return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
@@ -99,7 +99,7 @@ class Navigation(Term):
 
     @cached_property
     def _form(self) -> TermKernel | None:
-        """Compiled form of a target whose path is harmonic; else None."""
+        """Compiled form for a target with a harmonic path; else None."""
         path = self.target.harmonic
         is_own = overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state"))
         return None if path is None or not is_own else self._along(path)

@@ -1,4 +1,4 @@
-"""The β-term: repulsion from obstacles and damping of what moves towards them."""
+"""β-term: repulsion from obstacles and damping of motion towards them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from
 
 
 def ensure_one_dimension(obstacles: Iterable[Obstacle], m: int, whose: str) -> None:
-    """Raise unless every obstacle lives in m dimensions; `whose` they are goes into the message."""
+    """Raise unless every obstacle has m dimensions; the message names the owner `whose`."""
     for k, obstacle in enumerate(obstacles):
         if obstacle.dimension != m:
             raise ArgumentError(

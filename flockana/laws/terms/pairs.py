@@ -14,7 +14,7 @@ from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
 def ensure_apart(q: FloatArray, why: str = "the pair force has no limit there") -> None:
-    """Raise if two agents coincide; the message says why they must not."""
+    """Raise if two agents coincide; the message states the reason."""
     order = np.lexsort(q.T)
     same = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
     if same.size:
@@ -56,7 +56,7 @@ class PairTerm(Term):
         return (LawFunction("the pair law", self.pair, self.stiffness, self.damping),)
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if two agents coincide whose force has no limit there."""
+        """Raise if two agents coincide and their force has no limit."""
         if not self.pair.coincidence:
             ensure_apart(q)
 

@@ -24,7 +24,7 @@ Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
 
 class TermKernel(NamedTuple):
-    """A term as compiled integrators take it (`flockana.kernels.laws`).
+    """Term in the form of compiled integrators (`flockana.kernels.laws`).
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class TermKernel(NamedTuple):
     numbered: bool = False
 
     def on_agents(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
-        """Run `act` of a term without pairs in a frame at rest.
+        """Run the kernel `act` of a term without pairs, in a frame at rest.
 
         Parameters
         ----------
@@ -63,7 +63,7 @@ class TermKernel(NamedTuple):
 
 
 class Compiled(NamedTuple):
-    """A law as compiled integrators take it: its terms, and whether its energy is that in the moving frame."""
+    """Law in the form of compiled integrators: its terms, and whether its energy is in the moving frame."""
 
     terms: tuple[TermKernel, ...]
     moving: bool
@@ -85,11 +85,11 @@ class Compiled(NamedTuple):
 
     @property
     def numbers(self) -> LawNumbers:
-        """Numbers that the compiled functions read."""
+        """Numbers of the compiled functions."""
         return law_numbers(self.terms)
 
     def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:
-        """Return the law as steps take it, its agents in their own order.
+        """Return the law in the form of compiled steps, with agents in their original order.
 
         Parameters
         ----------
@@ -116,7 +116,7 @@ class Compiled(NamedTuple):
 
 
 class Term(ShortRepr, ABC):
-    """Term u^T of a law u = Σ u^T; its results are unchecked, as the law checks once for all terms.
+    """Term u^T of a law u = Σ u^T; results are unchecked, as the law checks the sum once.
 
     A derivative is either a sparse matrix (n m, n m) in the order of ``q.ravel()``, or an array of blocks (n, m, m),
     where an agent feels of the others nothing.
@@ -140,21 +140,21 @@ class Term(ShortRepr, ABC):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """Functions of the distance of two agents that the term reads; a term that reads none says so by ()."""
+        """Functions of the distance of two agents in the term; () for none."""
         return Unknown(type(self).__name__).functions
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the narrowest features of what the term reads: of its functions, unless it has others."""
+        """Return the narrowest features of the term; by default those of its functions."""
         return tuple(map(function_feature, self.functions))
 
     @property
     def moving(self) -> bool:
-        """Whether the term's energy and power are those in the frame of the flock's centre of mass."""
+        """Whether the term's energy and power are measured in the frame of the flock's centre of mass."""
         return False
 
     @abstractmethod
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
-        """Add the force to u in place and return what the term adds to dH/dt.
+        """Add the force to u in place, and return the term's part of dH/dt.
 
         Parameters
         ----------
@@ -175,14 +175,14 @@ class Term(ShortRepr, ABC):
         return np.zeros((*q.shape, q.shape[1]))
 
     def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
-        """Return the term in compiled form, or several terms that add up to it.
+        """Return the term in compiled form, or several terms with the same sum.
 
         None, and the law is stepped by scipy's, unless it has one.
         """
         return None
 
     def check_dimension(self, m: int) -> None:  # nothing to check unless a term says so
-        """Raise if the term does not live in m dimensions."""
+        """Raise if the term is not defined in m dimensions."""
 
     def check_agents(self, n: int) -> None:  # as `check_dimension`
         """Raise if the term is not for n agents."""
