@@ -57,7 +57,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
 def animation(
     trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
 ) -> FuncAnimation:
-    """Return a matplotlib animation of `snapshot`s; in a notebook show it by ``to_jshtml()``.
+    """Return a matplotlib animation of `snapshot`s, shown in notebooks by ``to_jshtml()``.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def frame_count(seconds: float, fps: float) -> int:
 
 
 def film_view(trajectory: Trajectory) -> FloatArray:
-    """Return opposite corners of a box about all that the film shows, with a margin."""
+    """Return opposite corners of a box around the whole film, with a margin."""
     points = in_view(drawn_law(trajectory), trajectory)
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max()) or 1.0
@@ -196,7 +196,7 @@ def _fix_view(ax: Any, view: FloatArray) -> None:
 
 
 def durations(frames: int, fps: float) -> list[int]:
-    """Return the time of each frame of a GIF in milliseconds, whole hundredths of a second whose sum is right."""
+    """Return the duration of each GIF frame in milliseconds, whole hundredths of a second with the right sum."""
     ends = [round(100.0 * k / fps) for k in range(frames + 1)]
     return [10 * (end - start) for start, end in itertools.pairwise(ends)]
 

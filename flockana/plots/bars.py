@@ -1,4 +1,4 @@
-"""Tables of numbers as bars: margins of loops, standard deviations in noise, predicted and measured."""
+"""Bar charts of tables: loop margins, standard deviations in noise, predicted and measured."""
 
 from __future__ import annotations
 

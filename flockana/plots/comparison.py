@@ -27,7 +27,7 @@ _FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
 @check_kinds
 def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
-    """Draw the paths of one start under each law, on the same scale: hollow where they start, links at the end.
+    """Draw the paths of one start under each law, on one scale: hollow starts, links at the end.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ def _curves(label: str, response: Any) -> list[_Curve]:
 
 
 def _looks() -> Iterator[dict[str, Any]]:
-    """Colours with dashes, without end: four that differ in both, then other pairs of these."""
+    """Yield line styles without end: four that differ in colour and dash, then other combinations."""
     for turn in count():
         for k, (colour, _) in enumerate(_DASHES):
             yield {"color": colour, "linestyle": _DASHES[(k + turn) % len(_DASHES)][1]}

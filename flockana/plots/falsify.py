@@ -1,4 +1,4 @@
-"""Course of a search for a counterexample: the margin of each run, and the least so far."""
+"""Course of a search for a counterexample: the margin of each run, and the least margin so far."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarit
 
 @check_kinds
 def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
-    """Draw a search: the margin of its claim in each run, the least margin so far, and refuted runs.
+    """Draw a search: the claim's margin in each run, the least margin so far, and refuting runs.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
 def search_history(
     margins: ArrayLike, best: ArrayLike, *, found: Any = (), label: str = "", ax: Axes | None = None, title: str = ""
 ) -> Axes:
-    """Draw a claim's margin in each run of a search, and the least so far; below 0 the claim fails.
+    """Draw a claim's margin in each run of a search, and the least so far; a negative margin refutes.
 
     Parameters
     ----------

@@ -110,7 +110,7 @@ def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster
 
 @check_kinds
 def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
-    """Draw the shortest distance of the relaxed flocks over their size and c1γ/c1α, and where agents coincide.
+    """Draw the shortest distance of relaxed flocks over size and c1γ/c1α, with coincident agents marked.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def barrier(
 
 
 def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool = True) -> Axes:
-    """Label axes over the number of agents; few sizes are all named."""
+    """Label axes over the number of agents; label every size if there are few."""
     if logarithmic:
         ax.set_yscale("log")
         minor = ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter()

@@ -80,7 +80,7 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
 
 
 def _nearest_points(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
-    """Return the closest points of the solid, and which of the given points are inside it."""
+    """Return the closest points of the solid, and whether each given point is inside."""
     foot = solid.beta_agents(around, np.zeros_like(around))
     inside = foot.clearance <= 0.0
     return np.where(inside[:, None], around, foot.q), inside

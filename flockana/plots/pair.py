@@ -29,7 +29,7 @@ def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def force(function: DistanceFunction, *, ax: Axes | None = None) -> Axes:
-    """Draw the force of any function of the distance, −dV/ds, with the distances at which it changes its sign.
+    """Draw the force of any function of the distance, −dV/ds, with its zeros.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figures for a paper: the columns of journals, and files with fonts that publishers take."""
+"""Figures for a paper: column widths of journals, and fonts that publishers accept."""
 
 import os
 from pathlib import Path

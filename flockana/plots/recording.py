@@ -1,4 +1,4 @@
-"""Plots of a recording: measures with the error that its accuracy leaves, and what a law leaves unexplained."""
+"""Plots of a recording: measures with error bands, and accelerations unexplained by a law."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def recorded_measure(seen: xarray.Dataset, name: str, *, ax: Axes | None = None) -> Axes:
-    """Draw one measure of a recording over time, its error as a band."""
+    """Draw one measure of a recording over time, with its error as a band."""
     names = [str(key) for key in seen if f"{key}_error" in seen]
     values, ax = seen[ensure_known("measure", name, names)], ensure_axes(ax)
     t, error = seen["time"].values, seen[f"{name}_error"].values

@@ -56,7 +56,7 @@ class Ticks:
 
     @property
     def numbered(self) -> list[tuple[float, str]]:
-        """Return the places and texts of the ticks that have a number."""
+        """Return the positions and texts of numbered ticks."""
         return [(at, text) for at, text in zip(self.at.tolist(), self.numbers, strict=True) if text]
 
 
@@ -98,7 +98,7 @@ class PlainScale(Artist):
         return look[f"{self.name}tick.{key}"]
 
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
-        """Return the pixels that the scale takes left of, right of, below and above its axes."""
+        """Return the pixels needed by the scale left of, right of, below and above its axes."""
         kinds, ends = self._kinds(), (0.0, 0.0)
         low, high = getattr(self.ax.bbox, f"interval{self.name}")
         for at, text in (pair for ticks in kinds for pair in ticks.numbered):
@@ -114,7 +114,7 @@ class PlainScale(Artist):
         return *sides, ends[0], max(ends[1], extra)
 
     def get_window_extent(self, renderer: Any = None) -> Bbox:
-        """Return the axes with the room of this scale, in pixels, for matplotlib's layout."""
+        """Return the extent of the axes with this scale's labels, in pixels, for matplotlib's layout."""
         left, right, below, above = self.room(renderer)
         box = self.ax.bbox
         return Bbox.from_extents(box.x0 - left, box.y0 - below, box.x1 + right, box.y1 + above)
@@ -123,7 +123,7 @@ class PlainScale(Artist):
         return self.ticks("major"), self.ticks("minor")
 
     def _power(self) -> str:
-        """Return the power of ten shared by the numbers, as last written."""
+        """Return the common power of ten of the tick numbers, as last written."""
         return plain(self.scale.get_major_formatter().get_offset())
 
     @property
@@ -157,7 +157,7 @@ class PlainScale(Artist):
         return depth
 
     def draw(self, renderer: Any) -> None:
-        """Draw grid lines, marks, numbers, the power of ten that they share, and the name."""
+        """Draw grid lines, marks, numbers, their common power of ten, and the axis label."""
         kinds = self._kinds()
         for ticks in (ticks for ticks in kinds if ticks.at.size):
             self._draw_lines(renderer, ticks)
@@ -226,7 +226,7 @@ class PlainScale(Artist):
         self._write(renderer, x, y, label.get_text(), (label.get_fontproperties(), label.get_color(), angle))
 
     def _write(self, renderer: Any, x: float, y: float, text: str, look: tuple[Any, str, float] | None = None) -> None:
-        """Write a text, a number by default, from its lower left corner on."""
+        """Write a text, by default a number, starting at its lower left corner."""
         font, colour, angle = look or (self.font, self._style("color"), 0.0)
         context = renderer.new_gc()
         context.set_foreground(colour)
@@ -236,7 +236,7 @@ class PlainScale(Artist):
 
 
 def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
-    """Replace the scales of all two-dimensional axes of a figure, colour bars included; return them by axes."""
+    """Install fast scales on all two-dimensional axes of a figure, colour bars included; return them by axes."""
     flat = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
     sizes: dict[tuple[str, float], Size] = {}
     return {ax: tuple(PlainScale(ax, name, sizes) for name in "xy") for ax in flat}

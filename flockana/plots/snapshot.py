@@ -49,7 +49,7 @@ def snapshot(
     bar: bool = True,
     ranges: bool = False,
 ) -> Axes:
-    """Draw the sample of a run nearest to a time, with its links if agents interact within a range.
+    """Draw the sample of a run nearest to a time, with links if the law has a range.
 
     Obstacles are drawn, and the β-agents on them, where the law has any; so is the world of a zone-based law.
 
@@ -97,14 +97,14 @@ def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
 
 
 def drawn_law(trajectory: Trajectory) -> Any:
-    """Return the law of a run, or of a map the law that it steps."""
+    """Return the drawn law of a run: for a map, the law behind it."""
     ensure_run(trajectory)
     return trajectory.law.continuous or trajectory.law
 
 
 @singledispatch
 def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
-    """Draw sample k of a run; a law registers its own drawing with ``@draw_sample.register(Law)``."""
+    """Draw sample k of a run; laws register their own drawings with ``@draw_sample.register(Law)``."""
     pair, target = law.pair, law.target
     t = float(trajectory.t[k])
     return configuration(
@@ -123,7 +123,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 
 @singledispatch
 def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
-    """Return points that a film of a run must show, shape (N, m); register it with `draw_sample`."""
+    """Return points that must be visible in a film of a run, shape (N, m)."""
     corners = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
         corners.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
@@ -146,7 +146,7 @@ def configuration(
     bar: bool = True,
     title: str = "",
 ) -> Axes:
-    """Draw agents with their velocities, links, γ-agent and obstacles, as far as these are given.
+    """Draw agents with velocities, links, γ-agent and obstacles, where given.
 
     Links within r are coloured by (length − d)/d; β-agents within r' are joined to their agents by dotted lines.
 
@@ -207,7 +207,7 @@ def _lengths(d: Any, pairs: Any) -> Any:
 
 
 def _multiplicities(ax: Any, x: FloatArray) -> None:
-    """Write ×k beside each place shared by k agents."""
+    """Write ×k beside each position shared by k agents."""
     extent = float(np.ptp(x, axis=0).max())
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
     if len(near) == 0:
@@ -219,7 +219,7 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
-    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1."""
+    """Draw links coloured by strain; the scale ends at the breaking strain, at most 1."""
     # Where agents have many, links are thin, and those near d lie above the others.
     if len(pairs) == 0:
         return
@@ -238,7 +238,7 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: fl
 
 
 def _arrowheads(ax: Any, x: FloatArray, pairs: Any) -> None:
-    """Mark the direction of the links that go one way, in the middle of each."""
+    """Mark one-way links with arrowheads at their midpoints."""
     both = {tuple(pair) for pair in pairs.tolist()}
     one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in both], dtype=np.int64)
     if one_way.size == 0 or x.shape[1] == 3:
@@ -262,7 +262,7 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
 
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
-    """Draw velocities as arrows; return a note for the title on their scale, empty if none is drawn."""
+    """Draw velocities as arrows; return a note on their scale for the title, empty without arrows."""
     x, v = in_plane(ensure_points("q", q)), in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0

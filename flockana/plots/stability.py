@@ -31,7 +31,7 @@ _RING = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
 def pole_map(poles: Any, *, ax: Axes | None = None) -> Axes:
-    """Draw eigenvalues in the complex plane: zeros as a ring with their number, unstable ones as red triangles.
+    """Draw eigenvalues in the complex plane: zero eigenvalues as a numbered ring, unstable ones as red triangles.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Largest stable steps over the steps in use."""
+"""Ratios of the largest stable steps to the steps in use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _HEIGHT, _HATCH = 0.6, "///"  # height of a bar; hatch of an unstable one, visib
 
 @check_kinds
 def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
-    """Draw by how much the largest stable step exceeds the step in use, on a logarithmic axis; unstable ones hatched.
+    """Draw the ratio of the largest stable step to the step in use, on a logarithmic axis; unstable steps hatched.
 
     Parameters
     ----------

@@ -161,7 +161,7 @@ class OverTime(Protocol):
 
 
 def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]], OverTime]:
-    """Decorate a function that draws a run on axes or returns why it cannot: label and finish the axes."""
+    """Decorate a function that draws a run or returns a reason for an empty plot: label and finish the axes."""
 
     def decorated(draw: Callable[[Trajectory, Any], str | None]) -> OverTime:
         def plot(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
@@ -192,7 +192,7 @@ def levels(ax: Any, styles: Iterable[tuple[float, str, str, str]]) -> None:
 def mark(
     ax: Any, x: float, name: str = "", *, offset: tuple[float, float] = (3, 4), height: float = 0.0, **look: Any
 ) -> None:
-    """Draw a dotted line at x, and its name beside it at a height of the axes; `width` is the line's."""
+    """Draw a dotted line at x with its name beside the line at a given height; `width` is the line width."""
     ax.axvline(x, color=MUTED, linewidth=look.pop("width", 0.8), linestyle=":")
     if name:
         look |= {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points"}
@@ -240,19 +240,19 @@ def star(ax: Any, places: FloatArray, **look: Any) -> None:
 
 
 def hairlines(ax: Any, x: Any, values: FloatArray, label: str, *, colour: str = BLUE, crowd: int = 1) -> None:
-    """Draw a faint line for each column, fainter the more there are, and one entry of the legend."""
+    """Draw a faint line for each column, fainter for more lines, with one legend entry."""
     width, alpha = line_width_and_opacity(crowd * max(1, values.shape[1]))
     ax.plot(x, values, color=colour, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=colour, linestyle="-", linewidth=0.8, label=label)
 
 
 def line_width_and_opacity(n: int) -> tuple[float, float]:
-    """Return width and opacity of one of n lines on the same axes: fainter the more there are."""
+    """Return width and opacity of one of n lines on the same axes; fainter for more lines."""
     return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)
 
 
 def in_plane(points: FloatArray) -> FloatArray:
-    """Return points in the plane; those on a line lie on the axis y = 0."""
+    """Return points in the plane; points on a line get y = 0."""
     return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
 
 

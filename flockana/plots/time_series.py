@@ -58,7 +58,7 @@ def _spans_decades(values: Any) -> bool:
 
 
 def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
-    """Shade the band below the error that one step of the solver may carry."""
+    """Shade the band below the solver's error of one step."""
     place, speed, _ = trajectory.floors
     d = trajectory.scales.length
     floor = {
@@ -92,7 +92,7 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
 
 @over_time("H, energy")
 def energy(trajectory: Trajectory, ax: Any) -> str | None:
-    """Draw the law's energy H over time, if it has one."""
+    """Draw the law's energy H over time; empty axes without an energy."""
     values = trajectory.energy()
     if not np.isfinite(values).any():
         return "this law has no energy"
@@ -148,7 +148,7 @@ def pair_distances(trajectory: Trajectory, ax: Any) -> str | None:
 
 @over_time("components of the net")
 def components(trajectory: Trajectory, ax: Any) -> str | None:
-    """Draw the number of components of the net over time (logarithmic where many), if the law has a range."""
+    """Draw the number of components of the net over time, logarithmic if large."""
     if not has_metric(trajectory, "connectivity"):
         return "not defined for this law"
     counts = component_counts(trajectory)

@@ -58,7 +58,7 @@ def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
 
 
 def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
-    """Draw the γ-agent's path, if there is one, and return it."""
+    """Draw the γ-agent's path and return it in a tuple; empty without a γ-agent."""
     target = trajectory.law.target
     if target is None:
         return ()
