@@ -1,4 +1,4 @@
-"""Accelerations of a recorded flock: recorded ones, mean ones over steps, or those of splines."""
+"""Accelerations of a recorded flock: recorded ones, means over steps, or from splines."""
 
 from typing import Any, NamedTuple
 
@@ -15,7 +15,7 @@ _FEWEST = 4  # samples for splines
 
 
 class Accelerations(NamedTuple):
-    """Accelerations u of shape (K, n, m) with their errors, and the states (t, q, p) that they belong to.
+    """Accelerations u of shape (K, n, m) with errors, and their states (t, q, p).
 
     `basis` is "accelerations", at the samples; "steps", means from sample to sample; "map", those of a map's steps; or
     "splines".
@@ -29,7 +29,7 @@ class Accelerations(NamedTuple):
     scheme: str | None
 
     def of(self, part: Any) -> FloatArray:
-        """Return the accelerations of a part of a law at the same places and times."""
+        """Return the accelerations of a part of a law at the same states and times."""
         return over_steps(part, *self.states) if self.basis == "steps" else over_samples(part, *self.states)
 
     @property
@@ -42,7 +42,7 @@ class Accelerations(NamedTuple):
 
 
 def accelerations(rec: Recording) -> Accelerations:
-    """Return the accelerations of a recording: the recorded ones, else the better known of steps and of splines."""
+    """Return the accelerations of a recording: recorded ones, else the more accurate of step means and splines."""
     if rec.u is not None and rec.p is not None and not rec.gaps:
         return Accelerations("accelerations", rec.t, rec.u, np.zeros(rec.q.shape[:2]), (rec.t, rec.q, rec.p), None)
     if rec.p is None or rec.gaps:
@@ -73,7 +73,7 @@ def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
 
 
 def _of_splines(rec: Recording) -> Accelerations:
-    """Accelerations where all agents are known."""
+    """Return spline accelerations at samples with all agents known."""
     if len(rec.t) < _FEWEST:
         raise ArgumentError(f"{len(rec.t)} samples without accelerations: expected {_FEWEST} or more")
     fit = motions(rec)

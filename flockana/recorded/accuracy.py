@@ -1,4 +1,4 @@
-"""Accuracy of recorded numbers: a bound, or a band that holds for all samples at once."""
+"""Accuracy of recorded numbers: a strict bound, or a band for all samples at once."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -16,7 +16,7 @@ CONFIDENCE = 0.99  # of the band that holds of all samples at once
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """Half widths of recorded positions and velocities, and how they are known.
+    """Half widths of recorded positions and velocities, and their origin.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Accuracy:
 
     @property
     def decides(self) -> bool:
-        """Whether a verdict may rest on the accuracy: it was stated, not estimated."""
+        """Whether verdicts may rely on the accuracy: true if stated, false if estimated."""
         return self.kind in ("bound", "sd")
 
     def __str__(self) -> str:
@@ -43,7 +43,7 @@ class Accuracy:
 
 
 def band(samples: int, m: int) -> float:
-    """Return the radius, in standard deviations, of a band that holds for all samples at once with probability 0.99."""
+    """Return the radius, in standard deviations, of a band that contains all samples with probability 0.99."""
     from scipy.stats import chi2
 
     return float(sqrt(chi2.isf((1.0 - CONFIDENCE) / samples, m)))

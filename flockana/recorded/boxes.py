@@ -1,4 +1,4 @@
-"""Positions in a periodic box, unwrapped from sample to sample."""
+"""Unwrapping of positions in a periodic box, from sample to sample."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Agents that were sampled at other times than others: refused, left with gaps, or interpolated to common instants."""
+"""Agents sampled at different times: rejected, kept with gaps, or interpolated to common instants."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,7 +16,7 @@ _MOST = 200  # agents that are judged, those with most samples
 
 
 def ensure_one_clock(rec: Recording) -> None:
-    """Raise if two agents are seen at the same time, but hardly ever at one instant."""
+    """Raise if two agents are seen over the same period but hardly ever at one instant."""
     most = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
     presence: FloatArray = rec.present[:, most].astype(np.float64)
     there = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
@@ -36,7 +36,7 @@ def ensure_one_clock(rec: Recording) -> None:
 
 
 def interpolated(rec: Recording, most_acceleration: float) -> Recording:
-    """Return a recording at the instants of the agent with most samples, to which all others are interpolated.
+    """Return a recording interpolated to the instants of the agent with most samples.
 
     The error of each position covers every motion whose accelerations are at most as large as stated; gaps stay.
     """

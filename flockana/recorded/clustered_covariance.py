@@ -1,4 +1,4 @@
-"""Covariance of least-squares estimates from residuals that are independent between agents only."""
+"""Covariance of least-squares estimates from residuals that are correlated within each agent."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Comparison of a recorded flock with a law: what the law explains, contributions of its parts, findings."""
+"""Comparison of a recorded flock with a law: explained share, contributions of the law's parts, findings."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -61,7 +61,7 @@ class Comparison(ShortRepr):
 
     @property
     def caution(self) -> str:
-        """Effect of noise on the comparison, in words; empty if the accelerations are known well enough."""
+        """Effect of noise on the comparison, in words; empty if the accelerations are accurate enough."""
         usual = float(np.nanmedian(lengths(self.recorded)))  # the ends of splines can be far off
         if self.noise <= _ROUGH * usual:
             return ""
@@ -119,7 +119,7 @@ def _percent(share: float) -> str:
 
 
 def share_text(explained: float) -> str:
-    """Return an explained share in words; a residual larger than the accelerations explains nothing.
+    """Return the explained share in words; "nothing" for a residual larger than the accelerations.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
 
 
 def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
-    """Return by which factor positions move otherwise than they are led; empty if they move so."""
+    """Return a finding on the ratio of recorded to predicted displacements; empty if they agree."""
     steps = np.diff(rec.q, axis=0)
     is_known = ~np.isnan(steps + led)
     steps, led = steps[is_known], led[is_known]

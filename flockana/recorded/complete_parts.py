@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 
 def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.NDArray[Any]]:
-    """Return the samples, one after another, and the agents seen at all of them, that hold the most positions.
+    """Return consecutive samples, and the agents seen at all of them, with the most positions.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Parts of a law that are proportional to one number each, and the forms that implementations have in their place."""
+"""Parts of a law that are linear in a gain, and alternative forms found in implementations."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ class Contribution:
 
 
 def contributions(law: Any) -> tuple[Contribution, ...]:
-    """Return the parts of a law: one for each gain, or the law as a whole."""
+    """Return the parts of a law, one for each gain, or the law as a whole."""
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", law.title, "the law as a whole", 1.0, _acts(law)),)
@@ -51,14 +51,14 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
 
 
 def remainder(law: Any) -> Part | None:
-    """Return the acceleration of a law with all gains 0, such as drag or a feedforward; None if it is 0."""
+    """Return the acceleration of a law with all gains 0, such as drag or feedforward; None if zero."""
     if not isinstance(getattr(law, "gains", None), Gains) or not _other_terms(law):
         return None
     return _acts(replace(law, gains=_single_gain("", 0.0)))
 
 
 def _other_terms(law: Any) -> dict[str, Any]:
-    """Return the values at which the accelerations of a law that no gain scales vanish, by their fields."""
+    """Return the field values that switch off the parts of a law without a gain."""
     return {name: none for name, none in _NO_OTHERS.items() if getattr(law, name, none)}
 
 
@@ -94,7 +94,7 @@ def over_steps(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> Float
 
 @dataclass(frozen=True)
 class Variant:
-    """Alternative form of a part of a law, and the finding that it stands for."""
+    """Alternative form of a part of a law, with the finding it would indicate."""
 
     gain: str
     finding: str
@@ -102,7 +102,7 @@ class Variant:
 
 
 def variants(law: Any) -> tuple[Variant, ...]:
-    """Return the forms to try in place of a law's own."""
+    """Return alternative forms of a law's parts."""
     if not hasattr(law, "gains"):
         return ()
     alpha = getattr(law, "alpha", None)
@@ -136,7 +136,7 @@ def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
 
 
 def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]) -> Part:
-    """Sum over pairs within r of a force that is odd in the pair."""
+    """Return the sum over pairs within r of a force that is odd in the pair."""
 
     def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         i, j = np.asarray(links(q, r)).T

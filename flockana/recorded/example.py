@@ -1,4 +1,4 @@
-"""The synthetic recording that is shipped, made by `tools/make_recording.py`: noise, gaps and an identity switch."""
+"""Synthetic example recording, made by `tools/make_recording.py`: noise, gaps and an identity switch."""
 
 from pathlib import Path
 
@@ -10,5 +10,5 @@ EXAMPLE_FILE = Path(__file__).parent / "data" / "synthetic.csv"
 
 
 def example_recording() -> Recording:
-    """Return fourteen tracked agents over six time units: noise of 0.05, gaps, and a switch of two names."""
+    """Return fourteen tracked agents over six time units: noise of 0.05, gaps, and a switch of two identities."""
     return read_recording(EXAMPLE_FILE, sd=NOISE)

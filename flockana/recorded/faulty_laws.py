@@ -1,4 +1,4 @@
-"""Four implementations of Algorithm 2, each with one error that public code has: an exercise in `compare`.
+"""Four implementations of Algorithm 2, each with a typical error of public code: an exercise for `compare`.
 
 The functions are written as a student writes them, all pairs at once, and are no part of the library's laws. Their
 recordings start alike and have 12 agents.
@@ -24,7 +24,7 @@ Acceleration = Callable[[FloatArray, FloatArray], Any]
 
 
 def intended_law() -> Algorithm2:
-    """Return the law that the four faulty programs are meant to implement."""
+    """Return the intended law of the four faulty programs."""
     return Algorithm2(target=StaticTarget(GOAL))
 
 
@@ -42,7 +42,7 @@ def _bump(z: FloatArray) -> FloatArray:
 
 
 def _pairs(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """q_j - q_i, its length, the weight a_ij and the action φ_α, 0 of an agent on itself."""
+    """Return q_j - q_i, its length, the weight a_ij and the action φ_α of all pairs; 0 for i = j."""
     x = q[None] - q[:, None]
     s = np.sqrt((x**2).sum(axis=2))
     r_alpha, d_alpha = _sigma_norm(np.array([R, D]))

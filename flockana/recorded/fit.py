@@ -1,4 +1,4 @@
-"""Parameters of a law fitted to a recording, with intervals that count all that is unknown, and what stays open."""
+"""Parameters of a law fitted to a recording, with confidence intervals and notes on unidentifiable parameters."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -77,7 +77,7 @@ class Fit(ShortRepr):
 
 
 def interval_text(low: float, high: float) -> str:
-    """Return an interval in words, which say where it is open, by four digits or as many as tell its ends apart.
+    """Return an interval in words, open ends named, with enough digits to distinguish the ends.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def fit(
     window: float | None = None,
     independent: bool = False,
 ) -> Fit:
-    """Return the law with the parameters whose solutions match a recording best, with 95 % intervals.
+    """Return the law with the parameters that match a recording best, with 95 % intervals.
 
     Solutions of the law are matched to windows of samples, positions and recorded velocities, each from a start of its
     own, which is unknown, too. Searches begin at several places where the misfit is more than noise. Within a `bound`
@@ -152,7 +152,7 @@ def fit(
 
 
 class _Search(NamedTuple):
-    """What is searched: parameters of a law by a recording, in windows of a duration."""
+    """Search for a law's parameters from a recording, in windows of a given duration."""
 
     rec: Recording
     parameters: FreeParameters
@@ -168,7 +168,7 @@ class _Search(NamedTuple):
         return Problem(parts, self.parameters.with_values, self.parameters.values)
 
     def is_chance(self, variance: float, freedom: float) -> bool:
-        """Whether a variance of residuals may be that of the noise, as it is stated, bounded or likely."""
+        """Whether a residual variance is consistent with the noise, stated, bounded or estimated."""
         from scipy.stats import chi2
 
         return variance <= float(chi2.isf(_CHANCE, freedom)) / freedom
@@ -190,7 +190,7 @@ def _best_of(search: _Search, sd: FloatArray) -> tuple[Problem, MatchResult]:
 
 
 def _beginnings(search: _Search) -> list[FloatArray]:
-    """Return first parameters: the law's, gains by regression on accelerations, and multiples of the law's."""
+    """Return starting parameters: the law's, gains by regression on accelerations, and multiples of the law's."""
     values, names = search.parameters.values, search.parameters.names
     starts = [values * factor for factor in _FACTORS]
     try:
@@ -203,7 +203,7 @@ def _beginnings(search: _Search) -> list[FloatArray]:
 
 
 def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Problem, MatchResult]:
-    """Return the solutions matched to the usual windows, from the parameters that short windows give.
+    """Return the match over windows of the usual length, started from the parameters of short windows.
 
     Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
     short ones count.
@@ -222,7 +222,7 @@ def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Pro
 
 
 def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResult]:
-    """Return the match with the noise as it is stated, else with deviations of positions and velocities estimated."""
+    """Return the match with the stated noise, else with estimated deviations of positions and velocities."""
     rec = search.rec
     problem, best = _best_of(search, deviations(rec, velocities=True))
     if search.stated:
@@ -239,7 +239,7 @@ def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResul
 
 
 def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem, MatchResult]:
-    """Return the match with the deviations of positions, and of velocities, that its residuals show."""
+    """Return the match with deviations of positions and velocities rescaled to its residuals."""
     for _ in range(_ROUNDS):
         factors = _factors(problem, best, width)
         if np.abs(np.log(factors)).max() < _SETTLED:
@@ -250,7 +250,7 @@ def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem,
 
 
 def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
-    """Return by how much the residuals of positions, and of velocities, exceed their deviations, by column."""
+    """Return the ratio of residuals to deviations, of positions and of velocities, by column."""
     parts = problem.parts
     factors, share = np.ones(parts[0].y.shape[1]), best.freedom / problem.size
     for block in (slice(0, width), slice(width, None)):
@@ -265,7 +265,7 @@ def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
 
 
 def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
-    """Return the deviation of a constant error of each number, within what the residuals leave of its bound.
+    """Return the deviation of each number's constant error, within the bound left by the residuals.
 
     Errors of a number range over as much as its residuals; with a constant one all of them stay within the bound.
     """
@@ -288,7 +288,7 @@ def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
 
 
 def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
-    """Return the fit with its intervals, and begin anew where a profile leads below the minimum."""
+    """Return the fit with its intervals; restart where a profile leads below the minimum."""
     from scipy.stats import t as student
 
     names, count = search.parameters.names, len(problem.first)

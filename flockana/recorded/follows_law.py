@@ -1,4 +1,4 @@
-"""Whether the samples of a recording follow a law, within their stated accuracy."""
+"""Test of whether the samples of a recording follow a law, within their stated accuracy."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -51,7 +51,7 @@ class Following:
 
 
 def following(rec: Recording, law: Any) -> Following:
-    """Return whether a recording follows a law: from sample to sample, or where noise is stated over windows."""
+    """Return whether a recording follows a law: from sample to sample, or over windows if noise is stated."""
     rec = rec.measured
     if len(rec.t) < 2:
         raise ArgumentError("one sample shows no motion: expected two or more")
@@ -61,7 +61,7 @@ def following(rec: Recording, law: Any) -> Following:
 
 
 def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
-    """Compare each sample with the law's prediction from the one before, and from one law time before."""
+    """Compare each sample with the law's predictions from the previous sample and from one law time before."""
     assert rec.p is not None
     _ensure_few_steps(rec, law)
     place, speed = (np.broadcast_to(x, rec.present.shape) for x in (rec.accuracy.place, rec.accuracy.speed))
@@ -90,7 +90,7 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
 
 
 def _ensure_few_steps(rec: Recording, law: Any) -> None:
-    """Raise if following a recording takes so many steps of the law that no answer comes for minutes."""
+    """Raise if following a recording would take minutes of integration steps."""
     if law.is_map or law.scales is None:
         return
     time, span = law.scales.time, float(rec.t[-1] - rec.t[0])
@@ -104,7 +104,7 @@ def _ensure_few_steps(rec: Recording, law: Any) -> None:
 def _differences(
     law: Any, t: FloatArray, q: FloatArray, p: FloatArray, place: FloatArray, speed: FloatArray
 ) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
-    """Return distances of samples from the law's predictions, and the distances that all errors allow."""
+    """Return distances of samples from the law's predictions, and the allowed distances from all errors."""
     near, fine = predicted(law, t, q, p), predicted(law, t, q, p, refine=2)
     ends = tuple(b + (b - a) / 15.0 for a, b in zip(near, fine, strict=True))  # Richardson's, of a scheme of order 4
     off = lengths(q[1:] - ends[0]), lengths(p[1:] - ends[1])

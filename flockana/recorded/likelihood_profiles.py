@@ -1,4 +1,4 @@
-"""Confidence intervals by the profile of the likelihood: parameters that are fixed, and all others matched anew."""
+"""Confidence intervals from the profile likelihood: one parameter fixed, all others fitted again."""
 
 from math import inf, sqrt
 
@@ -17,7 +17,7 @@ _LOWER = 0.5  # squared deviations by which a profile may fall below the minimum
 
 
 class LowerMinimumError(Exception):
-    """A profile led to a better fit than the one it began at, which `result` holds, with the fixed value."""
+    """Exception of a profile that led to a better fit, held in `result` with the fixed value."""
 
     def __init__(self, result: MatchResult, k: int, value: float) -> None:
         self.values = np.insert(result.values, k, value)
@@ -25,7 +25,7 @@ class LowerMinimumError(Exception):
 
 
 def profile_interval(problem: Problem, best: MatchResult, k: int, level: float, unit: float) -> tuple[float, float]:
-    """Return the values of a parameter at which the least squares rise by level² units above their minimum.
+    """Return the parameter values at which the squared residuals rise by level² above their minimum.
 
     An end is infinite, or 0 for a positive parameter, if they do not. Raises `LowerMinimumError` where they fall.
     """
@@ -66,7 +66,7 @@ def _end(problem: Problem, best: MatchResult, k: int, side: float, level: float,
 
 
 class _Trial:
-    """Fit with a fixed parameter: where it began and by how much the squares rise."""
+    """Fit with a fixed parameter: its start, and the rise of the squares."""
 
     def __init__(self, rise: float, values: FloatArray, starts: list[FloatArray], result: MatchResult | None = None):
         self.rise, self.values, self.starts = rise, values, starts
@@ -79,7 +79,7 @@ class _Trial:
 
 
 def _rise(problem: Problem, best: MatchResult, k: int, at: float, last: _Trial, *, known: bool) -> _Trial | None:
-    """Return the fit with a parameter fixed, begun on a line from the last one; None if none is found.
+    """Return the fit with a parameter fixed, started on a line from the last fit; None without a fit.
 
     Slopes are at first those of the best fit, if these are `known` to serve.
     """

@@ -15,18 +15,18 @@ from flockana.recorded.recording import Recording
 
 @dataclass(frozen=True, eq=False)
 class MapSteps:
-    """Map as a law, whose acceleration at a sample is the mean one of its steps to the next."""
+    """Law view of a map: the acceleration at a sample is the mean over its steps to the next sample."""
 
     title: str
     accelerations: Mapping[float, FloatArray]  # by the time of the sample
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, None]:
-        """Return the mean acceleration from the sample at a time, and no energy rate."""
+        """Return the mean acceleration from the sample at a time, with NaN for the energy rate."""
         return self.accelerations[t], None
 
 
 def map_steps(rec: Recording, law: Any) -> tuple[Accelerations, MapSteps, FloatArray, str]:
-    """Return mean accelerations of samples and of a map, the map's changes of place, and the noise it lacks in words.
+    """Return mean accelerations of samples and map, the map's displacements, and a note on missing noise.
 
     Each prediction begins at a sample; what else the map remembers is that of a start.
     """

@@ -1,4 +1,4 @@
-"""Measures of a recorded flock over time, each with the error that the accuracy of the samples leaves."""
+"""Measures of a recorded flock over time, with errors from the accuracy of the samples."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ _OF_VELOCITIES = ("normalised_velocity_mismatch", "velocity_diameter", "order", 
 
 
 def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
-    """See `Recording.metrics`: agents that are missing at a sample are left out there."""
+    """Return measures over time (see `Recording.metrics`), without agents missing at a sample."""
     import xarray
 
     if rec.p is None:
@@ -50,14 +50,14 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
 
 
 def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
-    """Return sets of agents, each with the samples at which exactly these were seen; never the empty set."""
+    """Return sets of agents, each with the samples at which exactly this set was seen; never empty."""
     sets, which = np.unique(seen, axis=0, return_inverse=True)
     groups = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
     return [(agents, samples) for agents, samples in groups if agents.size]
 
 
 def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p: FloatArray) -> FloatArray:
-    """Largest change of a measure when every position or velocity moves by its error."""
+    """Return the largest change of a measure within the errors of positions or velocities."""
     n = flock.q.shape[1]
     if not np.isfinite(off_q).all():
         return np.full(len(values), np.inf)
@@ -77,7 +77,7 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
 
 
 def _net_error(name: str, flock: Flock, k: int, value: float, off: float) -> float:
-    """Error of a measure of the net, whose links may come and go when positions move."""
+    """Return the error of a net measure, as links may appear or vanish within position errors."""
     d, r = flock.law.lattice
     q = flock.q[k]
     minimum, most = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off

@@ -1,4 +1,4 @@
-"""Predictions by a law of each recorded sample from the one before, and the scheme that a recording shows."""
+"""One-step predictions of recorded samples by a law, and recognition of the integration scheme."""
 
 from math import ceil
 from typing import Any
@@ -30,7 +30,7 @@ def predicted(
 def led(
     law: Any, t: float, h: float, q: FloatArray, p: FloatArray, *, refine: int = 1, share: float = SHARE
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the state to which a law leads from another within a time h."""
+    """Return the law's solution after a time h from a state."""
     if law.is_map:
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
@@ -67,7 +67,7 @@ def _even(rec: Recording) -> bool:
 
 
 def kinematic_scheme(rec: Recording) -> str | None:
-    """Return the name of the scheme of one step a sample that positions and velocities fit to rounding, if one does.
+    """Return the name of the one-step scheme that the samples satisfy to rounding; None without one.
 
     Explicit Euler has q' = q + h p, semi-implicit Euler q' = q + h p', a Taylor step q' = q + h (p + p')/2; whatever
     the law is.
@@ -86,7 +86,7 @@ def kinematic_scheme(rec: Recording) -> str | None:
 
 
 def scheme_by_law(rec: Recording, law: Any) -> str | None:
-    """Return the name of the scheme whose steps lead far closer to the next sample than the law's flow does."""
+    """Return the name of the scheme that predicts the next samples far better than the law's flow; None without one."""
     if rec.p is None or rec.gaps or law.is_map or not _even(rec):
         return None
     some = slice(0, 40)

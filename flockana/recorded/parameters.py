@@ -1,4 +1,4 @@
-"""Parameters of a law by name: reading them, and the same law with others."""
+"""Parameters of a law by name: reading and replacing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -40,7 +40,7 @@ class FreeParameters:
 
     @property
     def values(self) -> FloatArray:
-        """Values in the law."""
+        """Return the parameter values of the law."""
         numbers = []
         for name, path in zip(self.names, self.paths, strict=True):
             value = law_parameter(self.law, path)
@@ -50,7 +50,7 @@ class FreeParameters:
         return np.array(numbers)
 
     def with_values(self, values: Sequence[float] | FloatArray) -> Any:
-        """Return the law with other values."""
+        """Return the law with new values of the parameters."""
         law = self.law
         for path, value in zip(self.paths, values, strict=True):
             law = with_parameter(law, path, float(value))
@@ -85,7 +85,7 @@ def _path(law: Any, name: str) -> str:
 
 
 def _names(law: Any) -> tuple[str, ...]:
-    """Numbers among the parameters of a law, and those of its parts."""
+    """Return the names of numbers among the parameters of a law and its parts."""
     names: list[str] = []
     for field in fields(law):
         value = getattr(law, field.name)

@@ -110,7 +110,7 @@ def read_recording(
 
 
 class _How(NamedTuple):
-    """What a user states of a source."""
+    """Options of a user for reading a source."""
 
     columns: Columns
     dt: float | None
@@ -174,7 +174,7 @@ def _contents(path: Path, how: _How) -> dict[str, Any]:
 
 
 def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:
-    """Return names, source and accuracy from the file that `Recording.save` wrote beside the samples."""
+    """Return names, source and accuracy from the file written by `Recording.save` beside the samples."""
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}
     stated = {name: arrays[name][()] for name in _ACCURACY if name in arrays}

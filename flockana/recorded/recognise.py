@@ -15,7 +15,7 @@ _FITS = 0.99  # share explained, the gains as the recording has them, from which
 
 @dataclass(frozen=True, eq=False)
 class Recognition(ShortRepr):
-    """Laws ranked by how much of a recording they explain, and those that do not apply to it.
+    """Laws ranked by their explained share of a recording, and the inapplicable laws.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Recognition(ShortRepr):
 
     @property
     def best(self) -> Comparison | None:
-        """The comparison with the law that fits best; None if none fits."""
+        """Comparison with the best-fitting law; None without one."""
         first = self.ranked[0][1] if self.ranked else None
         return first if first is not None and first.explained_refitted >= _FITS else None
 
@@ -46,7 +46,7 @@ class Recognition(ShortRepr):
 
 
 def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognition:
-    """Return laws ranked by how much of a recording they explain.
+    """Return laws ranked by their explained share of a recording.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A flock that was recorded elsewhere: samples, gaps, and how accurate they are."""
+"""Recorded flock: samples, gaps, and accuracy."""
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
@@ -32,7 +32,7 @@ _UNITS |= {"t": (0, 1), "u": (1, -2)}
 
 @dataclass(frozen=True, eq=False)
 class Recording(ResultCache):
-    """Samples of a flock that was recorded elsewhere, with gaps as NaN and the accuracy of its numbers.
+    """Samples of a recorded flock, with gaps as NaN and the accuracy of its numbers.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class Recording(ResultCache):
 
     @property
     def interval(self) -> float:
-        """Median interval between samples; 1 of a single one."""
+        """Median interval between samples; 1 for a single sample."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 1.0
 
     @cached_property
@@ -162,7 +162,7 @@ class Recording(ResultCache):
 
     @cached_property
     def accuracy(self) -> Accuracy:
-        """Half widths of positions and velocities, and how they are known."""
+        """Half widths of positions and velocities, and their origin."""
         if self.bound is None and self.sd is None:
             return Accuracy(np.inf, np.inf, "unknown")
         kind: Kind = "estimated" if self.estimated or self.smoothed else "sd" if self.bound is None else "bound"
@@ -217,7 +217,7 @@ class Recording(ResultCache):
         return self.select(samples=samples, agents=agents)
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Return an `xarray.Dataset` as the package `movement` makes it: position over time, space and individuals."""
+        """Return an `xarray.Dataset` as in the package `movement`: position over time, space, individuals."""
         from flockana.recorded.dataset import dataset_of
 
         return dataset_of(self)
@@ -249,7 +249,7 @@ class Recording(ResultCache):
             )
 
     def filled(self, *, most_acceleration: float | None = None, longest: float | None = None) -> "Recording":
-        """Return the recording with gaps filled, each filled position with an error that covers every allowed motion.
+        """Return the recording with gaps filled, each filled position with an error bound for all allowed motions.
 
         Parameters
         ----------
@@ -270,7 +270,7 @@ class Recording(ResultCache):
 
     @property
     def measured(self) -> "Recording":
-        """The recording without velocities that were made by smoothing its positions; itself if there are none."""
+        """Recording without velocities derived from its positions; the recording itself if there are none."""
         return replace(self, p=None, u=None, p_sd=None, smoothed=False) if self.smoothed else self
 
     def metrics(self, *, d: float, r: float) -> "xarray.Dataset":
@@ -314,7 +314,7 @@ class Recording(ResultCache):
         return Trajectory(rec.t, rec.q, rec.p, u, ensure_law(law), {}, "complete", f"recorded: {self.source}")
 
     def save(self, path: Any) -> Path:
-        """Write an npz file, from which `read_recording` gives the same recording, its accuracy included.
+        """Write an npz file from which `read_recording` restores the recording with its accuracy.
 
         Parameters
         ----------
@@ -360,13 +360,13 @@ def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
 
 
 def _digits(t: FloatArray) -> int:
-    """Return the digits by which the first and last time differ as their span does."""
+    """Return the number of digits needed to distinguish the first and last time."""
     span = float(np.ptp(t))
     return int(min(max(4, 4 + np.ceil(np.log10(np.abs(t).max() / span))), 17)) if span > 0.0 else 6
 
 
 def _with_gaps(name: str, values: Any) -> FloatArray:
-    """Real numbers, masked ones and NaN as gaps; raise on anything else and on infinite ones."""
+    """Return real numbers with masked ones and NaN as gaps; raise on anything else and on infinities."""
     try:
         masked = isinstance(values, np.ma.MaskedArray)
         array = np.array(np.ma.filled(values.astype(np.float64), np.nan) if masked else values)
@@ -383,7 +383,7 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
 
 
 def _frozen(array: FloatArray) -> FloatArray:
-    """Return an array that nobody can write to; vectors are NaN as a whole where a component is."""
+    """Return a read-only array; a vector with a NaN component becomes NaN as a whole."""
     array = np.ascontiguousarray(array)
     if array.ndim == 3:
         array[np.isnan(array).any(axis=2)] = np.nan

@@ -1,4 +1,4 @@
-"""Differences between a law and a recording, found by regression: gains and forms, each as a sentence."""
+"""Differences between a law and a recording found by regression: gains and forms, in sentences."""
 
 from typing import Any, NamedTuple
 
@@ -39,7 +39,7 @@ class Solution(NamedTuple):
 
 
 class Explained(NamedTuple):
-    """Accelerations explained by a law: residual, squares that the law and its corrections leave, shares, findings."""
+    """Accelerations explained by a law: residual, remaining squares, shares, findings."""
 
     residual: FloatArray
     left: float
@@ -50,7 +50,7 @@ class Explained(NamedTuple):
 
 
 class Regression:
-    """Accelerations to be explained by the parts of a law, weighted by their accuracy."""
+    """Accelerations to be explained by the parts of a law, weighted by accuracy."""
 
     def __init__(self, data: Accelerations, law: Any) -> None:
         self.data, self.weights = data, data.weights
@@ -67,7 +67,7 @@ class Regression:
         return float(np.sum(self.weights[:, :, None] * part * self.data.u)) / self.total if self.total else 0.0
 
     def solve(self, columns: list[FloatArray]) -> Solution:
-        """Return the gains of some parts; residuals of one agent count as dependent."""
+        """Return the gains of some parts; residuals of one agent are treated as correlated."""
         root = np.sqrt(self.weights)[:, :, None]
         matrix = np.stack([(root * column).ravel() for column in columns], axis=1)
         y, norms = root * self.target, np.linalg.norm(matrix, axis=0)
@@ -84,7 +84,7 @@ class Regression:
 
 
 def explained(data: Accelerations, law: Any) -> Explained:
-    """Return what a law explains of accelerations and what differs: other forms first, then gains."""
+    """Return the explained share of accelerations and the differences: other forms first, then gains."""
     from scipy.stats import t as student
 
     work, parts = Regression(data, law), contributions(law)
@@ -113,7 +113,7 @@ def explained(data: Accelerations, law: Any) -> Explained:
 def _with_better_forms(
     work: Regression, law: Any, names: list[str], columns: list[FloatArray]
 ) -> tuple[list[FloatArray], list[str]]:
-    """Return the columns of a law's parts, replaced where another form explains far more, and texts on these forms."""
+    """Return the columns of a law's parts, replaced by far better alternative forms, and texts on these forms."""
     current, texts = list(columns), list[str]()
     open_ = [(variant, work.data.of(variant.acts)) for variant in variants(law) if variant.gain in names]
     left = work.solve(current).left

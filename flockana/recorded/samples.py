@@ -1,4 +1,4 @@
-"""What functions of recordings read: samples, gaps and accuracy."""
+"""Interface of recordings for functions: samples, gaps and accuracy."""
 
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
@@ -13,7 +13,7 @@ _Result = TypeVar("_Result")
 
 
 class Samples(Protocol):
-    """Samples of a recorded flock, as `Recording` holds them."""
+    """Samples of a recorded flock, the base of `Recording`."""
 
     @property
     def t(self) -> FloatArray: ...  # noqa: D102
@@ -67,5 +67,5 @@ class Samples(Protocol):
     def accuracy(self) -> Accuracy: ...  # noqa: D102
 
     def cached(self, key: str, compute: Callable[[], _Result]) -> _Result:
-        """Return a result that is computed once."""
+        """Return a named result, computed once and cached."""
         ...

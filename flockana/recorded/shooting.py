@@ -33,7 +33,7 @@ _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; e
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Windows to be matched by a law with unknown parameters, and constant errors of the samples with their spreads."""
+    """Windows to be matched by a law with unknown parameters, and constant sample errors with their spreads."""
 
     parts: list[Window]
     with_values: Callable[[FloatArray], Any]
@@ -42,11 +42,11 @@ class Problem:
 
     @property
     def size(self) -> int:
-        """Number of samples' numbers."""
+        """Total count of numbers in all samples."""
         return sum(int(np.count_nonzero(part.root)) for part in self.parts)
 
     def fixed(self, k: int, value: float) -> Self:
-        """Return the problem with one parameter at a value, and the others as parameters."""
+        """Return the problem with one parameter fixed, and the others free."""
 
         def law(z: FloatArray) -> Any:
             return self.with_values(np.insert(z, k, value))
@@ -75,7 +75,7 @@ class Problem:
         return misfits if all(np.isfinite(each).all() for each in misfits) else None
 
     def slopes(self, z: FloatArray, starts: Sequence[FloatArray], finer: int, block: float) -> list[FloatArray]:
-        """Return the slopes of each window in its start, the parameters and the constant errors."""
+        """Return the slopes of each window by its start, the parameters and the constant errors."""
         theta, _ = self.split(z)
         law, nearby = self.with_values(theta), neighbouring_laws(self.with_values, theta)
         rows = [part.slopes(law, nearby, start, finer, block) for part, start in zip(self.parts, starts, strict=False)]
@@ -105,18 +105,18 @@ class MatchResult(NamedTuple):
 
     @property
     def squares(self) -> float:
-        """Sum of the squared residuals."""
+        """Return the sum of the squared residuals."""
         return _squares(self.residuals)
 
     @property
     def variance(self) -> float:
-        """Variance of the residuals; 1 if they are noise of the stated deviation."""
+        """Variance of the residuals; 1 for noise of the stated deviation."""
         return self.squares / self.freedom
 
 
 @dataclass(frozen=True, eq=False)
 class NormalEquations:
-    """Normal equations of starts and parameters: slopes of each window, and the starts eliminated."""
+    """Normal equations of starts and parameters, with the starts eliminated window by window."""
 
     slopes: list[FloatArray]
     corners: list[FloatArray]  # inverse of each start's own block
@@ -126,7 +126,7 @@ class NormalEquations:
 
     @classmethod
     def of(cls, slopes: list[FloatArray], count: int, damping: float) -> Self:
-        """Return the equations of some slopes, the last `count` of which are of parameters."""
+        """Return the normal equations of given slopes, the last `count` of which belong to parameters."""
         reduced, corners, across = np.zeros((count, count)), [], []
         for each in slopes:
             whole = each.T @ each
@@ -163,7 +163,7 @@ class NormalEquations:
 
 
 def inverse(matrix: FloatArray) -> FloatArray:
-    """Pseudoinverse of a symmetric matrix that is scaled to 1 on its diagonal."""
+    """Return the pseudoinverse of a symmetric matrix scaled to a unit diagonal."""
     if not len(matrix):
         return matrix
     size = np.sqrt(np.diag(matrix))
@@ -181,7 +181,7 @@ def matched(
     rounds: int = _ROUNDS,
     normal: NormalEquations | None = None,
 ) -> MatchResult:
-    """Return the parameters, and starts of windows, for which solutions of a law fit the samples best.
+    """Return the law parameters and window starts whose solutions fit the samples best.
 
     Slopes, at first those of `normal`, are kept as long as steps gain what they promise: most rounds cost solutions
     alone.
@@ -234,7 +234,7 @@ def matched(
 
 
 def _first(problem: Problem, values: FloatArray | None) -> FloatArray:
-    """Return the parameters to begin with, constant errors of 0 among them."""
+    """Return the starting parameters, with constant errors of 0."""
     if values is not None:
         return values.copy()
     shifts = 0 if problem.spread is None else int(np.count_nonzero(problem.spread > 0.0))
@@ -242,13 +242,13 @@ def _first(problem: Problem, values: FloatArray | None) -> FloatArray:
 
 
 def _with_prior(problem: Problem, starts: list[FloatArray]) -> list[FloatArray]:
-    """Return the starts of windows, and none for the spread of constant errors."""
+    """Return the window starts, extended by a prior of constant errors."""
     count = len(problem.parts)
     return starts[:count] + ([] if problem.spread is None else [np.empty(0)])
 
 
 def _refinement(parts: list[Window], law: Any) -> int:
-    """Return how much finer steps must be for their error to be negligible against the standard errors."""
+    """Return the step refinement that makes integration errors negligible against standard errors."""
     finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
     while finer < _FINEST:
         fine = [part.residual(law, part.start, 2 * finer) for part in parts]

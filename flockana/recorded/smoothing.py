@@ -1,4 +1,4 @@
-"""Smoothing splines with an error at every sample, through the pieces of series with gaps.
+"""Smoothing splines with an error at every sample, for series with gaps.
 
 A spline of degree five that smooths samples of known noise is the mean of a motion whose jerk is white noise, given the
 samples; the same computation, a Kalman filter forth and back, gives the variance of position, velocity and acceleration
@@ -40,7 +40,7 @@ class Smoothed(NamedTuple):
 def smoothed(
     t: FloatArray, y: FloatArray, noise: FloatArray | None, pieces: _Pieces, *, groups: int = 1, floor: float = 0.0
 ) -> Smoothed:
-    """Return the smoothing spline through each piece of each series, the jerk's intensity estimated sample by sample.
+    """Return the smoothing spline through each piece of each series, with local jerk intensities.
 
     `pieces` (T, K) numbers those of each series, -1 outside; an estimated noise is `floor` at least.
     """
@@ -80,7 +80,7 @@ def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
 
 
 def _steepest(x: FloatArray, pieces: _Pieces) -> float:
-    """Return the logarithm of third differences, an upper bound of the jerk, as noise enlarges them."""
+    """Return the logarithm of third differences, an upper bound of the jerk with noise."""
     third = _differences(x, pieces, 3)
     size = float(np.sqrt(np.mean(third**2))) if third.size else 1.0
     return float(np.log(max(size, 1e-14))) + 2.0
@@ -89,7 +89,7 @@ def _steepest(x: FloatArray, pieces: _Pieces) -> float:
 def _local_jerk(
     t: FloatArray, x: FloatArray, sd: FloatArray, pieces: _Pieces, groups: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the jerk's intensity at each sample, (T, K), and the log-likelihood that any adds to each piece's, (P, n).
+    """Return the jerk intensity at each sample, (T, K), and the log-likelihood gain by piece, (P, n).
 
     The first is by the likelihood of the samples nearby.
     """
@@ -116,7 +116,7 @@ def _local_jerk(
 
 
 def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, within: Any, axes: slice) -> None:
-    """Put the straight motion through a piece of an agent into the means, unless one that accelerates is likelier."""
+    """Replace an agent's piece by straight motion unless acceleration is likelier."""
     inside = within[:, axes.start]
     seen = inside & ~np.isnan(x[:, axes.start])
     if seen.sum() < _FEWEST_STRAIGHT:
@@ -131,7 +131,7 @@ def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, 
 
 
 def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArray:
-    """Standard deviation of the noise, one for all series, by maximum likelihood with one jerk for all."""
+    """Return the noise deviation common to all series, by maximum likelihood with one jerk intensity."""
     from scipy.optimize import minimize
 
     def cost(z: FloatArray) -> float:
@@ -146,7 +146,7 @@ def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArra
 def _filtered(
     t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, pieces: _Pieces, *, backwards: bool
 ) -> _Filtered:
-    """Means, deviations, likelihoods of a Kalman filter; of a state given its piece if it goes backwards too."""
+    """Return means, deviations and likelihoods of a Kalman filter, smoothed backwards if requested."""
     count, series = y.shape
     is_seen: npt.NDArray[np.bool_] = ~np.isnan(y)
     alike = all(bool((one == one[:, :1]).all()) for one in (is_seen, sd, jerk, pieces))  # then so are all covariances
@@ -186,7 +186,7 @@ def _filtered(
 
 
 def _initial_variance(y: FloatArray, sd: FloatArray, pieces: _Pieces) -> FloatArray:
-    """Variances of position, velocity and acceleration before the first sample: what the samples show at most."""
+    """Return variances of position, velocity and acceleration before the first sample."""
     sizes = [np.abs(_differences(y, pieces, k)) if k else np.abs(y[~np.isnan(y)]) for k in range(3)]
     largest = np.array([float(x.max()) if x.size else 1.0 for x in sizes])
     return (_DIFFUSE * (largest + float(sd.max()))) ** 2

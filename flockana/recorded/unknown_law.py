@@ -1,4 +1,4 @@
-"""Stand-in for the law of a flock that was recorded elsewhere."""
+"""Stand-in for the unknown law of a recorded flock."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from flockana.laws.discrete import DiscreteLaw
 
 @dataclass(frozen=True)
 class UnknownLaw(DiscreteLaw):
-    """Law of a recorded flock, of which only scale and range are stated; nothing is known between its samples.
+    """Unknown law of a recorded flock, with stated scale and range only.
 
     Parameters
     ----------
@@ -46,6 +46,6 @@ class UnknownLaw(DiscreteLaw):
 
 
 def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
-    """Return the paper's pair law with scale d and range r; a missing one follows from r = 1.2 d."""
+    """Return Olfati-Saber's pair law with scale d and range r; a missing one follows from r = 1.2 d."""
     d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
     return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))

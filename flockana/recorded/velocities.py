@@ -1,4 +1,4 @@
-"""Velocities and accelerations from recorded positions, each with its error, and gaps filled within a stated bound."""
+"""Velocities and accelerations from recorded positions, with errors, and gaps filled within a stated bound."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Motions:
 
 
 def motions(rec: Samples) -> Motions:
-    """Return the smoothing splines of a recording; its noise is the stated one, else the likeliest."""
+    """Return the smoothing splines of a recording, with stated noise, else the likeliest."""
     return rec.cached("motions", lambda: _motions(rec))
 
 
@@ -70,14 +70,14 @@ def _motions(rec: Samples) -> Motions:
 
 
 def _coordinate_noise(rec: Samples) -> Any:
-    """Standard deviation of a coordinate as it is stated: that of an error evenly spread within a bound."""
+    """Return the standard deviation of a coordinate from the stated accuracy; uniform within a bound."""
     if rec.bound is None:
         return rec.sd
     return np.divide(rec.bound, np.sqrt(3.0))
 
 
 def grid_of(q: FloatArray) -> float:
-    """Return the step of the grid to which positions are rounded, 0 if they are on none.
+    """Return the rounding grid step of the positions; 0 without a grid.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def grid_of(q: FloatArray) -> float:
 
 
 def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
-    """Return the number of the piece between gaps in which each sample of each agent lies, shape (T, n); -1 outside.
+    """Return the number of the gap-free piece of each sample and agent, shape (T, n); -1 outside.
 
     A gap is an interval in which an agent has missed a sample, by its own usual interval.
     """
@@ -117,7 +117,7 @@ def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
 
 
 def with_velocities(rec: _Recording) -> _Recording:
-    """See `Recording.with_velocities`: how smooth a motion is, is an estimate, so such velocities decide nothing."""
+    """Return the recording with smoothed velocities, see `Recording.with_velocities`; these decide no verdict."""
     fit = motions(rec)
     unknown = rec.bound is None and rec.sd is None
     change: dict[str, Any] = {"sd": fit.noise, "estimated": True} if unknown else {}
@@ -126,7 +126,7 @@ def with_velocities(rec: _Recording) -> _Recording:
 
 
 class _Ends(NamedTuple):
-    """Positions and velocities before and after a gap, (2, m) each, and their errors, (2,); inf where not known."""
+    """Positions and velocities before and after a gap, (2, m) each, with errors, (2,); inf where unknown."""
 
     q: FloatArray
     p: FloatArray
@@ -163,7 +163,7 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
 def _bridge(
     s: FloatArray, duration: float, ends: _Ends, most: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return positions and velocities in a gap at shares s of it, each with what any motion may be off.
+    """Return positions and velocities in a gap at shares s, each with an error bound over all motions.
 
     The cubic through both ends, or the chord where velocities are not known or say less. A motion whose acceleration is
     ``most`` at most is off by ``most`` times the integral of the absolute value of Peano's kernel; errors of ends add.
@@ -193,7 +193,7 @@ def _bridge(
 
 
 def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, order: int) -> FloatArray:
-    """Integral of the absolute value of Peano's kernel of an interpolation, or of its slope, at shares s of a gap."""
+    """Return the integral of |Peano kernel| of an interpolation, or of its slope, at shares s of a gap."""
 
     def kernel(x: FloatArray | float) -> tuple[Any, Any]:
         after = -by_q * (1.0 - x) * duration - by_p
@@ -210,7 +210,7 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
 
 
 def _gaps(rec: Samples) -> Iterator[tuple[int, slice, float]]:
-    """Yield gaps as agent, missing samples, and time from the sample before to the one after."""
+    """Yield gaps as (agent, missing samples, time from the previous to the next sample)."""
     for i in range(rec.n):
         for a, b in pairwise(np.flatnonzero(rec.present[:, i]).tolist()):
             if b > a + 1:

@@ -1,4 +1,4 @@
-"""Windows of a recording, to each of which one solution of a law is matched, and the slopes of such a solution."""
+"""Windows of a recording, each matched by one solution of a law, and the solution's slopes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ Neighbour = tuple[Any, Any, float]  # laws with a parameter increased and decrea
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Samples that one solution of a law is matched to: positions, and velocities if they are data.
+    """Samples matched by one solution of a law: positions, and velocities if given.
 
     1/deviation of each number is 0 in gaps.
     """
@@ -59,7 +59,7 @@ class Window:
         return (self.root * off).ravel()
 
     def slopes(self, law: Any, nearby: list[Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
-        """Return the slopes of the law's solution over deviations in start and parameters, (K w, 2 n m + P)."""
+        """Return the slopes of the law's solution by start and parameters, over deviations, (K w, 2 n m + P)."""
         longest = np.inf if law.scales is None else block * law.scales.time
         parts = [max(1, min(ceil(h / longest), 64)) for h in np.diff(self.t).tolist()]
         times, at = self.t[:1], np.concatenate([[0], np.cumsum(parts)]).astype(int)
@@ -87,7 +87,7 @@ class Window:
 def _propagator(
     law: Any, nearby: list[Neighbour], t: float, q: FloatArray, p: FloatArray
 ) -> Callable[[FloatArray, float], FloatArray]:
-    """Return the function that carries slopes over a step, to its third order, by the law's linearisation."""
+    """Return the function that propagates slopes over a step, to third order, by the law's linearisation."""
     size = q.size
     by_q, by_p = _derivatives(law, t, q, p)
     forced = np.zeros((size, 2 * size + len(nearby)))
@@ -110,17 +110,17 @@ def _propagator(
 
 
 def _within(t: FloatArray, time: float) -> int:
-    """Return how many samples lie within a duration, at least 1."""
+    """Return the number of samples within a duration, at least 1."""
     return max(1, int(min(len(t), time / float(np.median(np.diff(t)) if len(t) > 1 else 1.0))))
 
 
 def usual_window(rec: Recording, law: Any) -> float:
-    """Return the duration of windows: several of the law's times, and of many samples."""
+    """Return the usual window duration: several law times and many samples."""
     return max(0.0 if law.scales is None else _TIMES * law.scales.time, _FEWEST * rec.interval)
 
 
 def deviations(rec: Recording, *, velocities: bool) -> FloatArray:
-    """Return the standard deviation of each number, (T, w): the stated one, that within a bound, or the likeliest."""
+    """Return the standard deviation of each number, (T, w): stated, from a bound, or estimated."""
     place = rec.sd if rec.sd is not None else motions(rec).noise if rec.bound is None else rec.bound / np.sqrt(3.0)
     each = [np.broadcast_to(np.asarray(place, dtype=np.float64), rec.present.shape)]
     if velocities and rec.p is not None:
@@ -134,7 +134,7 @@ def deviations(rec: Recording, *, velocities: bool) -> FloatArray:
 
 
 def windows(rec: Recording, duration: float, sd: FloatArray | None = None) -> list[Window]:
-    """Return the windows of a recording, each of about some duration; velocities are data if `sd` has their columns."""
+    """Return the windows of a recording, each of about a given duration; `sd` tells whether velocities are data."""
     fit, (total, n, m) = motions(rec), rec.q.shape
     sd = deviations(rec, velocities=False) if sd is None else sd
     count = max(1, round(float(rec.t[-1] - rec.t[0]) / duration))
@@ -155,7 +155,7 @@ def windows(rec: Recording, duration: float, sd: FloatArray | None = None) -> li
 
 
 def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return states to start from, (T, 2 n m): smoothed or recorded ones, on straight lines where there are none."""
+    """Return initial states, (T, 2 n m): smoothed or recorded ones, straight lines elsewhere."""
     total, n, m = rec.q.shape
     q = np.where(np.isnan(q), rec.q, q).reshape(total, n * m)
     p = (p if rec.p is None else np.where(np.isnan(rec.p), p, rec.p)).reshape(total, n * m)
@@ -170,12 +170,12 @@ def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
 
 
 def rescaled(parts: list[Window], factors: FloatArray) -> list[Window]:
-    """Return the windows with the deviations of each column times a factor, shape (w,)."""
+    """Return the windows with the deviations of each column multiplied by a factor, shape (w,)."""
     return [replace(part, root=part.root / factors) for part in parts]
 
 
 def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(∂u/∂q, ∂u/∂p), by differences where the law has none."""
+    """Return (∂u/∂q, ∂u/∂p), by differences if the law has none."""
     try:
         a, b = law.derivatives(t, q, p)
         return a.toarray(), b.toarray()
@@ -187,7 +187,7 @@ def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[Floa
 
 
 def neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[Neighbour]:
-    """Return for each parameter the laws with it increased and decreased, and the difference."""
+    """Return for each parameter the laws with increased and decreased value, and the difference."""
     laws = []
     for k, value in enumerate(values.tolist()):
         more, less = values.copy(), values.copy()

@@ -10,7 +10,7 @@ from flockana.base.errors import FileError
 
 @contextmanager
 def opened(path: Path, wanted: str) -> Iterator[BinaryIO]:
-    """Open a regular file; errors name the file and what was wanted."""
+    """Open a regular file; errors name the file and its expected content."""
     if path.exists() and not path.is_file():
         raise FileError(f"cannot read {path}: it is no regular file; expected {wanted}")
     try:

@@ -1,4 +1,4 @@
-"""Arrays by name: npz, npy, MATLAB and netCDF files, mappings, and the datasets of `movement`."""
+"""Recordings from arrays by name: npz, npy, MATLAB and netCDF files, mappings, datasets of `movement`."""
 
 import pickle
 from collections.abc import Iterator, Mapping, Sequence
@@ -54,7 +54,7 @@ def named_arrays(
     axes: Any = None,
     clock: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p, u and read_as among arrays by name, or of a long table whose columns they are."""
+    """Return t, q, p, u and read_as from arrays by name, or from the columns of a long table."""
     arrays = _without_shells(arrays)
     stated = {} if columns is None else dict(columns)
     if (frame := _long_table(arrays, stated, dt)) is not None:
@@ -122,7 +122,7 @@ def named_arrays(
 
 
 def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | None, where: str) -> tuple[Any, str]:
-    """Return the interval between samples that is given, or that a frame rate beside the arrays states."""
+    """Return the sampling interval, given or from a frame rate beside the arrays."""
     name = next((lower[each] for each in _RATES if each in lower), None)
     rate = np.asarray(arrays[name]).reshape(-1) if name is not None else np.empty(0)
     if rate.size != 1 or rate.dtype.kind not in "fiu" or not rate[0] > 0:
@@ -133,7 +133,7 @@ def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | N
 
 
 def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return arrays by name out of dictionaries and structures that hold them, one for each agent perhaps."""
+    """Return arrays by name from nested dictionaries and structures, possibly one for each agent."""
     for value in list(arrays.values()):
         inner = _dictionaries(value)
         if inner and len(arrays) <= 1 + sum(_dictionaries(x) == [] for x in arrays.values()):
@@ -145,7 +145,7 @@ def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _dictionaries(value: Any) -> list[Mapping[str, Any]]:
-    """Return the dictionaries that a list, an array of objects or a MATLAB structure holds; none otherwise."""
+    """Return the dictionaries inside a list, an array of objects or a MATLAB structure; none otherwise."""
     if isinstance(value, Mapping):
         return [value]
     if isinstance(value, np.ndarray) and value.dtype.names:
@@ -188,7 +188,7 @@ def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any], dt: float | None) -> Any:
-    """Return arrays of one length as the columns of a long table; None if they are no such columns."""
+    """Return arrays of one length as columns of a long table; None otherwise."""
     import pandas as pd
 
     try:
@@ -211,7 +211,7 @@ def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any], dt: float |
 
 @contextmanager
 def _readable(path: Path, kind: str, remedy: str) -> Iterator[None]:
-    """Turn what readers raise on damaged bytes, errors of many kinds, into one in a line."""
+    """Convert any error of a reader on damaged bytes into a one-line error."""
     try:
         yield
     except FileError:
@@ -222,7 +222,7 @@ def _readable(path: Path, kind: str, remedy: str) -> Iterator[None]:
 
 
 class _PlainUnpickler(pickle.Unpickler):
-    """Reader of pickled dictionaries, lists, numbers and numpy arrays; anything else could run code, and is refused."""
+    """Safe unpickler of dictionaries, lists, numbers and numpy arrays; all else is rejected, as it could run code."""
 
     def find_class(self, module: str, name: str) -> Any:
         if module.split(".")[0] in ("numpy", "collections", "_codecs") and name in _SAFE:
@@ -231,7 +231,7 @@ class _PlainUnpickler(pickle.Unpickler):
 
 
 def npz_arrays(path: Path) -> dict[str, Any]:
-    """Return the arrays of a file npz or npy; of objects, those in dictionaries of arrays alone."""
+    """Return the arrays of an npz or npy file; object arrays may hold dictionaries of arrays only."""
     with _readable(path, "npz", "write it by numpy.savez"):
         with path.open("rb") as file:
             if file.read(6) == b"\x93NUMPY":
@@ -267,7 +267,7 @@ def mat_arrays(path: Path) -> dict[str, Any]:
 
 
 def netcdf_arrays(path: Path) -> Any:
-    """Return the dataset of a netCDF file; of a run that flockana saved, too."""
+    """Return the dataset of a netCDF file, including saved runs."""
     import xarray
 
     with (
@@ -278,7 +278,7 @@ def netcdf_arrays(path: Path) -> Any:
 
 
 def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
-    """Return the arrays of an xarray.Dataset; its dimensions say which axis is which, as `movement` names them.
+    """Return the arrays of an xarray.Dataset, with axes identified by dimension names as in `movement`.
 
     Positions are over time, space and individual(s), and keypoint(s) of each; of several keypoints one must be chosen.
     """

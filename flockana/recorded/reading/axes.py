@@ -1,4 +1,4 @@
-"""Axes of arrays: which is the time, the agent and the axis of space, named, joined, or told by how smooth they are."""
+"""Axes of arrays: time, agent and space axis identified by name, joined, or recognised by smoothness."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,7 +20,7 @@ _SMOOTHER = 4.0  # times smaller steps along the second axis than along the firs
 
 
 def order_of(axes: Any) -> list[int]:
-    """Return which of time, agent and axis each axis of an array is."""
+    """Return the meaning of each axis of an array: time, agent or space axis."""
     words = axes.replace(",", " ").split() if isinstance(axes, str) else list(axes) if np.iterable(axes) else []
     words = list(words[0]) if len(words) == 1 and str(words[0]) not in AXES and len(str(words[0])) in (2, 3) else words
     order = [AXES.get(str(word).lower(), -1) for word in words]
@@ -32,7 +32,7 @@ def order_of(axes: Any) -> list[int]:
 
 
 def turned(x: Any, order: Sequence[int], kind: str, where: str) -> Any:
-    """Return an array with its axes as (T, n, m); one that is left out has the length 1."""
+    """Return an array with axes in the order (T, n, m); a missing axis has length 1."""
     if x.ndim != len(order):
         raise ArgumentError(
             f"{where}: {kind} has shape {x.shape} and axes= names {len(order)}: expected one name for each"
@@ -45,7 +45,7 @@ def turned(x: Any, order: Sequence[int], kind: str, where: str) -> Any:
 def with_joined_axes(
     arrays: Mapping[str, Any], given: Mapping[str, Any], order: Sequence[int] | None, where: str
 ) -> tuple[Mapping[str, Any], dict[str, str]]:
-    """Return arrays with those of single axes, such as x and y, joined to (T, n, m), and the names that were joined."""
+    """Return arrays with single coordinates such as x and y joined to (T, n, m), and the joined names."""
     words = {name: coordinate(*words_of(name)) for name in arrays if name not in given.values()}
     known = {name: word for name, word in words.items() if word is not None and rank(arrays[name]) == 2}
     kinds = {kind: dict(zip("xyz", x, strict=False)) for kind, x in given.items() if isinstance(x, list | tuple)}
@@ -67,7 +67,7 @@ def with_joined_axes(
 
 
 def rank(x: Any) -> int:
-    """Return the number of dimensions of an array, 0 of rows of different lengths."""
+    """Return the number of dimensions of an array; 0 for rows of different lengths."""
     try:
         return np.ndim(x)
     except ValueError:
@@ -75,13 +75,13 @@ def rank(x: Any) -> int:
 
 
 def possible_orders(q: Any, times: Sequence[int]) -> list[str]:
-    """Return the axes= that read one of some axes as the time, and one that is short as that of space."""
+    """Return the possible values of the axes= argument: one axis as time, a short one as space."""
     spaces = [(k, j) for k in times for j in range(3) if j != k and q.shape[j] <= 3]
     return [f'"{" ".join("time" if i == k else "axis" if i == j else "agent" for i in range(3))}"' for k, j in spaces]
 
 
 def is_smoother_along_second(q: Any) -> bool:
-    """Return whether steps along the second axis are much smaller, and changes of the shape of a flock are, too."""
+    """Return whether steps and shape changes along the second axis are much smaller than along the first."""
     if min(q.shape[:2]) < 2:
         return False
     x = np.ma.masked_invalid(q)

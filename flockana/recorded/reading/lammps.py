@@ -1,4 +1,4 @@
-"""Text dumps of LAMMPS: snapshots with their boxes, places unwrapped."""
+"""Text dumps of LAMMPS: snapshots with boxes, and unwrapped positions."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _LARGEST = 2**53  # up to which every whole number is a float
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """Edges of a box as rows, shape (3, 3), and along which it is periodic; None where the dump does not say."""
+    """Edges of a box as rows, shape (3, 3), with periodic directions; None if the dump does not state them."""
 
     edges: FloatArray
     periodic: tuple[bool, ...] | None
@@ -55,7 +55,7 @@ class Box:
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """One snapshot of a dump: step, time and box if they are there, columns by name, agents in the order of their ids.
+    """Snapshot of a dump: step, time, box, columns by name, agents in the order of their ids.
 
     A column of words, such as element, is NaN.
     """
@@ -75,7 +75,7 @@ def read_dump(
     *,
     wrapped: bool = False,
 ) -> dict[str, Any]:
-    """Return t, ids, q, and p and u where the dump has them or `needed` names them, and the steps.
+    """Return t, ids, q, steps, and p and u if present or named in `needed`.
 
     The dimension is passed to `ensure_fits` before places are unwrapped; `wrapped` ones may stay so.
     """
@@ -104,7 +104,7 @@ def read_dump(
 
 
 def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
-    """Return the dimension that is asked for, by default that of the positions in the dump."""
+    """Return the requested dimension, by default that of the positions in the dump."""
     there = len([*takewhile(lambda axis: {axis, f"{axis}u"} & {*columns}, AXES)])
     if there == 0:
         raise ArgumentError(
@@ -119,7 +119,7 @@ def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
 
 
 def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatArray:
-    """Return the positions of a snapshot, shape (n, m), unwrapped where its images tell."""
+    """Return the positions of a snapshot, shape (n, m), unwrapped by image flags if present."""
     columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
     q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
     if snapshot.box is None or not wrapped:
@@ -211,7 +211,7 @@ def _read_integer(file: TextIO, name: str, least: int, path: Path) -> int:
 
 
 def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: Sequence[int] = ()) -> FloatArray:
-    """The next lines as numbers, (rows, width), or an error that says what is wrong; NaN in columns of words."""
+    """Return the next lines as numbers, (rows, width), NaN for words; raise with a description of the fault."""
     lines = list(islice(file, rows))
     cells = [line.split() for line in lines]
     width = len(cells[0]) if width is None and cells else width

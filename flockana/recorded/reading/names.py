@@ -1,4 +1,4 @@
-"""Which column of a table holds what, by its name; what may be read in two ways is refused with both."""
+"""Meaning of table columns by their names; ambiguous names are rejected."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ Kinds = dict[str, dict[str, str]]  # column by kind and axis
 
 @dataclass(frozen=True)
 class Layout:
-    """Which columns hold what: time or frame, agent, and coordinates by kind ("q", "p", "u").
+    """Meaning of columns: time or frame, agent, and coordinates by kind ("q", "p", "u").
 
     In a wide table the coordinates are those of each agent, by its name. `rivals` may be the agent's column too: their
     numbers decide.
@@ -55,7 +55,7 @@ def is_header(name: Any) -> bool:
 
 
 def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | None = None) -> Layout:
-    """Return the layout of a table by its header, and by the names that a user states.
+    """Return the layout of a table from its header and the user's names.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _stated(given: Mapping[str, Any]) -> dict[str, list[str]]:
 
 
 def _ensure_given(columns: Mapping[str, Any], names: Sequence[Any], where: str) -> Mapping[str, Any]:
-    """Return the names that a user states, or raise where one is no column."""
+    """Return the user's column names; raise on a name that is no column."""
     if unknown := set(columns) - {*_KNOWN}:
         raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected {', '.join(_KNOWN)}")
     kinds = _stated(columns)
@@ -124,7 +124,7 @@ def _two_readings(where: str, names: Sequence[Any], one: str, other: str, remedy
 
 
 def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> tuple[Any, list[str]]:
-    """Return the column of times, or those of seconds and nanoseconds, and times of receipt that are not read."""
+    """Return the time column, or columns of seconds and nanoseconds, and ignored receipt times."""
     endings = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
     nano = [name for name in names if endings[name] and endings[name][0] in _NANO]
     whole = [name for name in names if endings[name] and endings[name][0] in _WHOLE]
@@ -176,7 +176,7 @@ def _rivals(where: str, one: str, other: str, kind: str, axis: str) -> ArgumentE
 
 
 def _settle(kinds: Kinds, where: str) -> None:
-    """Settle px and qx, which are positions if nothing else is; else px is a velocity, and qx refused."""
+    """Resolve px and qx: positions if there are no others; else px is a velocity and qx is rejected."""
     for letter in "pq":
         columns = kinds.pop(letter + "?", None)
         if columns is None:
@@ -198,7 +198,7 @@ def _arranged(
     where: str,
     shown: str,
 ) -> Layout:
-    """Return a long or a wide layout: one vector, or one for each agent."""
+    """Return a long layout (one vector) or a wide layout (one vector per agent)."""
     placed = {owner: kinds for owner, kinds in groups.items() if "q" in kinds}
     if stated is not None:
         wanted_words = {str(name): tuple(words_of(name)[0]) for name in stated}
@@ -237,13 +237,13 @@ def _joined(owner: Sequence[str]) -> str:
 
 
 def _are_agents(owners: list[tuple[str, ...]]) -> bool:
-    """Return whether names differ in a number or a letter alone, or all begin with a word for agents."""
+    """Return whether names differ only in a number or letter, or all begin with a word for agents."""
     stems = {tuple(word for word in owner if not word.isdigit() and len(word) > 1) for owner in owners}
     return len(stems) == 1 or all(is_agents_word(owner[0]) and len(owner) > 1 for owner in owners)
 
 
 def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:
-    """Return the columns of each agent in the order of axes; raise where one has others."""
+    """Return the columns of each agent in the order of axes; raise on differing columns."""
     each = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
     sizes = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in each.items()}
     first = next(iter(sizes))
@@ -253,7 +253,7 @@ def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dic
 
 
 def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str, shown: str) -> ArgumentError:
-    """Return the error that says why no column is a position."""
+    """Return the error explaining that no column is a position."""
     listed = [x for x in names if (w := words_of(x)[0])[-1:] and w[-1].isdigit() and coordinate([*w[:-1], "x"], None)]
     if 1 < len(listed) <= 3:
         remedy = f'columns={{"q": {list(map(str, listed))}}}, or names such as x1, x2'
@@ -277,7 +277,7 @@ def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str,
 
 
 def ordered_axes(kinds: Kinds, where: str, shown: str) -> dict[str, list[str]]:
-    """Columns of each kind in the order of their axes; raise where one is missing."""
+    """Return the columns of each kind in the order of axes; raise on a missing axis."""
     size = 1 + max(AXES.index(axis) for axis in kinds["q"])
     for kind in (k for k in MEANINGS if k in kinds):
         axis_count = max(size, 1 + max(AXES.index(axis) for axis in kinds[kind]))

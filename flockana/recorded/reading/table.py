@@ -1,4 +1,4 @@
-"""Long and wide tables as arrays: times, positions, velocities, names of agents, and how each was read."""
+"""Conversion of long and wide tables to arrays: times, positions, velocities, names of agents, notes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ def table_arrays(
     m: int | None = None,
     jitter: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p, u, ids and read_as of a table, as `Recording` takes them."""
+    """Return t, q, p, u, ids and read_as of a table, in the form of `Recording`."""
     where = str(frame.attrs.get("where", "the frame"))
     if not len(frame):
         raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
@@ -67,7 +67,7 @@ def table_arrays(
 
 
 def _counted(frame: Any, t: FloatArray | None, dt: float | None, layout: Layout, where: str) -> FloatArray:
-    """Return the time of each row, which counts where there are no times."""
+    """Return the time of each row, or the row count without times."""
     if t is not None:
         return t
     if dt is None:
@@ -100,7 +100,7 @@ def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
 
 
 def _described(layout: Layout, dt: float | None) -> list[str]:
-    """Return which column became what, and from which unit."""
+    """Return a note on the meaning and unit assigned to each column."""
 
     def named(columns: Sequence[str]) -> str:
         unit = (layout.units or {}).get(columns[0])
@@ -125,7 +125,7 @@ def _described(layout: Layout, dt: float | None) -> list[str]:
 
 
 def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
-    """Return factors by which velocities and accelerations come into the units of positions and times, and a note."""
+    """Return conversion factors of velocities and accelerations to the units of positions and times, and a note."""
     units, kinds = layout.units or {}, [layout.long] if layout.long else [*layout.wide.values()]
     by_name: dict[str, Unit] = {}
     for kind in MEANINGS:
@@ -154,7 +154,7 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
 
 
 def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
-    """Return a note on a last axis along which nothing moves."""
+    """Return a note on a last axis without motion."""
     q = np.asarray(arrays["q"])
     last = q[..., -1]
     if q.shape[-1] < 2 or q.shape[0] < 2 or np.nanmax(last) != np.nanmin(last):
@@ -164,7 +164,7 @@ def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
 
 
 def _with_agents(frame: Any, layout: Layout, t: FloatArray | None, where: str) -> Layout:
-    """Return the layout with the one column of agents among several: names of agents return at other times."""
+    """Return the layout with the agent column chosen among several: agent names recur at other times."""
     import pandas as pd
 
     if not layout.rivals or layout.agent is None or t is None:
@@ -188,7 +188,7 @@ def _with_agents(frame: Any, layout: Layout, t: FloatArray | None, where: str) -
 def _times(
     frame: Any, layout: Layout, dt: float | None, clock: float | None, where: str
 ) -> tuple[FloatArray | None, list[str]]:
-    """Return the time of each row, None where only rows count, and what was made of the numbers."""
+    """Return the time of each row (None if only rows count), and a note on the conversion."""
     if isinstance(layout.time, tuple):
         whole, parts = (numbers(frame, name) for name in layout.time)
         return (whole - whole[0]) + 1e-9 * parts, ["seconds and nanoseconds are added, from the first second on"]
@@ -243,7 +243,7 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
 
 
 def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
-    """Return the times with stamps of one instant made equal, by default those that differ by rounding."""
+    """Return the times with equal stamps for one instant, by default stamps that differ by rounding."""
     stamps = np.unique(t)
     size = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
     reach = size if jitter is None else ensure_nonnegative("jitter", jitter)
@@ -274,7 +274,7 @@ def _values(frame: Any, names: Sequence[str]) -> FloatArray:
 
 
 def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, Any]:
-    """A row for each agent at each time."""
+    """Return arrays from a table with a row for each agent at each time."""
     import pandas as pd
 
     column = frame[layout.agent]
@@ -305,7 +305,7 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
 
 
 def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: FloatArray) -> dict[str, Any]:
-    """A row for each time, with columns for each agent."""
+    """Return arrays from a table with a row for each time and columns for each agent."""
     order = np.argsort(t, kind="stable")
     if (np.diff(t[order]) == 0.0).any():
         k = int(order[1:][np.diff(t[order]) == 0.0].min())
@@ -318,7 +318,7 @@ def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: Flo
 
 
 def _one_instant(frame: Any, layout: Layout) -> dict[str, Any]:
-    """Agents without times: a flock at one instant."""
+    """Return arrays from a table without times: a flock at one instant."""
     where = str(frame.attrs.get("where", "the frame"))
     arrays: dict[str, Any] = {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
     if layout.agent is not None:

@@ -80,7 +80,7 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
 
 
 def _below_comments(data: bytes, named: bool) -> tuple[bytes, int]:
-    """Return a table below lines that begin with #, of which the last may be its header, and the number left out."""
+    """Return a table without comment lines (#), of which the last may be the header, and their number."""
     lines = data.split(b"\n", 100)
     first = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
     cells = re.split(r"[\t,;\s]+", lines[first].decode("utf-8").strip())
@@ -90,7 +90,7 @@ def _below_comments(data: bytes, named: bool) -> tuple[bytes, int]:
 
 
 def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
-    """Return a table with decimal points and one line of a header, and notes on what was there instead."""
+    """Return a table with decimal points and one header line, and notes on the changes."""
     notes, (head, _, rest) = [], data.partition(b"\n")
     if delimiter != "," and b"," in rest and b"." not in rest and re.search(rb"\d,\d", rest):
         rest, notes = re.sub(rb"(?<=\d),(?=\d)", b".", rest), ["commas are decimal points"]
@@ -108,7 +108,7 @@ def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
 
 
 def numbers(frame: Any, column: str) -> Any:
-    """Return a column as floats with NaN for gaps; raise on the first cell that is no finite number."""
+    """Return a column as floats with NaN for gaps; raise on the first cell that is not a finite number."""
     import pandas as pd
 
     series = frame[column]
@@ -126,7 +126,7 @@ def numbers(frame: Any, column: str) -> Any:
 
 
 def row_name(frame: Any, k: int) -> str:
-    """Return where a row stands, for a message: its line in a file, or its index in a frame."""
+    """Return a row's location for messages: its line in a file, or its index in a frame."""
     where, first = frame.attrs.get("where", "the frame"), frame.attrs.get("first")
     if first is None:
         return f"{where}, row {frame.index[k]}"
@@ -141,7 +141,7 @@ def _bad_cell(frame: Any, k: int, column: str) -> FileError:
 
 
 def _bytes(path: Path) -> bytes:
-    """Contents of a text file, line ends as newlines; raise on what is no text."""
+    """Return the bytes of a text file with newline line ends; raise on binary content."""
     with opened(path, "a table") as file:
         data = file.read()
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -170,7 +170,7 @@ def _delimiter(line: str) -> str:
 
 
 def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path, above: int) -> bytes:
-    """Return the table without empty cells beyond the header; raise on a row with another number of cells.
+    """Return the table without empty cells beyond the header; raise on a row of a different length.
 
     pandas would fill short ones.
     """

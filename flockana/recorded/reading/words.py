@@ -1,4 +1,4 @@
-"""Vocabulary of recordings: what a column's name says of its kind, axis, owner and unit."""
+"""Vocabulary of column names in recordings: kind, axis, owner and unit."""
 
 import csv
 import re
@@ -30,7 +30,7 @@ _PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-zµμ]+|[A-Z]+|\d+")
 
 
 class Unit(NamedTuple):
-    """Unit of a column: as spelt, factor to metres and seconds, power of time, and seconds in its unit of time."""
+    """Unit of a column: text, factor to metres and seconds, power of time, and seconds per time unit."""
 
     text: str
     length: str
@@ -40,7 +40,7 @@ class Unit(NamedTuple):
 
 
 class Word(NamedTuple):
-    """What a column's name says: kind ("q", "p", "u", ...), axis ("x" to "w"), the words of its owner, and its unit.
+    """Meaning of a column name: kind ("q", "p", "u", ...), axis ("x" to "w"), owner words, and unit.
 
     `pattern` is the name without its axis: columns of one vector share it.
     """
@@ -53,7 +53,7 @@ class Word(NamedTuple):
 
 
 def unit_of(text: str) -> Unit | None:
-    """Return the unit that a text names, such as m, ms or mm/s; None if it names none.
+    """Return the unit named by a text, such as m, ms or mm/s; None without one.
 
     Examples
     --------
@@ -92,19 +92,19 @@ def _known(word: str, kind: set[str]) -> bool:
 
 
 def is_time(words: list[str]) -> bool:
-    """Return whether words name the time of a row."""
+    """Return whether words denote the time of a row."""
     rest = [word for word in words if word not in _FILLERS and word not in _ROLES["q"]]
     return bool({*rest} & _TIMES) and all(word in _TIMES or word in ("frame", "start") for word in rest)
 
 
 def is_frame(words: list[str]) -> bool:
-    """Return whether words name a count of frames."""
+    """Return whether words denote a frame count."""
     rest = [word for word in words if word not in _NUMBERS | _FILLERS]
     return bool(rest) and all(_known(word, _FRAMES) for word in rest)
 
 
 def is_agent(words: list[str]) -> bool:
-    """Return whether words name the agent of a row."""
+    """Return whether words denote the agent of a row."""
     rest = [word for word in words if word not in _FILLERS]
     return (
         bool(rest)
@@ -114,12 +114,12 @@ def is_agent(words: list[str]) -> bool:
 
 
 def is_agents_word(word: str) -> bool:
-    """Return whether a word is one for agents, such as robot."""
+    """Return whether a word denotes agents, such as robot."""
     return _known(word, _AGENTS - {"target"})
 
 
 def coordinate(words: list[str], unit: Unit | None) -> Word | None:
-    """Return what the words of a name say of a coordinate; None if they name none."""
+    """Return the coordinate meaning of a name's words; None without one."""
     at = [k for k, word in enumerate(words) if word in _FUSED or word in "xyzw"]
     if len(at) != 1:
         return None
