@@ -1,4 +1,4 @@
-"""Write the report: one HTML page that needs no network (JavaScript only to play), and the verdicts as JSON."""
+"""Writer of the report: one HTML page without network access, and the verdicts as JSON."""
 
 import json
 import os
@@ -43,7 +43,7 @@ _STATUSES = ("verified", "refuted", "vacuous", "inconclusive")
 
 
 def ensure_directory(directory: str | os.PathLike[str]) -> Path:
-    """Make a folder that can be written to, before any work whose results should go there."""
+    """Create a writable folder before any work whose results go there."""
     path = ensure_path(directory, action="write to", remedy="choose a folder you may write to")
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -57,18 +57,18 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
 
 
 def report_folder(name: str | None) -> Path:
-    """Return the folder of a report; a partial report never replaces one on the whole catalogue."""
+    """Return the folder of a report; a partial report never replaces a full catalogue report."""
     return FOLDER if name is None or not _covers_catalogue(FOLDER) else FOLDER / name
 
 
 def _covers_catalogue(folder: Path) -> bool:
-    """Return whether a folder holds a report on the whole catalogue, or one that cannot be read."""
+    """Return whether a folder holds a full catalogue report, or an unreadable one."""
     there = _facts(folder)
     return there is not None and there.get("of") is None
 
 
 def _facts(folder: Path) -> dict[str, Any] | None:
-    """Return the facts stored with a report, None without a report; damaged verdicts count as a whole report."""
+    """Return the facts stored with a report; None without one, damaged verdicts count as a full report."""
     if not (folder / HTML).exists() and not (folder / JSON).exists():
         return None
     whole = {"complete": True, "of": None}
@@ -91,7 +91,7 @@ def write_report(
     flocks: LinearisedFlocks = NO_FLOCKS,
     of: str | None = None,
 ) -> Path:
-    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole."""
+    """Write ``index.html`` and ``verdicts.json``; existing files are replaced only by complete ones."""
     # A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
     # part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
     # None for the whole catalogue.
@@ -118,7 +118,7 @@ def verdicts_json(
     complete: bool = True,
     statistics: StatisticsSection | None = None,
 ) -> str:
-    """All verdicts as JSON text, with the run that they come from."""
+    """Return all verdicts as JSON text, with the facts of their run."""
     return _json(list(pages), _run_facts(seed, seconds, complete), statistics)
 
 

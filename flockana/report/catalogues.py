@@ -41,7 +41,7 @@ def _scenario_entries() -> list[dict[str, Any]]:
 
 
 def theorem_entries() -> list[dict[str, Any]]:
-    """Return the catalogue of theorems as plain data; statuses are those expected of it itself or on scenarios."""
+    """Return the catalogue of theorems as plain data, with expected statuses."""
     entries: list[dict[str, Any]] = kept_data("theorems", _theorem_entries)
     return entries
 
@@ -64,7 +64,7 @@ def _theorem_entries() -> list[dict[str, Any]]:
 
 
 def _first(references: Sequence[str]) -> str:
-    """Return the first source that is not flockana itself."""
+    """Return the first source other than flockana itself."""
     from flockana.report.value_texts import source_name
 
     return next((source_name(key) for key in references if key != "flockana"), "flockana")
@@ -88,7 +88,7 @@ def select(
 
 
 def short_list(entries: Sequence[dict[str, Any]]) -> str:
-    """Return a line for each entry, grouped by source."""
+    """Return one line per entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
     for source in dict.fromkeys(entry["source"] for entry in entries):
         entries_of_source = (entry for entry in entries if entry["source"] == source)
@@ -112,7 +112,7 @@ def scenario_table(names: Iterable[str]) -> Table:
 
 
 def theorem_table(names: Iterable[str]) -> Table:
-    """Return theorems with title, what each is checked on, source."""
+    """Return theorems with title, checked runs, and source."""
     from flockana.theorems import theorem
 
     what = Column("what, and where it is printed", ratio=1, overflow="fold")

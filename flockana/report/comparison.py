@@ -1,4 +1,4 @@
-"""The report's section on one start under many laws: what each theorem promises, and what happened."""
+"""Report section on one start under many laws: the theorems' promises and the outcomes."""
 
 from collections import namedtuple
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class ComparisonSection:
 
 @cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge it; it takes seconds, once in a process."""
+    """Run the start under every law and judge the run; takes seconds, once per process."""
     outcomes = compare(seed=seed)
     return ComparisonSection(tuple(_row(outcome) for outcome in outcomes), _pictures(outcomes))
 

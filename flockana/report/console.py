@@ -1,4 +1,4 @@
-"""The terminal's view: tables that read well at 80 columns, in colour or in a pipe."""
+"""Terminal output: tables readable at 80 columns, in colour or in a pipe."""
 
 from collections.abc import Iterable, Sequence
 
@@ -53,13 +53,13 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
 
 
 def _share(verdict: Verdict) -> str:
-    """Return how many of the author's claims have the verdict's status."""
+    """Return the number of the author's claims that share the verdict's status."""
     claims = verdict.main_claims
     return f"{sum(claim.status == verdict.status for claim in claims)} of {len(claims)}" if claims else ""
 
 
 def errata_table(pages: Iterable[Page]) -> Table:
-    """Return what is printed and what is right of the errata checked, by sort."""
+    """Return a table of checked errata by sort: printed form and correct form."""
     checked = {finding.verdict.theorem for page in pages for finding in page.findings}
     table = headed_table(column("erratum"), column("printed, and right", wraps=True))
     for sort, meaning in SORTS.items():

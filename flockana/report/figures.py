@@ -32,7 +32,7 @@ def drawn(caption: str, size: tuple[float, float], draw: Callable[..., object], 
 
 @cache
 def pictures_of_laws() -> dict[type, Callable[[Trajectory], tuple[Picture, ...]]]:
-    """Return the functions by law of the sources' `PICTURES`, for laws with figures of their own."""
+    """Return the picture functions of the sources' `PICTURES` by law."""
     return {law: draw for module in source_modules("figures") for law, draw in module.PICTURES.items()}
 
 
@@ -95,13 +95,13 @@ def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
 
 
 def spread(values: FloatArray) -> tuple[Curve, ...]:
-    """Return the curves of the greatest, the mean and the least of all agents."""
+    """Return the curves of greatest, mean and least value over the agents."""
     of = {"greatest": values.max(axis=1), "mean": values.mean(axis=1), "least": values.min(axis=1)}
     return tuple(Curve(series, name) for name, series in of.items())
 
 
 def middle_sample(run: Trajectory) -> int:
-    """Return the index of the middle sample; among obstacles, of the one where a connected flock is most split."""
+    """Return the index of the middle sample; among obstacles, the most split sample of a connected flock."""
     if run.law.obstacles:
         counts = component_counts(run)
         since = int(np.argmax(counts == 1))

@@ -1,4 +1,4 @@
-"""A drawn figure as SVG in the page's own colours, with texts that can be searched."""
+"""Drawn figure as SVG in the page's own colours, with searchable text."""
 
 import re
 from collections.abc import Callable
@@ -27,7 +27,7 @@ IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its pl
 
 
 def plots() -> ModuleType:
-    """Return the package of plots, which loads matplotlib, where something is drawn."""
+    """Return the plots package, imported at first use as it loads matplotlib."""
     from flockana import plots
 
     return plots
@@ -48,7 +48,7 @@ def svg(draw: Callable[[Any], object], size: tuple[float, float]) -> str:
 
 
 def placed(draw: Callable[[Any], object], size: tuple[float, float], dpi: float) -> Any:
-    """Return the canvas of a figure whose axes have what room their texts leave."""
+    """Return the canvas of a figure whose axes leave room for their texts."""
     from matplotlib import rcParams
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -1,4 +1,4 @@
-"""Report section on lattices and equilibria, made from the verdicts alone."""
+"""Report section on lattices and equilibria, built from the verdicts alone."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ def _end(name: str, verdict: Verdict) -> Iterator[EndState]:
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
-    """Return the number computed for a claim by the first verdict on a theorem, or None."""
+    """Return the computed number of a claim in the first verdict on a theorem; None without one."""
     claims = (c for v in verdicts if v.theorem == theorem for c in v.claims if c.name == claim)
     return next((c.computed for c in claims if c.computed is not None), None)
 

@@ -1,4 +1,4 @@
-"""Findings that stand first in the report: plain sentences, each on a verdict of the catalogue."""
+"""Opening findings of the report: plain sentences, each based on a verdict of the catalogue."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -19,7 +19,7 @@ _TELLING = ("refuted", "verified", "inconclusive", "vacuous")
 
 
 class FrontFinding(NamedTuple):
-    """A finding of the first screen."""
+    """Finding for the first screen of the report."""
 
     text: str
     status: str
@@ -28,7 +28,7 @@ class FrontFinding(NamedTuple):
 
 
 def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
-    """Return the findings whose verdicts are in the report and as expected."""
+    """Return the opening findings whose verdicts are present and as expected."""
     by_name = {page.name: page for page in pages if isinstance(page, ScenarioPage)}
     findings = []
     for scenario, theorem, text in FINDINGS:
@@ -41,7 +41,7 @@ def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
 
 
 def opening_sentence(findings: Iterable[Finding]) -> str:
-    """Return how many printed claims were found false as expected, and how many theorems hold; empty if none were."""
+    """Return a sentence with the numbers of refuted printed claims and verified theorems; empty without any."""
     expected = [f.verdict for f in findings if f.as_expected]
     false = sum(each.status == "refuted" and each.author == "source" for each in expected)
     count_verified = sum(each.status == "verified" for each in expected)
@@ -50,7 +50,7 @@ def opening_sentence(findings: Iterable[Finding]) -> str:
 
 
 def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Finding]]]:
-    """Return scenarios with their findings: surprises first, then those of the first screen, then what is refuted."""
+    """Return scenarios with their findings: surprises first, then opening findings, then refuted claims."""
     front = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
 
     def rank(page: ScenarioPage, finding: Finding) -> tuple[bool, bool, int]:

@@ -1,4 +1,4 @@
-"""Report on what is the user's own: flock, run, recording, verdicts or ensemble, on the page that the catalogue has."""
+"""Report on a user's own flock, run, recording, verdicts or ensemble, in the catalogue's page format."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def write_report(
 def own_pages(
     subject: Any, *, law: Any = None, theorems: Sequence[str | Theorem] = _NONE, seed: int = 0, figures: bool = True
 ) -> list[ScenarioPage]:
-    """Return the page of a flock, a scenario, a run or a recording, or those of verdicts by their subjects."""
+    """Return the page of a flock, scenario, run or recording, or the pages of verdicts by subject."""
     verdicts: tuple[Verdict, ...] = (subject,) if isinstance(subject, Verdict) else subject
     if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(each, Verdict) for each in verdicts):
         _ensure_unused("verdicts have", law=law, theorems=theorems)
@@ -114,7 +114,7 @@ def own_pages(
 
 
 def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
-    """Return verdicts by subject; a second one of the same theorem on a subject gets a page of its own."""
+    """Return verdicts by subject; a repeated theorem on a subject gets a page of its own."""
     pages: dict[str, dict[str, Verdict]] = {}
     for each in verdicts:
         name = each.subject or "verdicts"
@@ -125,7 +125,7 @@ def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
 
 
 def _ensure_unused(what: str, **given: Any) -> None:
-    """Raise if something is given that a report on this takes no account of."""
+    """Raise on an argument that this kind of report does not use."""
     for name in (name for name, value in given.items() if value is not None and value is not _NONE):
         raise ArgumentError(f"{name} = {format_value(given[name])}: {what} their own; leave {name} out")
 

@@ -64,17 +64,17 @@ class ScenarioPage:
 
     @property
     def command(self) -> str:
-        """Return what runs it again; empty if it is no scenario of the catalogue."""
+        """Return the command that repeats the run; empty outside the catalogue."""
         return f"flockana verify {self.name}" if self.name in scenarios() else ""
 
     @property
     def subject(self) -> str:
-        """What the verdicts are on, in ids of the page."""
+        """Subject of the verdicts, for ids in the page."""
         return self.name
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """Return a line for each difference from the expected, including a run that ended early."""
+        """Return one line per difference from the expectation, including an early end of the run."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
         return (self.early_end, *surprises) if self.early_end else surprises
 
@@ -98,7 +98,7 @@ class FixedPage:
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """Return a line for each difference from the expected."""
+        """Return one line per difference from the expectation."""
         return self.finding.surprises
 
 
@@ -106,7 +106,7 @@ Page = ScenarioPage | FixedPage
 
 
 def fixed_page(verdict: Verdict) -> FixedPage:
-    """Return the verdict on a theorem or erratum by itself as plain data."""
+    """Return a theorem's or erratum's own verdict as plain data."""
     item = theorem(verdict.theorem)
     return FixedPage(_finding(verdict, item, item.expected))
 
@@ -151,7 +151,7 @@ def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """Return the player's data of a run, with instants of the source and of the claims marked."""
+    """Return the player's data of a run, with marked instants of source and claims."""
     marks, title, played = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
     if 1 < len(run.t) < _FEW_SAMPLES and not run.law.is_map:
         from flockana.plots.animation import equal_times

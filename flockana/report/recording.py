@@ -39,7 +39,7 @@ def recording_page(
     verdicts: Sequence[Verdict] = (),
     notes: Iterable[str] = (),
 ) -> str:
-    """Return a page that needs no other file."""
+    """Return a self-contained page about a recording."""
 
     def draw(figure: Any) -> None:
         for ax, name in zip(figure.subplots(2, 2).ravel(), MEASURES, strict=True):

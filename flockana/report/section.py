@@ -10,7 +10,7 @@ MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 @dataclass(frozen=True)
 class Section:
-    """A section to be made: a name (`MANY_LAWS` or `LINEARISED`) and the seed of its start, so it can be sent."""
+    """Section to be built: a name (`MANY_LAWS` or `LINEARISED`) and the seed of its start."""
 
     name: str
     seed: int = 0

@@ -1,4 +1,4 @@
-"""Runs of scenarios from many seeds, for the report's shares: planned, sent and made in batches."""
+"""Runs of scenarios from many seeds, for the report's success shares, made in batches."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The report's section on linearised stability."""
+"""Report section on linearised stability."""
 
 from collections import namedtuple
 from collections.abc import Iterable, Sequence
@@ -149,7 +149,7 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
-    """Draw the sources' steps against the largest stable ones."""
+    """Draw the sources' steps relative to the largest stable steps."""
     claims = [c for v in verdicts if v.theorem == "sampling-margins" for c in v.claims if c.computed]
     if not claims:
         return None

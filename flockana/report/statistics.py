@@ -86,7 +86,7 @@ class StatisticsSection:
 
 
 def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
-    """Return the section on the scenarios with complete surveys, or None."""
+    """Return the section on scenarios with complete surveys, or None."""
     records = {result.survey: result.records for result in made}
     entries = []
     for name in dict.fromkeys(survey.scenario for survey in asked):
@@ -139,7 +139,7 @@ def _in_words(options: Mapping[str, Any]) -> str:
 
 
 def _row(label: str, statuses: Counter[str], level: float, item: Scenario | None = None) -> Row:
-    """Return the shares of one claim over the runs on which it was checked."""
+    """Return the outcome shares of one claim over its checked runs."""
     name, _, claim = label.partition(":")
     runs = statuses.total()
     ends = {of: clopper_pearson(statuses[of], runs, level=level) for of in ("verified", "refuted")}

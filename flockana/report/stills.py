@@ -60,7 +60,7 @@ def still(run: Trajectory, time: float) -> str:
 
 
 def _project(points: FloatArray) -> FloatArray:
-    """Project points for drawing: on a line to one height, in space from the player's first view."""
+    """Project points for drawing: line points to one height, space points from the player's first view."""
     if points.shape[1] == 1:
         return np.column_stack([points, np.zeros(len(points))])
     if points.shape[1] == 3:

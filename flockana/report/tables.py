@@ -18,7 +18,7 @@ _PIECE = re.compile(r"[^\s\-/]*[-/]|[^\s\-/]+")  # a word may be broken after a 
 
 
 class FoldingTable(Table):
-    """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
+    """Terminal table without truncation: long words break at hyphens, too wide tables become blocks.
 
     Rich itself would cut numbers and names, or leave whole columns out.
     """
@@ -103,7 +103,7 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
-    """Return a column that does not wrap unless asked to; a given width holds on narrow terminals."""
+    """Return a column that does not wrap by default, with an optional width for narrow terminals."""
     justify: Literal["left", "right"] = "right" if right else "left"
     return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow="fold")
 

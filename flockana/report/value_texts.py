@@ -61,7 +61,7 @@ def deciding_claim(verdict: Verdict) -> Claim | None:
 
 
 def parameters(law: Any) -> tuple[tuple[str, str], ...]:
-    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out."""
+    """Return a law's parameters as readable (name, value) pairs, without unused gains."""
     if not is_dataclass(law):
         return (("law", type(law).__name__),)
     items = ((f.name, getattr(law, f.name)) for f in fields(law))

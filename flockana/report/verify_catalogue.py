@@ -41,7 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems without a run."""
+    """Return the tasks for a name: scenarios in catalogue order, then theorems without a run."""
     if name in scenarios():
         return (Task(name, seed=seed, figures=figures),)
     if name is None:
@@ -95,7 +95,7 @@ def _section(task: Section) -> ComparisonSection | LinearisedFlocks:
 def check_all(
     tasks: Sequence[Work], *, jobs: int = 1, watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None
 ) -> Iterator[Done]:
-    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C."""
+    """Run and verify tasks in parallel; yield results as completed, and raise on Ctrl-C."""
     # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     if not tasks:
         return

@@ -1,4 +1,4 @@
-"""Coverage tables: for each item of each source, the theorems, scenarios and tests behind it."""
+"""Coverage tables: theorems, scenarios and tests for each item of each source."""
 
 from flockana.report.coverage.rows import Reference, Row, Source, coverage, read_table
 

@@ -36,5 +36,5 @@ def scenario_id(name: str) -> str:
 
 
 def is_erratum(name: str) -> bool:
-    """Return whether an id is an erratum's: those begin with a capital letter."""
+    """Return whether an id is an erratum's: errata ids begin with a capital letter."""
     return name[:1].isupper()

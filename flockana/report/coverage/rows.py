@@ -1,4 +1,4 @@
-"""Coverage tables: one row for each item of a source, with what in flockana covers it."""
+"""Coverage tables: one row for each item of a source, with the covering names in flockana."""
 
 import os
 from collections.abc import Iterator
@@ -75,13 +75,13 @@ class Source:
 
 
 def coverage() -> tuple[Source, ...]:
-    """Return all coverage tables, the longest first, items without a source last."""
+    """Return all coverage tables, the longest first, the table without a source last."""
     tables = [read_table(path) for path in source_files("coverage/*.csv")]
     return tuple(sorted(tables, key=lambda source: (source.key == OURS, -len(source.rows))))
 
 
 def read_table(path: str | os.PathLike[str]) -> Source:
-    """Read one table: ``# title``, the names of the columns, then a row a line, with | between its columns."""
+    """Return one table from text: ``# title``, column names, then one row per line, columns separated by |."""
     path = Path(path)
     if path.stem not in bibliography():
         raise ArgumentError(f"{path.name}: expected a key of the bibliography: {', '.join(bibliography())}")
