@@ -44,7 +44,7 @@ def motion(target: Target) -> Motion:
 
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
-    """Return the constant lag and the swing of the centre of mass after the transient."""
+    """Return the constant lag and the oscillation amplitude of the centre of mass after the transient."""
     ensure_one_gain(gains)
     c1, c2 = gains.c1_gamma, gains.c2_gamma
     if c1 == 0.0:
@@ -58,7 +58,7 @@ def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArra
 
 
 def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
-    """Return sup ‖q_c − q_r‖ after the transient: (of the line, of the swing).
+    """Return sup ‖q_c − q_r‖ after the transient: (of the line, of the oscillation).
 
     On a line the centre lags by c2γ ‖v − p_r‖/c1γ, by nothing if p_r is the true velocity; on a sine or circle of
     size A by |G(jω) − 1| A.
@@ -103,7 +103,7 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
 def transient(
     gains: Gains, moving: Motion, t: FloatArray, start: float, q_c: FloatArray, p_c: FloatArray
 ) -> FloatArray:
-    """Return what is left at times t of the offset and slip with which the centre begins, shape (T, m)."""
+    """Return the transient at times t from the initial offset and velocity error of the centre, shape (T, m)."""
     lag, swing = steady_motion(gains, moving)
     turn = np.exp(1j * moving.omega * start)
     steady = moving.start + moving.velocity * start - lag + (swing * turn).real

@@ -62,20 +62,20 @@ class CentreOfMass:
 
     @property
     def discriminant(self) -> float:
-        """c2γ²/4 − c1γ; 0 where that is the rounding of c2γ = 2√c1γ, critical damping."""
+        """Discriminant c2γ²/4 − c1γ; 0 within the rounding of critical damping c2γ = 2√c1γ."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         square = float(0.25 * c2 * c2 - c1)
         return 0.0 if abs(square) <= 4.0 * EPS * c1 else square
 
     @property
     def falling(self) -> float:
-        """c2γ²(1 − factor²)/2c1γ; if it is >= 1, |G(jω)| falls as ω rises from 0 (erratum E15)."""
+        """Ratio c2γ²(1 − factor²)/2c1γ; for values >= 1, |G(jω)| falls as ω rises from 0 (erratum E15)."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return float(0.5 * c2 * c2 * (1.0 - self.factor**2) / c1) if c1 > 0.0 else inf
 
     @property
     def poles(self) -> npt.NDArray[np.complex128]:
-        """Roots of s² + c2γ s + c1γ, the slower one last; both without cancellation."""
+        """Roots of s² + c2γ s + c1γ, the slower one last, computed without cancellation."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         root = np.sqrt(complex(self.discriminant))
         far = -(0.5 * c2 + root)
@@ -83,7 +83,7 @@ class CentreOfMass:
 
     @property
     def period(self) -> float:
-        """2π over the damped frequency √(c1γ − c2γ²/4); infinite where nothing oscillates."""
+        """Period 2π/√(c1γ − c2γ²/4) of the damped oscillation; infinite without one."""
         return 2.0 * pi / sqrt(-self.discriminant) if self.discriminant < 0.0 else inf
 
     def system(self) -> TransferFunction:
@@ -109,7 +109,7 @@ class CentreOfMass:
         return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
 
     def step_response(self, t: Any) -> TimeResponseData:
-        """Return q_c after a unit step of q_r with p_r held at 0, whatever the factor, by python-control.
+        """Return q_c after a unit step of q_r with p_r = 0 throughout, by python-control.
 
         A γ-agent that jumps has no velocity to tell; `system()` has p_r = factor dq_r/dt, an impulse at a step.
 

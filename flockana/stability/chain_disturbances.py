@@ -1,4 +1,4 @@
-"""What a net does beside decaying: disturbances along a chain, growth before decay, passivity."""
+"""Disturbances in nets: amplification along a chain, transient growth, passivity."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SETTLED = 20.0  # time constants of the slowest mode, and two for each state of
 
 @dataclass(frozen=True, eq=False)
 class StringGains:
-    """Largest gains from the motion of one agent to those of all others.
+    """Largest gains from the motion of one agent to the motions of all others.
 
     Parameters
     ----------
@@ -41,13 +41,13 @@ class StringGains:
 
     @property
     def amplifies(self) -> bool:
-        """Whether some agent moves more than the first: then what disturbs a chain may grow along it."""
+        """Whether some agent moves more than the first, so that disturbances may grow along a chain."""
         return bool(self.gains.max() > 1.0 + 10.0 * _TOLERANCE)
 
 
 @check_kinds
 def string_gains(flock: LinearFlock, first: int = 0, *, limit: float = LIMIT) -> StringGains:
-    """Return the H∞ norms from the motion of one agent to those of all others, which follow it.
+    """Return the H∞ norms from the motion of one agent to those of its followers.
 
     Along a chain in which each hears the one before, the k-th gain is the k-th power of the first at one frequency: a
     first gain above 1 makes a chain string unstable, however well each follower is damped.
@@ -105,7 +105,7 @@ def string_gains(flock: LinearFlock, first: int = 0, *, limit: float = LIMIT) ->
 
 @dataclass(frozen=True, eq=False)
 class StringStability:
-    """How a disturbance of the first agent of a chain arrives at the last, over chains of growing length.
+    """Gains from the first to the last agent of chains of growing length.
 
     Parameters
     ----------
@@ -124,12 +124,12 @@ class StringStability:
 
     @property
     def stable(self) -> bool | None:
-        """Whether no disturbance grows along a chain of any length; None where sizes alone do not decide it."""
+        """Whether no disturbance grows along a chain of any length; None if the tested lengths do not decide."""
         return None if np.isnan(self.link) else bool(self.link <= 1.0 + 10.0 * _TOLERANCE)
 
     @property
     def why(self) -> str:
-        """What decides, in a sentence with its numbers."""
+        """Reason for the decision, in a sentence with its numbers."""
         gains = ", ".join(f"{gain:.4g}" for gain in self.gains.tolist())
         if self.stable is None:
             trend = "grow" if (np.diff(self.gains) > _TOLERANCE).all() else "do not all grow"
@@ -141,7 +141,7 @@ class StringStability:
 
 @check_kinds
 def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] = (3, 5, 9, 17)) -> StringStability:
-    """Return whether what disturbs the first agent of a chain grows along it, from chains of several lengths.
+    """Return whether a disturbance of the first agent grows along the chain, from several chain lengths.
 
     Where each agent hears the one before alone, with equal K and D, the gain over k links is at most the k-th power of
     that over one, and reaches it where K and D have common axes: one link decides chains of every length. Other chains
@@ -187,7 +187,7 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] =
 
 
 def _link_gain(flock: LinearFlock, gain: float) -> float:
-    """Return the gain that decides chains of every length, or NaN where the chain is of another form."""
+    """Return the gain per link that decides chains of every length, or NaN for other nets."""
     n, m = flock.q.shape
     parts = []
     for matrix in (flock.stiffness.toarray(), flock.damping.toarray()):
@@ -208,7 +208,7 @@ def _link_gain(flock: LinearFlock, gain: float) -> float:
 
 @dataclass(frozen=True)
 class TransientGrowth:
-    """Largest growth of a small perturbation before it decays, and when.
+    """Largest growth of a small perturbation before its decay, and the time of the peak.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ class TransientGrowth:
 
 @check_kinds
 def transient_growth(flock: LinearFlock, *, limit: float = LIMIT) -> TransientGrowth:
-    """Return how much a perturbation may grow before it decays: much, in a net that is far from normal.
+    """Return the largest transient growth of a perturbation, which is large in nonnormal nets.
 
     A perturbation is measured by its positions times the rate of the fastest motion, and its velocities, from the
     nearest neutral motion. Times are searched on a grid from the fastest motion to the slowest mode and refined: what
@@ -276,7 +276,7 @@ def transient_growth(flock: LinearFlock, *, limit: float = LIMIT) -> TransientGr
 
 @dataclass(frozen=True)
 class Passivity:
-    """Whether a flock takes up energy only, from forces on all agents to their velocities.
+    """Passivity of a flock from forces on all agents to their velocities.
 
     Parameters
     ----------

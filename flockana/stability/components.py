@@ -18,7 +18,7 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class StrongComponents:
-    """Indices of each strongly connected component, those that are heard before those that hear them."""
+    """Indices of each strongly connected component, heard components before hearing ones."""
 
     indices: tuple[IndexArray, ...]  # rows of each component, rising
     heard: tuple[frozenset[int], ...]  # numbers of the earlier components that each hears directly
@@ -40,7 +40,7 @@ class StrongComponents:
 
 
 def strong_components(*matrices: Any) -> StrongComponents:
-    """Return the strongly connected components of square matrices taken together.
+    """Return the strongly connected components of the union of square matrices.
 
     Entry (i, j) says what i hears from j; only an exact zero is none.
     """

@@ -11,7 +11,7 @@ from flockana.stability.delay import DelaySystem
 
 
 def consensus_system(laplacian: Any) -> DelaySystem:
-    """Consensus of velocities, p'(t) = −L p(t − τ), q' = p, to be given to `delay_margin` and `rightmost_roots`.
+    """Return the consensus of velocities, p'(t) = −L p(t − τ), q' = p, as a `DelaySystem`.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def consensus_system(laplacian: Any) -> DelaySystem:
 
 
 def _closed_groups(matrix: FloatArray) -> int:
-    """Strongly connected groups of agents that hear nobody outside."""
+    """Return the strongly connected groups of agents that hear nobody outside."""
     import networkx
 
     heard = networkx.from_numpy_array(matrix - np.diag(np.diag(matrix)), create_using=networkx.DiGraph)
@@ -51,7 +51,7 @@ def _closed_groups(matrix: FloatArray) -> int:
 
 
 def consensus_root(eigenvalue: float, delay: float) -> complex:
-    """The rightmost root of s + λ e^(−sτ) = 0: s = W₀(−λτ)/τ, of Lambert's function.
+    """Return the rightmost root of s + λ e^(−sτ) = 0: s = W₀(−λτ)/τ, by Lambert's function.
 
     Parameters
     ----------

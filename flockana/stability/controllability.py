@@ -1,4 +1,4 @@
-"""Controllability of a flock through the agents that are informed: Popov, Belevitch and Hautus's test, Gramians.
+"""Controllability of a flock through its informed agents: Popov-Belevitch-Hautus test, Gramians.
 
 Lengths are counted in one unit throughout and times in that of the fastest motion, so that no result depends on the
 user's units: x' = v, v' = −K x − D v + B u with forces u on the informed agents.
@@ -31,7 +31,7 @@ _SEARCHES = 4  # poles from which the distance to a flock that is not controllab
 
 
 class PoleReach(NamedTuple):
-    """What forces on the informed agents reach of one pole.
+    """Reachable part of one pole by forces on the informed agents.
 
     Attributes
     ----------
@@ -87,12 +87,12 @@ class Controllability:
 
     @property
     def lost(self) -> tuple[PoleReach, ...]:
-        """Poles of which the informed agents do not reach all."""
+        """Poles that the informed agents do not fully reach."""
         return tuple(one for one in self.poles if not one.controllable)
 
     @property
     def table(self) -> DataFrame:
-        """Poles, what is reached of each, and how strongly, as a pandas table."""
+        """Table of poles with reached dimensions and strengths, in pandas."""
         import pandas as pd
 
         return pd.DataFrame(self.poles, columns=list(PoleReach._fields))
@@ -103,7 +103,7 @@ class Controllability:
 
     @property
     def distance(self) -> float:
-        """Size of a change of (A, B), in units of the fastest motion, after which some motion cannot be steered.
+        """Size of the least change of (A, B), in units of the fastest motion, that makes some motion uncontrollable.
 
         Found by local searches from the poles that are reached least: at most this, and 0 if one is lost already.
         """
@@ -111,7 +111,7 @@ class Controllability:
 
     @cached_property
     def gramian(self) -> FloatArray:
-        """Controllability Gramian in units of the fastest motion: of all states over the horizon, or for ever.
+        """Controllability Gramian in units of the fastest motion, over a finite or infinite horizon.
 
         Without a horizon its coordinates are those off the motions that nothing brings back; raises unless these decay.
         """
@@ -119,7 +119,7 @@ class Controllability:
 
     @property
     def least_reach(self) -> float:
-        """Smallest eigenvalue of the Gramian: the inverse of the energy of the dearest unit motion."""
+        """Smallest eigenvalue of the Gramian: the inverse energy of the most expensive unit motion."""
         return float(max(0.0, np.linalg.eigvalsh(self.gramian)[0]))
 
 
@@ -128,7 +128,7 @@ def _by_strength(one: PoleReach) -> float:
 
 
 class ScaledModel(NamedTuple):
-    """First-order matrix in units of the fastest motion, that unit, (n, m), and motions that nothing brings back."""
+    """First-order matrix in units of the fastest motion, that unit, (n, m), and the neutral motions."""
 
     A: FloatArray
     pace: float
@@ -136,7 +136,7 @@ class ScaledModel(NamedTuple):
     neutral: FloatArray
 
     def inputs(self, agents: Sequence[int]) -> FloatArray:
-        """B of forces on these agents."""
+        """Return the input matrix B of forces on given agents."""
         n, m = self.shape
         columns = (np.asarray(agents)[:, None] * m + np.arange(m)).ravel()
         b = np.zeros((2 * n * m, len(columns)))
@@ -159,7 +159,7 @@ def scaled_model(flock: LinearFlock) -> ScaledModel:
 
 @check_kinds
 def controllability(flock: LinearFlock, informed: Any, *, horizon: float | None = None) -> Controllability:
-    """Return what forces on the informed agents reach of a linearised flock.
+    """Return the controllability of a linearised flock by forces on the informed agents.
 
     A pole is controllable if no left eigenvector of it is orthogonal to the inputs (Hautus); of a multiple one that
     needs as many independent inputs as it has eigenvectors.
@@ -199,7 +199,7 @@ def controllability(flock: LinearFlock, informed: Any, *, horizon: float | None 
 
 
 def ensure_agents(name: str, agents: Any, n: int) -> tuple[int, ...]:
-    """Return different agents of n as a tuple; raise unless there is at least one."""
+    """Return distinct agent indices below n as a tuple; raise on none."""
     indices = np.atleast_1d(np.asarray(agents))
     if indices.ndim != 1 or not indices.size or indices.dtype.kind not in "iu":
         raise ArgumentError(f"{name} = {format_value(agents)}: expected numbers of agents, such as [0, 3]")
@@ -209,7 +209,7 @@ def ensure_agents(name: str, agents: Any, n: int) -> tuple[int, ...]:
 
 
 class PoleGroup(NamedTuple):
-    """Eigenvalues that rounding does not tell apart: their mean, number, and error."""
+    """Eigenvalues indistinguishable within rounding: their mean, number, and error."""
 
     value: complex
     size: int
@@ -217,7 +217,7 @@ class PoleGroup(NamedTuple):
 
 
 def pole_groups(model: ScaledModel) -> list[PoleGroup]:
-    """Return the distinct poles."""
+    """Return the distinct poles as groups."""
     from scipy.sparse.csgraph import connected_components
 
     values, errors = eigenvalues(model.A)
@@ -251,12 +251,12 @@ def left_eigenvectors(a: FloatArray, group: PoleGroup) -> ComplexArray:
 
 
 def kernel_edge(group: PoleGroup, a: FloatArray) -> float:
-    """Return the singular value of A − λ below which it counts as 0."""
+    """Return the threshold below which a singular value of A − λ counts as 0."""
     return max(2.0 * group.error, _ROUNDINGS * EPS * len(a) * float(np.linalg.norm(a, 2)))
 
 
 def distance_to_loss(model: ScaledModel, agents: Sequence[int], poles: Sequence[complex]) -> tuple[float, complex]:
-    """Return the least singular value of (A − s, B) that searches from some poles find, and s."""
+    """Return the least singular value of (A − s, B) found by searches from some poles, and s."""
     from scipy.optimize import minimize
 
     whole = np.hstack([model.A, model.inputs(agents)])
@@ -274,7 +274,7 @@ def distance_to_loss(model: ScaledModel, agents: Sequence[int], poles: Sequence[
 
 
 def gramians(model: ScaledModel, horizon: float | None, sets: Sequence[Sequence[int]]) -> list[FloatArray]:
-    """Return the controllability Gramian of each set of agents, over a horizon or for ever."""
+    """Return the controllability Gramian of each set of agents, over a finite or infinite horizon."""
     from scipy.linalg import solve_continuous_lyapunov
 
     if horizon is not None:
@@ -292,7 +292,7 @@ def gramians(model: ScaledModel, horizon: float | None, sets: Sequence[Sequence[
 
 
 def _over_horizon(model: ScaledModel, horizon: float, sets: Sequence[Sequence[int]]) -> list[FloatArray]:
-    """∫ e^(At) B Bᵀ e^(Aᵀt) dt by Van Loan's exponential of a short time, doubled."""
+    """Return ∫ e^(At) B Bᵀ e^(Aᵀt) dt by Van Loan's exponential of a short time, doubled."""
     from scipy.linalg import expm
 
     a, size = model.A, len(model.A)

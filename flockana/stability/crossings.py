@@ -1,4 +1,4 @@
-"""Least delay at which a root of a delayed flock crosses the imaginary axis: in closed form mode by mode, or bracketed.
+"""Least delay at which a root of a delayed flock crosses the imaginary axis, by modes or by bracketing.
 
 s = jω is a root for the delay τ where z = e^jωτ makes z A + B singular, A = K₀ − ω² + jωD₀ and B = K₁ + jωD₁. With
 z = (μ + j)/(μ − j), so that μ = cot(ωτ/2) is real on the unit circle, that is an eigenvalue problem in which nothing is
@@ -34,7 +34,7 @@ _SAFE = 0.99  # of an interval that exact arithmetic would exclude
 
 
 class Crossing(NamedTuple):
-    """Delay and frequency of a root on the axis, and the delay below which there certainly is none."""
+    """Delay and frequency of a root on the axis, and a delay below which there certainly is none."""
 
     delay: float
     frequency: float
@@ -67,7 +67,7 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
 
 
 def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
-    """ω > 0 with |a(ω)| = |b(ω)|, polynomials by rising powers; those far below `size` are left out."""
+    """Return the ω > 0 with |a(ω)| = |b(ω)|, polynomials by rising powers, ignoring terms far below `size`."""
     balance = np.poly1d((np.convolve(a, a.conj()).real - np.convolve(b, b.conj()).real)[::-1])
     slope, roots, meetings = balance.deriv(), balance.roots, []
     for omega in roots.real[(np.abs(roots.imag) <= _DOUBLE * np.abs(roots)) & (roots.real > _LOW * size)].tolist():
@@ -77,14 +77,14 @@ def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
 
 
 class _Diagonals(NamedTuple):
-    """Diagonals of four matrices, shape (4, N), and whether these are symmetric, with real modes in common."""
+    """Diagonals of four matrices, shape (4, N), and whether they are symmetric with common real modes."""
 
     values: Any
     real: bool
 
 
 def common_diagonals(four: Four) -> _Diagonals | None:
-    """Return the diagonals of four matrices diagonalised or triangularised together; None if that is impossible."""
+    """Return the diagonals of four jointly diagonalised or triangularised matrices; None if impossible."""
     from scipy.linalg import schur
 
     sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
@@ -106,7 +106,7 @@ def common_diagonals(four: Four) -> _Diagonals | None:
 
 
 def _frequencies(total: float, product: float, size: float) -> list[float]:
-    """ω > 0 with ω⁴ − total ω² + product = 0; a double root to the rounding of terms of that size is one."""
+    """Return the ω > 0 with ω⁴ − total ω² + product = 0; double roots are recognised within rounding."""
     square = total * total - 4.0 * product
     if square < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
         return []
@@ -120,7 +120,7 @@ def phase(z: complex) -> float:
 
 
 class _Spectrum(NamedTuple):
-    """Eigenvalues μ of W at a frequency, dμ/dω, and how fast W leaves their frame: by |dω|, and by its square.
+    """Eigenvalues μ of W at a frequency, dμ/dω, and bounds of W's change per |dω| and per |dω|².
 
     Row i of what is left at μ is at most √(μ² + size_i²) times the rows of `first` and `second`, whatever the sizes.
     """
@@ -132,7 +132,7 @@ class _Spectrum(NamedTuple):
     second: FloatArray
 
     def crossings(self, omega: float) -> tuple[FloatArray, FloatArray]:
-        """Frequencies at which eigenvalues become real, to first order, and their delays there."""
+        """Return frequencies at which eigenvalues become real, to first order, and their delays."""
         with np.errstate(divide="ignore", invalid="ignore"):
             move = -self.values.imag / self.slopes.imag
             there = self.values.real + self.slopes.real * move
@@ -157,7 +157,7 @@ def _spectrum(four: Four, omega: float) -> _Spectrum:
 
 
 def _distances(at: _Spectrum, lowest: float) -> FloatArray:
-    """Least |μ − μ_i|/√(μ² + size_i²) over all real μ from `lowest` on."""
+    """Return the least |μ − μ_i|/√(μ² + size_i²) over all real μ >= `lowest`."""
     a, b, lower = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
     total = 1.0 + a * a + b * b
     square = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
@@ -168,7 +168,7 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
 
 
 def _crossing_free(at: _Spectrum, angle: float) -> float:
-    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle."""
+    """Return a frequency distance that is certainly free of crossings with ωτ up to an angle."""
     # Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less
     # than s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
     gaps = _distances(at, 1.0 / tan(0.5 * angle) if angle < 2.0 * pi else -inf)
@@ -185,7 +185,7 @@ def _crossing_free(at: _Spectrum, angle: float) -> float:
 def least_crossing(
     four: Four, low: float, high: float, advance: Callable[[float], object] = lambda _: None
 ) -> Crossing:
-    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular."""
+    """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
     # needed. `advance` is called with the share of the frequencies that is done.
     best, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
@@ -214,7 +214,7 @@ def least_crossing(
 
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
-    """A crossing by Newton's method on Im μ(ω) = 0, and how many spectra it took; an infinite one if it finds none."""
+    """Return a crossing by Newton's method on Im μ(ω) = 0 (infinite if none), and the number of spectra."""
     nothing = Crossing(inf, nan, inf)
     for tried in range(_STEPS):
         value, slope = complex(at.values[index]), complex(at.slopes[index])

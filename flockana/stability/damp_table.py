@@ -1,4 +1,4 @@
-"""Poles with damping ratio, natural frequency, time constant and settling time, as control engineers print them."""
+"""Poles with damping ratio, natural frequency, time constant and settling time, as in control textbooks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.base.errors import ArgumentError
 
 
 class DampTable(pd.DataFrame):  # type: ignore[misc]  # pandas has no types here
-    """Table of poles that is printed with all its columns."""
+    """Table of poles, printed with all its columns."""
 
     def __repr__(self) -> str:
         written: Any = dict.fromkeys(self.columns, "{:.5g}".format)
@@ -22,7 +22,7 @@ class DampTable(pd.DataFrame):  # type: ignore[misc]  # pandas has no types here
 
 
 def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DampTable:
-    """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp` prints them."""
+    """Return a pandas table of poles by rising natural frequency, one row each, as MATLAB's `damp`."""
     settled = ensure_positive("settled", settled)
     if settled >= 1.0:
         raise ArgumentError(f"settled = {settled:g}: expected a share of the deviation, below 1")

@@ -1,4 +1,4 @@
-"""Gain at which one mode of a flock has a damping ratio asked for: the mode is followed, its equilibrium too."""
+"""Gain at which one mode of a flock reaches a given damping ratio, with the mode and equilibrium followed."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ _EXACT = 1e-10  # of a gain
 
 
 class DampedGain(NamedTuple):
-    """A gain, the law with it, and the mode that has the damping ratio there."""
+    """Gain, law and mode with the required damping ratio."""
 
     gain: float
     law: Any
@@ -25,7 +25,7 @@ class DampedGain(NamedTuple):
 
 
 class _Here(NamedTuple):
-    """A mode at one value of the gain, and the equilibrium it is of."""
+    """Mode at one value of the gain, with its equilibrium."""
 
     linear: Linearisation
     mode: Mode
@@ -41,7 +41,7 @@ def gain_for_damping(
     between: tuple[float, float] | None = None,
     steps: int = 40,
 ) -> DampedGain:
-    """Return the gain nearest to the law's own at which one mode has a damping ratio.
+    """Return the gain nearest to the law's own at which one mode has a given damping ratio.
 
     The mode is followed from the law's own gain, up and down in steps of one ratio: in each it is the one whose
     eigenvalue and shape change least. The equilibrium is found anew from the last.
@@ -133,7 +133,7 @@ def _begin(law: Any, q: FloatArray, name: str | None) -> _Here:
 
 
 def _follow(law: Any, here: _Here) -> _Here:
-    """Return the mode that continues one at another gain: the least change of eigenvalue and shape."""
+    """Return the continuation of a mode at another gain, by the least change of eigenvalue and shape."""
     linear = _linearised(law, here.linear.q)
 
     def change(mode: Mode) -> float:
@@ -153,7 +153,7 @@ def _upper(mode: Mode) -> complex:
 
 
 def _refine(law: Any, name: str, ratio: float, ends: tuple[float, float], here: _Here) -> DampedGain:
-    """Return the gain within a bracket at which the mode that was followed has the ratio."""
+    """Return the gain within a bracket at which the followed mode has the damping ratio."""
     from scipy.optimize import brentq
 
     root: Any = brentq(

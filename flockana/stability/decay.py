@@ -78,7 +78,7 @@ class Decay:
 
 
 def slowest_seen(flock: Linearisation) -> Mode:
-    """Return the slowest mode that shows in velocities relative to the centre of mass."""
+    """Return the slowest mode visible in velocities relative to the centre of mass."""
     for mode in flock.modes:
         if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
             if mode.decays:
@@ -285,7 +285,7 @@ def velocity_mismatch(p: FloatArray) -> FloatArray:
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
-    """Return slopes of the logarithm of sums over half periods, each against the next."""
+    """Return logarithmic slopes of sums over consecutive half periods."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
     with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope
         slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
@@ -293,7 +293,7 @@ def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
 
 
 def _count_above_floor(mismatch: FloatArray) -> int:
-    """Return the number of slopes before K̃ is lost in the errors of a run."""
+    """Return the number of slopes before K̃ drowns in the errors of a run."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")[_SAMPLES:]
     return int(np.argmin(np.append(sums > _FLOOR * _SAMPLES * mismatch.max(), False)))
 

@@ -1,4 +1,4 @@
-"""Delayed interactions: the linear flock with its late part, and the delay that it bears.
+"""Delayed interactions: the linear flock with its delayed part, and its delay margin.
 
 x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old, and so is its own state
 ("all": K₀ = D₀ = 0); or what depends on differences from other agents, its own state in them included ("pairs": the
@@ -46,7 +46,7 @@ _LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutra
 
 @dataclass(frozen=True)
 class DelaySystem(ShortRepr):
-    """Linear flock x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ), whose one delay is free.
+    """Linear flock x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ) with one free delay.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class DelaySystem(ShortRepr):
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
-        """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots.
+        """Return s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class DelaySystem(ShortRepr):
         return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 
     def strong_parts(self) -> Iterator[DelaySystem]:
-        """Strongly connected parts: the roots of the whole are those of its parts, each taken by itself."""
+        """Return the strongly connected parts, whose roots together are those of the whole."""
         matrices, parts = (*self.prompt, *self.late), []
         for rows in strong_components(*matrices).indices:
             k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)
@@ -110,7 +110,7 @@ class DelaySystem(ShortRepr):
 
 @dataclass(frozen=True)
 class DelayMargin:
-    """The delay at which stability is lost.
+    """Delay at which stability is lost.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class DelayMargin:
 
     @property
     def certified(self) -> bool:
-        """Whether the delay is the margin, to a millionth; else the margin is at most the delay."""
+        """Whether the delay equals the margin to a millionth; otherwise the margin is at most the delay."""
         return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
@@ -150,7 +150,7 @@ def delayed_flock(flock: LinearFlock, delayed: str, carries: str, links: Any = N
 
 
 def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> FloatArray:
-    """Return the part of K or D, shape (n m, n m), that is late: see `delay_system`."""
+    """Return the delayed part of K or D, shape (n m, n m): see `delay_system`."""
     n = len(matrix) // m
     if links is None and delayed == "all":
         return matrix
@@ -172,7 +172,7 @@ def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> Fl
 
 
 def ensure_directed_links(links: Any, n: int) -> Any:
-    """Return links (i, j), i hears j, as an int array (M, 2), in their directions; raise unless they are such pairs."""
+    """Return directed links (i, j), i hears j, as an int array (M, 2); raise on invalid pairs."""
     pairs = np.asarray(links)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or pairs.dtype.kind not in "iu":
         raise ArgumentError(f"links = {format_value(links)}: expected pairs (i, j) of agents, i hears j")
@@ -182,7 +182,7 @@ def ensure_directed_links(links: Any, n: int) -> Any:
 
 
 def neutral_roots(kernel: FloatArray, cokernel: FloatArray, damping: FloatArray, late: FloatArray) -> int:
-    """Return the number of characteristic roots that are 0 for almost every delay.
+    """Return the number of characteristic roots at 0 for almost every delay.
 
     On the kernel of K the characteristic matrix begins with s (D − τK₁): where a part of it is 0 as well, a velocity
     persists, and the root is double.
@@ -196,7 +196,7 @@ def neutral_roots(kernel: FloatArray, cokernel: FloatArray, damping: FloatArray,
 
 
 def scalar_margin(k: float, d: float) -> DelayMargin:
-    """Delay margin of x'' = −k x(t−τ) − d x'(t−τ) in closed form.
+    """Return the delay margin of x'' = −k x(t−τ) − d x'(t−τ) in closed form.
 
     On the axis k + jωd = ω² e^jωτ: ω² = (d² + √(d⁴ + 4k²))/2 and τ = atan2(ωd, k)/ω.
 
@@ -220,7 +220,7 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
 
 
 def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = LIMIT) -> DelayMargin:
-    """The least delay at which a root reaches the imaginary axis.
+    """Return the least delay at which a root reaches the imaginary axis.
 
     In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;
     else by a search over all frequencies that excludes whole intervals by a bound (`flockana.stability.crossings`): no
@@ -267,7 +267,7 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
 
 
 def _ensure_affordable(part: DelaySystem, limit: float) -> None:
-    """Raise before the margin of a part that takes longer than a limit: of its modes, or of a search."""
+    """Raise before the margin of a part whose modes or search would take longer than a limit."""
     size = len(part.late[0])
     modes, spectra = _SECONDS * (2 * size) ** 3, _SPECTRA * _SECONDS_OF_SPECTRUM * size**3
     searched = spectra > limit and common_diagonals((*part.prompt, *part.late)) is None
@@ -294,7 +294,7 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
 
 
 def _still_crossing(system: DelaySystem) -> float:
-    """Return the least delay at which a further root reaches 0, without a swing; only neutral motions allow it."""
+    """Return the least delay at which a further root reaches 0 without oscillation, from neutral motions."""
     # There D − τK₁ on the kernel of K is singular where it is not for other delays.
     from scipy.linalg import eigvals
 

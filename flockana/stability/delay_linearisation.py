@@ -1,4 +1,4 @@
-"""Linearised flock whose agents act on the past: characteristic roots, stability, margins."""
+"""Linearised flock with delays: characteristic roots, stability, margins."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class DelayLinearisation(ShortRepr):
-    """δq''(t) = −Σ_k (K_k δq(t − τ_k) + D_k δq'(t − τ_k)) near an equilibrium, in the frame that moves with it.
+    """δq''(t) = −Σ_k (K_k δq(t − τ_k) + D_k δq'(t − τ_k)) near an equilibrium, in its moving frame.
 
     It has infinitely many roots, of which the rightmost decide, and no basis of modes.
 
@@ -62,17 +62,17 @@ class DelayLinearisation(ShortRepr):
 
     @property
     def residual(self) -> float:
-        """How far the state is from an equilibrium, relative to the law's forces."""
+        """Distance of the state from equilibrium, relative to the law's forces."""
         return self.instant.residual
 
     @property
     def delays(self) -> tuple[float, ...]:
-        """Delays longer than 0."""
+        """Positive delays of the flock."""
         return tuple(part.delay for part in self.parts if part.delay > 0.0)
 
     @cached_property
     def neutral(self) -> int:
-        """Number of roots at 0, of motions that nothing brings back."""
+        """Number of roots at 0, of motions without a restoring force."""
         zero = self.instant.second_order.invariant
         late = sum((part.delay * part.stiffness for part in self.parts), np.zeros_like(self.parts[0].stiffness))
         return neutral_roots(zero.kernel, zero.cokernel, self.instant.damping.toarray(), late)
@@ -104,7 +104,7 @@ class DelayLinearisation(ShortRepr):
 
     @property
     def system(self) -> DelaySystem:
-        """The flock as a `DelaySystem`, whose one delay is free; raises for several delays."""
+        """Flock as a `DelaySystem` with one free delay; raises for several delays."""
         if len(self.delays) > 1:
             few = ", ".join(f"{delay:g}" for delay in self.delays[:4])
             raise ArgumentError(
@@ -119,11 +119,11 @@ class DelayLinearisation(ShortRepr):
         return DelaySystem(prompt[1:], late[1:], neutral)
 
     def delay_margin(self, *, progress: bool = False) -> DelayMargin:
-        """Return the longest delay that the late part bears; of several delays see `scaled_margin`."""
+        """Return the longest stable delay of the delayed part; for several delays see `scaled_margin`."""
         return delay_margin(self.system, progress=progress)
 
     def scaled_margin(self, most: float = 20.0) -> float:
-        """Return the least factor on all delays together at which a root reaches the axis, found by search.
+        """Return the least common factor on all delays at which a root reaches the axis, by search.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class DelayLinearisation(ShortRepr):
         return damp_table([(str(k), s) for k, s in enumerate(roots.tolist(), 1)], settled=settled)
 
     def facts(self) -> dict[str, str]:
-        """Return what a table shows: sizes, delays, and the rightmost roots."""
+        """Return the rows of the printed table: sizes, delays, and the rightmost roots."""
         roots = [
             f"{s.real:.4g}{f' ± {s.imag:.4g}i' if s.imag else ''}" for s in self.rightmost(6).tolist() if s.imag >= 0
         ]

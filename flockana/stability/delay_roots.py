@@ -18,7 +18,7 @@ _LEFT = 1e-6  # of the characteristic matrix: what is left of it at a root, a do
 
 
 class LatePart(NamedTuple):
-    """Part of K and D that acts a delay late."""
+    """Delayed part of K and D, with its delay."""
 
     delay: float
     stiffness: FloatArray
@@ -29,7 +29,7 @@ Parts = Sequence[LatePart]
 
 
 def characteristic(parts: Parts, s: complex) -> ComplexArray:
-    """s² + Σ (K_k + s D_k) e^(−sτ_k), singular at the roots."""
+    """Return s² + Σ (K_k + s D_k) e^(−sτ_k), singular at the roots."""
     whole = s * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
     for delay, k, d in parts:
         whole += (k + s * d) * np.exp(-s * delay)
@@ -45,7 +45,7 @@ def _slope(parts: Parts, s: complex) -> ComplexArray:
 
 
 def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count: int = 6) -> ComplexArray:
-    """The rightmost characteristic roots, neutral ones left out, by Chebyshev collocation of the generator.
+    """Return the rightmost characteristic roots, without neutral ones, by Chebyshev collocation.
 
     The delayed state over [−τ, 0] is a polynomial through nodes + 1 Chebyshev points (Breda, Maset, Vermiglio 2005);
     each root is then refined by Newton's method on the characteristic matrix itself, which has no such error. Groups of
@@ -97,7 +97,7 @@ def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) ->
 
 
 def _neutral(parts: Parts) -> int:
-    """Number of roots at 0 of a group."""
+    """Return the number of roots at 0 of a group."""
     blank = np.zeros_like(parts[0].stiffness)
     stiffness, damping = sum((one.stiffness for one in parts), blank), sum((one.damping for one in parts), blank)
     late = sum((one.delay * one.stiffness for one in parts), blank)
@@ -150,20 +150,20 @@ def error_of_root(parts: Parts, s: complex) -> float:
 
 
 def _points(nodes: int) -> tuple[FloatArray, FloatArray]:
-    """Chebyshev points cos(πk/nodes), from 1 to −1, and their barycentric weights."""
+    """Return the Chebyshev points cos(πk/nodes), from 1 to −1, and their barycentric weights."""
     k = np.arange(nodes + 1)
     return np.cos(pi * k / nodes), np.where((k == 0) | (k == nodes), 0.5, 1.0) * (-1.0) ** k
 
 
 def _chebyshev(nodes: int) -> FloatArray:
-    """Differentiation matrix on the Chebyshev points (Trefethen 2000, chapter 6)."""
+    """Return the differentiation matrix on the Chebyshev points (Trefethen 2000, chapter 6)."""
     x, weight = _points(nodes)
     matrix = np.outer(1.0 / weight, weight) / (x[:, None] - x[None, :] + np.eye(nodes + 1))
     return matrix - np.diag(matrix.sum(axis=1))
 
 
 def _interpolation(nodes: int, at: float) -> FloatArray:
-    """Weights of the values at the Chebyshev points in that of their polynomial at a point."""
+    """Return the weights of the values at the Chebyshev points for interpolation at a point."""
     x, weight = _points(nodes)
     away = at - x
     if (near := np.abs(away) <= 4.0 * EPS).any():
@@ -172,7 +172,7 @@ def _interpolation(nodes: int, at: float) -> FloatArray:
 
 
 def _refine(parts: Parts, s: complex, longest: float) -> complex | None:
-    """Newton's method for (v, s) with M(s) v = 0, started from the singular vector at s; None if s is near no root."""
+    """Refine (v, s) with M(s) v = 0 by Newton's method from the singular vector at s; None without convergence."""
     start = s
     v = np.linalg.svd(characteristic(parts, s))[2][-1].conj()
     fixed = v.conj()

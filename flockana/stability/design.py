@@ -174,7 +174,7 @@ def design_gains(
 
 
 def _specified(problem: GainProblem, asked: Specifications, bounds: Any, least: str | None) -> SpecifiedGains:
-    """Search for the gains that leave the most room in all specifications, or cost least, over their logarithms."""
+    """Search for gains with the largest slack in all specifications, or the least cost, over logarithms."""
     if not isinstance(asked, Specifications):
         raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
     law, q = problem.law, problem.q
@@ -236,7 +236,7 @@ def _minimise2(
 
 
 def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:
-    """Sequential linear programming: min t such that each linearised real part is at most t, in a trust region."""
+    """Minimise the largest linearised real part by sequential linear programming in a trust region."""
     from scipy.optimize import linprog
 
     radius, value = 0.2 * (high - low), problem.abscissa(gains)

@@ -1,4 +1,4 @@
-"""Time and memory that studies take by their size, as measured, and the refusal of what would take too long."""
+"""Time and memory of studies by size, as measured, and refusal of too long ones."""
 
 from typing import NamedTuple
 
@@ -25,13 +25,13 @@ _SECONDS_OF_MAP, _MEGABYTES_OF_MAP = 9e-10, 6e-5  # per cubed and squared number
 
 
 def ensure_study(work: str, size: int, limit: float) -> None:
-    """Raise before a study of `COSTS` of a flock of so many coordinates that takes longer than `limit` seconds."""
+    """Raise before a study in `COSTS` that would take longer than `limit` seconds for its number of coordinates."""
     seconds, power, megabytes = COSTS[work]
     ensure_affordable(f"{work} of {size} coordinates", size, seconds * size**power, megabytes * size**2, limit)
 
 
 def ensure_maps(work: str, size: int, inputs: FloatArray, limit: float) -> None:
-    """Raise before a search over lifted maps, each with so many earlier inputs, that takes longer than `limit`."""
+    """Raise before a search over lifted maps with many earlier inputs that would take longer than `limit`."""
     states = size * (4.0 + inputs)
     seconds, megabytes = _SECONDS_OF_MAP * float((states**3).sum()), _MEGABYTES_OF_MAP * float(states.max()) ** 2
     ensure_affordable(f"{work} of {size} coordinates", size, seconds, megabytes, limit)

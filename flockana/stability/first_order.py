@@ -1,4 +1,4 @@
-"""Linearised dynamics of a law of first order near a rest: its matrix and its n·m poles."""
+"""Linearised dynamics of a first-order law near a rest: its matrix and its n·m poles."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _OFF = 1e-11  # share of its size by which A by differences may be off
 
 @dataclass(frozen=True, eq=False)
 class VelocityLinearisation:
-    """δq' = A δq near a rest of a law of first order; its margins are those of v' = A v, which its velocity obeys.
+    """δq' = A δq near a rest of a first-order law, with the margins of v' = A v for its velocity.
 
     Parameters
     ----------
@@ -69,13 +69,13 @@ class VelocityLinearisation:
 
     @cached_property
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
-        """The matrix as a dense array."""
+        """State matrix as a dense array."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse")
         return self.A_sparse.toarray()
 
     @cached_property
     def _velocities(self) -> LinearFlock:
-        """The velocities as a flock without stiffness, q'' = A q': what moves it and what it bears is the same."""
+        """Flock of velocities without stiffness, q'' = A q', with the same margins."""
         from scipy.sparse import block_array, csr_array, eye_array
 
         size = self.q.size
@@ -90,7 +90,7 @@ class VelocityLinearisation:
 
     @property
     def eigenvalues(self) -> ComplexArray:
-        """All n·m poles, the largest real part first; zero modes come out as exact zeros."""
+        """All n·m poles, the largest real part first; zero modes are exact zeros."""
         poles = [s for mode in self.modes for s in {mode.eigenvalue, np.conj(mode.eigenvalue)}]
         values = np.array([*poles, *[0j] * (self.q.size - len(poles))])
         return values[np.lexsort((values.imag, -values.real))]
@@ -107,7 +107,7 @@ class VelocityLinearisation:
 
     @property
     def stable(self) -> bool:
-        """Return whether every mode off the zero modes decays, beyond rounding and differences in place of slopes."""
+        """Return whether every mode off the zero modes decays, beyond rounding and difference errors."""
         off = _OFF * self._velocities.second_order.damping_scale
         return all(mode.decay_rate > mode.error + off for mode in self.modes)
 
@@ -129,7 +129,7 @@ class VelocityLinearisation:
     def delay_margin(
         self, *, delayed: str = "all", links: Any = None, sampled: float | None = None, limit: float = LIMIT
     ) -> DelayMargin:
-        """Return the longest delay of positions with which it is stable: see `Linearisation.delay_margin`.
+        """Return the longest stable delay of positions: see `Linearisation.delay_margin`.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class VelocityLinearisation:
         return Linearisation.delay_margin(cast("Any", self._velocities), **cast("Any", how))
 
     def sampling_margin(self, *, limit: float = LIMIT) -> SamplingMargin:
-        """Return the longest period for which velocities may be held: 1 + hλ stays in the unit disc.
+        """Return the longest stable hold period of velocities: 1 + hλ stays in the unit disc.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class VelocityLinearisation:
         return Linearisation.robustness(cast("Any", self._velocities), limit=limit)
 
     def transient_growth(self, *, limit: float = LIMIT) -> TransientGrowth:
-        """Return how much a perturbation of the positions may grow before it decays, off the zero modes.
+        """Return the largest transient growth of a position perturbation, off the zero modes.
 
         Parameters
         ----------
@@ -196,7 +196,7 @@ class VelocityLinearisation:
         return control.ss(self.A, eye, eye, 0.0 * eye, states=places, outputs=places, inputs=pushes)
 
     def facts(self) -> dict[str, str]:
-        """Return what a table shows: sizes, poles, zero modes and stability."""
+        """Return the rows of the printed table: sizes, poles, zero modes and stability."""
         (n, m), values = self.q.shape, self.eigenvalues
         rows = {"law": f"{self.law.title}, of first order", "agents": f"{n}, m = {m}", "poles": f"{values.size}"}
         rows |= {"zero modes": f"{self.zero_modes}", "stable": "yes" if self.stable else "no"}

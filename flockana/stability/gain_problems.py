@@ -1,4 +1,4 @@
-"""The state matrix of a flock as a function of its gains on the γ-agent, at a configuration.
+"""State matrix of a flock as a function of its γ-gains, at a configuration.
 
 The question is that of Montanari, Barioni, Duan and Motter ("Optimal flock formation induced by agent heterogeneity"):
 minimise the largest real part among the eigenvalues of [[0, I], [−diag(c1γ) − c1α∇²V, −diag(c2γ) − c2α L̂]] at a given
@@ -46,12 +46,12 @@ class GainProblem:
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
-        """Return bases of the positions and velocities that the projection leaves."""
+        """Return bases of positions and velocities orthogonal to the projected motions."""
         kept_space = complement(self.apart)
         return kept_space, kept_space if self.speeds else np.eye(len(self.stiffness))
 
     def matrix(self, gains: FloatArray) -> FloatArray:
-        """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
+        """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without the projected motions."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
         return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)

@@ -28,7 +28,7 @@ _WITHIN = 0.999  # of an interval that is certified
 
 
 class Steps(NamedTuple):
-    """(1 + h e₁ + h² e₂) x⁺ = (1 + h f₁ + h² f₂) x: the dynamics of a step h off the neutral motions."""
+    """Step equation (1 + h e₁ + h² e₂) x⁺ = (1 + h f₁ + h² f₂) x off the neutral motions."""
 
     e1: FloatArray
     e2: FloatArray
@@ -50,14 +50,14 @@ class Steps(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """First step that grows (NaN if it is not known), and the largest below which none does."""
+    """First growing step (NaN if unknown), and the largest step with a stability certificate below it."""
 
     period: float
     least: float
 
 
 def first_growth(steps: Steps, rate: float, stable_below: float = 0.0) -> Growth:
-    """Return the first step at which a map grows whose flow is stable.
+    """Return the first step at which a map with a stable flow grows.
 
     `rate` is the size of the flow; steps up to `stable_below` are known to be stable.
     """
@@ -69,7 +69,7 @@ def first_growth(steps: Steps, rate: float, stable_below: float = 0.0) -> Growth
 
 
 def _by_pairs(steps: Steps, rate: float) -> Growth:
-    """Return the first growth from the steps at which two multipliers have the product 1."""
+    """Return the first growth from the steps at which two multipliers have product 1."""
     e1, f1 = steps.e1 / rate, steps.f1 / rate
     e2, f2 = steps.e2 / rate**2, steps.f2 / rate**2
     one = np.eye(len(f1))
@@ -93,7 +93,7 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
 
 
 def _resolved(steps: Steps, period: float, width: float) -> bool:
-    """Return whether a map falls and grows beyond rounding a share `width` below and above a step."""
+    """Return whether a map is stable below and grows above a step, by a share `width`, beyond rounding."""
     return min(side * steps.growth(period * (1.0 + side * width)) for side in (-1.0, 1.0)) > 10.0 * _ROUNDING
 
 
@@ -107,7 +107,7 @@ def _on_symmetric(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _least_roots(parts: list[FloatArray]) -> list[float]:
-    """Return the positive roots x of det Σ x^k parts_k, parts_0 invertible, rising."""
+    """Return the rising positive roots x of det Σ x^k parts_k, with invertible parts_0."""
     size, degree = len(parts[0]), len(parts) - 1
     companion = np.zeros((degree * size, degree * size))
     companion[size:, :-size] = np.eye((degree - 1) * size)
@@ -118,14 +118,14 @@ def _least_roots(parts: list[FloatArray]) -> list[float]:
 
 
 def _refined(steps: Steps, stable: float, growing: float) -> float:
-    """Return the step between a stable and a growing one at which growth begins."""
+    """Return the step at which growth begins, between a stable and a growing one."""
     from scipy.optimize import brentq
 
     return float(brentq(steps.growth, stable, growing, xtol=1e-14 * growing, rtol=1e-12))
 
 
 def _by_intervals(steps: Steps, rate: float, stable_below: float) -> Growth:
-    """Return the first growth from intervals of steps that Lyapunov functions certify one after another."""
+    """Return the first growth from consecutive step intervals certified by Lyapunov functions."""
     here = _WITHIN * stable_below
     for _ in range(_INTERVALS):
         e, f = steps.sides(here)
@@ -145,7 +145,7 @@ def _by_intervals(steps: Steps, rate: float, stable_below: float) -> Growth:
 
 
 def _falls(steps: Steps, x: FloatArray, h: float, unit: float) -> list[FloatArray]:
-    """Return the coefficients of W(h + unit s) by powers of s; at h = 0 divided by s."""
+    """Return the coefficients of W(h + unit s) by powers of s, divided by s at h = 0."""
     powers = []
     for first, second in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
         at = np.eye(len(x)) + h * (first + h * second)

@@ -1,4 +1,4 @@
-"""Which agents to inform: the best few, by what forces on them reach of the flock."""
+"""Choice of the agents to inform, by the states that forces on them reach."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _RANK = 1e-9  # relative
 
 @dataclass(frozen=True)
 class InformedAgents:
-    """The agents to inform, and what is known of the choice.
+    """Agents to inform, with the quality of the choice.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class InformedAgents:
 def agents_to_inform(
     flock: LinearFlock, count: int, *, criterion: str = "log det", horizon: float | None = None, most: int = 20_000
 ) -> InformedAgents:
-    """Return the agents on which forces reach most of a linearised flock.
+    """Return the agents from which forces reach most of a linearised flock.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def agents_to_inform(
 
 
 def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int]], float]:
-    """Return a measure of the Gramian of a set of agents, the sum of theirs."""
+    """Return a measure of the summed Gramian of a set of agents."""
     floor = _FLOOR * float(np.linalg.eigvalsh(sum(each[1:], each[0]))[-1])
 
     def value(agents: Sequence[int]) -> float:
@@ -126,7 +126,7 @@ def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int
 
 
 def _rank_of(model: ScaledModel) -> Callable[[Sequence[int]], float]:
-    """Return the number of states that forces on agents reach: pole by pole, Krylov vectors of its left subspace."""
+    """Return the number of states reached by forces on given agents, pole by pole with Krylov vectors."""
     n, m = model.shape
     every = model.inputs(range(n))
     reach_of_group = [_krylov(model.A, group, every) for group in pole_groups(model)]

@@ -1,4 +1,4 @@
-"""Studies of a law near an equilibrium: the blocks of the flock linearised there, its delays, periods, loops, norms."""
+"""Studies of a law near an equilibrium: linearised blocks, delays, periods, loops, norms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which 
 def delay_system(
     law: Any, q: Any, *, delayed: str = "all", carries: str = "both", links: Any = None, strict: bool = True
 ) -> DelaySystem:
-    """Return the linearised flock whose interactions are delayed.
+    """Return the linearised flock with delayed interactions.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def delay_system(
 
 
 def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
-    """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
+    """Return K and D of Algorithm 1 or 2 at an equilibrium, with classified rigid motions.
 
     K = c1α ∇²V + c1γ and D = c2α L̂ + c2γ, the gains of the γ-agent one for all or one per agent. Under Algorithm 2
     translations are held by c1γ; the rotation about the γ-agent is neutral at every equilibrium, because the stress

@@ -1,4 +1,4 @@
-"""Sampled loops with delays and clocks of their own as maps of one period (lifting).
+"""Sampled loops with delays and individual clocks, as maps over one period (lifting).
 
 Under a held input the state a delay ago is a linear function of the present one and of the inputs since, exactly: with
 these as further states one period is a matrix. Its neutral motions are known beforehand and divided out before its
@@ -48,7 +48,7 @@ def period_map(parts: Sequence[LatePart], period: float, clock: FloatArray) -> F
 
 
 def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float) -> FloatArray:
-    """Matrix from the state after one sample to that after the next; `due` coordinates are sampled there.
+    """Return the matrix from one sample's state to the next one's; `due` coordinates are sampled.
 
     The inputs of the state began `ages` before the next sample.
     """
@@ -57,7 +57,7 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
     since, starts = ages[0], np.concatenate([[0.0], ages])
 
     def forward(row: FloatArray) -> Any:
-        """Rows of the next sample's q, p and the inputs so far, from what they are weighted with."""
+        """Return rows of the next sample's q, p and inputs, from weighted inputs."""
         return np.kron(row, one)
 
     q = forward(np.array([[1.0, since, 0.5 * since**2, *np.zeros(inputs - 1)]]))
@@ -88,7 +88,7 @@ def moving_multipliers(parts: Sequence[LatePart], period: float, clock: FloatArr
 
 
 def _motions(parts: Sequence[LatePart], states: int) -> FloatArray:
-    """Return an orthonormal basis of the complement of the motions that nothing brings back, at rest or drifting."""
+    """Return an orthonormal basis of the complement of the neutral motions, resting or drifting."""
     stiffness, damping = (np.sum(each, axis=0) for each in zip(*(part[1:] for part in parts), strict=True))
     late = np.sum([part.delay * part.stiffness for part in parts], axis=0)
     kernel = kernels(stiffness)[0]
@@ -104,7 +104,7 @@ def _motions(parts: Sequence[LatePart], states: int) -> FloatArray:
 
 
 def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
-    """Return the least argument at which a radius exceeds 1, by trials and halving; infinity if none does."""
+    """Return the least argument at which a radius exceeds 1, by trials and halving; infinity without one."""
     from scipy.optimize import brentq
 
     before = None
@@ -119,7 +119,7 @@ def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
 
 
 def lifted_map(law: Any, flow: LinearFlock, parts: Sequence[LatePart], hold: Sampled) -> MapLinearisation:
-    """Return the linearisation of a sampled law with delays, or with clocks of the agents, over one period."""
+    """Return the one-period linearisation of a sampled law with delays, or with individual clocks."""
     (n, m), size = flow.q.shape, flow.q.size
     clock = np.repeat(np.zeros(n) if hold.offsets is None else np.array(hold.offsets), m)
     whole = period_map(parts, hold.period, clock)

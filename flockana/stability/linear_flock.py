@@ -28,7 +28,7 @@ _MOST_SHOWN = 900  # coordinates up to which all poles are found for a table
 
 @dataclass(frozen=True, eq=False)
 class LinearFlock(ShortRepr):
-    """δq'' + D δq' + K δq = 0 near an equilibrium, in the frame that moves with it.
+    """δq'' + D δq' + K δq = 0 near an equilibrium, in its moving frame.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class LinearFlock(ShortRepr):
     zero: float
 
     def facts(self) -> dict[str, str]:
-        """Return what a table shows: sizes, zero modes, poles and the slowest modes."""
+        """Return the rows of the printed table: sizes, zero modes, poles and the slowest modes."""
         rows = {
             "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
@@ -95,30 +95,30 @@ class LinearFlock(ShortRepr):
 
     @cached_property
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
-        """The matrix as a dense array; refused where it would not fit in memory."""
+        """State matrix as a dense array; raises if it would not fit in memory."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
         return self.A_sparse.toarray()
 
     @property
     def stiffness(self) -> csr_array:
-        """K = −∂u/∂q, sparse."""
+        """Stiffness K = −∂u/∂q, sparse."""
         size = self.q.size
         return -self.A_sparse[size:, :size]
 
     @property
     def damping(self) -> csr_array:
-        """D = −∂u/∂p, sparse."""
+        """Damping D = −∂u/∂p, sparse."""
         size = self.q.size
         return -self.A_sparse[size:, size:]
 
     @property
     def coincident_pairs(self) -> int:
-        """Pairs of agents at the same place, where their force has no direction."""
+        """Pairs of agents at the same position, with an undefined force direction."""
         return pairs_at_one_place(self.q)
 
     @cached_property
     def second_order(self) -> SecondOrder:
-        """The quadratic eigenproblem (λ² + λ D + K) v = 0."""
+        """Quadratic eigenproblem (λ² + λ D + K) v = 0."""
         return SecondOrder(self.q, self.stiffness, self.damping, zero=self.zero)
 
     @property
@@ -128,17 +128,17 @@ class LinearFlock(ShortRepr):
 
     @property
     def eigenvalues(self) -> ComplexArray:
-        """All 2nm eigenvalues of A, the largest real part first; zero modes come out as exact zeros."""
+        """All 2nm eigenvalues of A, the largest real part first; zero modes are exact zeros."""
         return self._dense.eigenvalues
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:
-        """Motions that cost nothing, K v = 0: translations, rotations, then soft ones (hinges, loose parts)."""
+        """Zero modes K v = 0: translations, rotations, then soft motions such as hinges and loose parts."""
         return self._dense.invariant.zero
 
     @property
     def drifting(self) -> tuple[str, ...]:
-        """Names of the zero modes along which a velocity persists: no force, no damping, a Jordan block."""
+        """Names of the zero modes with a persistent velocity: no force, no damping, a Jordan block."""
         return self._dense.invariant.drifting
 
     @property
@@ -163,14 +163,14 @@ class LinearFlock(ShortRepr):
 
     @property
     def structural_modes(self) -> tuple[Mode, ...]:
-        """`modes` of the shape alone, the centre of mass left out; raises where they do not separate."""
+        """Modes of the shape alone, without the centre of mass; raises if they do not separate."""
         self.ensure_split()
         centre = {id(mode) for mode in self._dense.invariant.translational}
         return tuple(mode for mode in self.modes if id(mode) not in centre)
 
     @property
     def structural_decay_rate(self) -> float:
-        """`decay_rate` of the shape alone; raises where shape and centre do not separate."""
+        """Decay rate of the shape alone; raises if shape and centre do not separate."""
         return min((mode.decay_rate for mode in self.structural_modes), default=float("nan"))
 
     @property
@@ -239,7 +239,7 @@ class LinearFlock(ShortRepr):
 
     @cached_property
     def structural(self) -> control.StateSpace:
-        """Python-control system of the shape; raises where the split is not exact.
+        """Python-control system of the shape; raises without an exact split.
 
         States x0_x, …, v0_x, … of all agents but the last, which is minus their sum; inputs f0_x, …; outputs x0_x, … of
         all agents, l0_1, ….
@@ -248,7 +248,7 @@ class LinearFlock(ShortRepr):
 
     @cached_property
     def translational(self) -> control.StateSpace:
-        """Python-control system of the centre; raises where the split is not exact.
+        """Python-control system of the centre; raises without an exact split.
 
         States qc_x, …, pc_x, …; inputs f0_x, …, qr_x, …, pr_x, …; outputs qc_x, ….
         """

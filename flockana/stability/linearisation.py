@@ -1,4 +1,4 @@
-"""Linearised flock with what is studied of it: tables, margins, norms, responses, controllability, the plant."""
+"""Linearised flock with its analyses: tables, margins, norms, responses, controllability, plant."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         progress: bool = False,
         limit: float = LIMIT,
     ) -> DelayMargin:
-        """Return the longest delay with which the flock is stable.
+        """Return the longest delay for which the flock is stable.
 
         Parameters
         ----------
@@ -96,7 +96,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         links: Any = None,
         limit: float = LIMIT,
     ) -> SamplingMargin:
-        """Return the longest period of a zero-order hold with which the flock is stable.
+        """Return the longest zero-order-hold period for which the flock is stable.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         return loop_margins(self, limit)
 
     def loss_margin(self, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
-        """Return the largest packet loss borne in mean square: see `flockana.stability.loss_margin`.
+        """Return the largest mean-square stable packet loss: see `flockana.stability.loss_margin`.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         return string_gains(self, first, limit=limit)
 
     def transient_growth(self, *, limit: float = LIMIT) -> TransientGrowth:
-        """Return how much a perturbation may grow before it decays: see `flockana.stability.transient_growth`.
+        """Return the largest transient growth: see `flockana.stability.transient_growth`.
 
         Parameters
         ----------
@@ -168,13 +168,13 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         return transient_growth(self, limit=limit)
 
     def passivity(self) -> Passivity:
-        """Return whether forces on all agents only put energy in: see `flockana.stability.passivity`."""
+        """Return whether the flock is passive from forces to velocities: see `flockana.stability.passivity`."""
         from flockana.stability.chain_disturbances import passivity
 
         return passivity(self)
 
     def norms(self, *, limit: float = LIMIT) -> ShapeNorms:
-        """Return the H₂ and H∞ norms from a force on each agent to the shape, all rigid motions taken out.
+        """Return the H₂ and H∞ norms from a force on each agent to the shape, without rigid motions.
 
         Parameters
         ----------
@@ -214,7 +214,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         )
 
     def controllability(self, informed: Any, *, horizon: float | None = None) -> Controllability:
-        """Return which motions forces on the informed agents reach: see `flockana.stability.controllability`.
+        """Return the motions reached by forces on informed agents: see `flockana.stability.controllability`.
 
         Parameters
         ----------
@@ -228,7 +228,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         return controllability(self, informed, horizon=horizon)
 
     def plant(self, inputs: Any = "all") -> StateSpace:
-        """Return the open loop for synthesis: the flock whose feedback to some inputs is taken away.
+        """Return the open-loop plant for synthesis, without feedback to some inputs.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Linearise a law or a map about an equilibrium, after checking that it is one."""
+"""Linearisation of a law or a map about a verified equilibrium."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def linearise(
     zero: float | None = None,
     side: Side | None = None,
 ) -> Linearisation | MapLinearisation | DelayLinearisation | VelocityLinearisation:
-    """Linearise a law or a map about an equilibrium, after checking that it is one.
+    """Linearise a law or a map about an equilibrium, after verifying the equilibrium.
 
     Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
     motion of the γ-agent, for the Jacobian depends on differences of positions alone, and the centre obeys the same
@@ -188,7 +188,7 @@ def linearise(
 
 
 def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
-    """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
+    """Linearise a map: by its continuous law, or by the mean of headings."""
     if law.continuous is not None and (law.position_factor is not None or law.stability_function is not None):
         flow: Any = linearise(law.continuous, equilibrium, p, **how)
         if not isinstance(flow, Linearisation):
@@ -208,7 +208,7 @@ def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, A
 def _linearised_loop(
     law: Law, equilibrium: Any, p: Any, how: dict[str, Any]
 ) -> Linearisation | MapLinearisation | DelayLinearisation:
-    """Linearise a wrapped law with a past, a clock or chance about a rest of the law within."""
+    """Linearise a wrapped law with delay, clock or random loss about a rest of the inner law."""
     from scipy.sparse import block_array, csr_array, eye_array
 
     hold, acting = hold_of(law), instant_law(law)
@@ -232,7 +232,7 @@ def _positions(law: Any, equilibrium: Any) -> FloatArray:
 
 
 def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
-    """Return what counts as a zero mode: rounding, what the force left here may feign, soft modes already known."""
+    """Return the stiffness threshold of zero modes: rounding, residual force, known soft modes."""
     half, scales = q.size, law.scales
     stiffness, force = -matrix[half:, :half], law.flow(t, q, p)[0]
     force = moving_frame(force) if law.centre_decouples else force
@@ -246,7 +246,7 @@ def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: Floa
 
 
 def _on_side(law: Law, q: FloatArray, side: Side | None) -> tuple[FloatArray, float]:
-    """Return positions at which the law is smooth, and the residual that this may feign; refused without a side."""
+    """Return positions at which the law is smooth, and the resulting residual; raise without a side."""
     # velocities are equal: a kink of the adjacency, whose value alone counts, is none of the linear flock
     corners = [one for one in law.corners_at(q, _CORNER) if (one.corner.part, one.corner.kind) != ("adjacency", "kink")]
     if side is not None:
@@ -283,7 +283,7 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
 
 
 def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
-    """Largest force and relative velocity, over the law's own scales."""
+    """Return the largest force and relative velocity, over the law's own scales."""
     force = law.flow(t, q, p)[0]
     if law.centre_decouples:
         force = moving_frame(force)
@@ -298,7 +298,7 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
 
 
 def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:
-    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time."""
+    """Raise if the Jacobian changes along the steady motion, which would make the system time-varying."""
     # Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
     if law.centre_decouples:
         return

@@ -69,17 +69,17 @@ class MapMode:
 
     @property
     def decay_per_step(self) -> float:
-        """Share of the mode that one step takes away, 1 − |z|; negative if the mode grows."""
+        """Decay per step, 1 − |z|; negative for a growing mode."""
         return 1.0 - abs(self.multiplier)
 
     @property
     def decay_rate(self) -> float:
-        """−ln|z|/dt, per time unit; infinite if one step ends the mode."""
+        """Decay rate −ln|z|/dt, per time unit; infinite if one step ends the mode."""
         return -float(np.log(abs(self.multiplier))) / self.dt if self.multiplier else float("inf")
 
     @property
     def frequency(self) -> float:
-        """arg z/dt, in radians per time unit; π/dt of a mode that changes sign at each step."""
+        """Frequency arg z/dt, in radians per time unit; π/dt if the sign changes at each step."""
         return abs(float(np.angle(self.multiplier))) / self.dt
 
     @property
@@ -90,7 +90,7 @@ class MapMode:
 
 @dataclass(frozen=True, eq=False)
 class MapLinearisation(ShortRepr):
-    """δx(k+1) = A δx(k) near the fixed motion of a map, in the frame that moves with it.
+    """δx(k+1) = A δx(k) near the steady motion of a map, in its moving frame.
 
     Parameters
     ----------
@@ -154,17 +154,17 @@ class MapLinearisation(ShortRepr):
 
     @property
     def multipliers(self) -> ComplexArray:
-        """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
+        """All eigenvalues of A, the largest first; neutral ones are exactly 1."""
         values = self._dense[0] if self.second_order is None else self._grown(self.second_order.eigenvalues)
         return values[np.lexsort((values.imag, -np.abs(values)))]
 
     def _grown(self, w: Any, derivative: int = 0) -> Any:
-        """R(dt w), or a derivative of R there."""
+        """Return R(dt w), or a derivative of R at dt w."""
         return Polynomial(self.growth).deriv(derivative)(self.dt * w)
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:
-        """Motions whose multiplier is 1: translations, rotations, soft modes; none without a `second_order`."""
+        """Motions with multiplier 1: translations, rotations, soft modes; none without a `second_order`."""
         return () if self.second_order is None else self.second_order.invariant.zero
 
     @cached_property
@@ -237,7 +237,7 @@ class MapLinearisation(ShortRepr):
 def stepped_equation(
     stiffness: Any, damping: Any, dt: float, factor: float, m: int, *, in_place: bool = False
 ) -> tuple[Any, Any]:
-    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse."""
+    """Return (K, D) of the equation in w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse."""
     k, d = stiffness.tocsr(), damping + factor * dt * stiffness
     if not in_place:
         return k, d
@@ -251,14 +251,14 @@ def stepped_equation(
 
 
 def moved_before(matrix: Any, m: int) -> Any:
-    """Entries of a matrix that act on an agent with a smaller index."""
+    """Return the entries of a matrix that act on an agent with a smaller index."""
     entries = matrix.tocoo(copy=True)
     entries.data = np.where(entries.coords[1] // m < entries.coords[0] // m, entries.data, 0.0)
     return entries.tocsr()
 
 
 def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
-    """Linearisation of a map from that of the law that it steps: by `position_factor`, else by `stability_function`."""
+    """Return the linearisation of a map from that of its law: by `position_factor` or `stability_function`."""
     q, (n, m), size = flow.q, flow.q.shape, flow.q.size
     ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")
     names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
@@ -283,7 +283,7 @@ def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
-    """Linearisation of a map of headings about parallel motion, under which its net is constant."""
+    """Return the linearisation of a heading map about parallel motion, with a constant net."""
     heading = np.arctan2(p[:, 1], p[:, 0])
     off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
     if off > _PARALLEL:
@@ -297,7 +297,7 @@ def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapL
 
 
 def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
-    """Linearisation of any map about a steady motion by differences of its steps, memory and all; refused at a kink."""
+    """Return the linearisation of any map about a steady motion by differences of steps; raise at a kink."""
     (n, m), name, memory = q.shape, law.title, {k: np.array(v) for k, v in law.start(q, p).items()}
     shapes = {"q": q.shape, "p": p.shape} | {key: value.shape for key, value in memory.items()}
     scales, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
@@ -310,7 +310,7 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
         return np.concatenate([np.ravel(parts[key]) / sizes[key] for key in shapes])
 
     def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
-        """Next state in the frame of the motion, after `steps` steps."""
+        """Return the next state in the moving frame, after `steps` steps."""
         parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
         values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
         way, inner = steps * law.dt * p, {key: values[key] for key in memory}

@@ -60,7 +60,7 @@ class Mode:
 
     @property
     def decay_rate(self) -> float:
-        """−Re λ, per time unit; negative if the mode grows."""
+        """Decay rate −Re λ, per time unit; negative for a growing mode."""
         return -self.eigenvalue.real
 
     @property
@@ -70,17 +70,17 @@ class Mode:
 
     @property
     def frequency(self) -> float:
-        """Im λ, in radians per time unit: of the damped swing; 0 without one."""
+        """Frequency Im λ, in radians per time unit; 0 without oscillation."""
         return abs(self.eigenvalue.imag)
 
     @property
     def natural_frequency(self) -> float:
-        """|λ|, in radians per time unit."""
+        """Natural frequency |λ|, in radians per time unit."""
         return abs(self.eigenvalue)
 
     @property
     def damping_ratio(self) -> float:
-        """−Re λ/|λ|: 1 of a mode that creeps back without a swing; NaN of a zero mode."""
+        """Damping ratio −Re λ/|λ|: 1 without oscillation; NaN for a zero mode."""
         return self.decay_rate / abs(self.eigenvalue) if self.eigenvalue else float("nan")
 
 
@@ -123,12 +123,12 @@ class SecondOrder:
 
     @cached_property
     def split(self) -> Split:
-        """Return the split into centre of mass and shape, or the distance from one."""
+        """Return the split into centre of mass and shape, with its coupling error."""
         return split(self.stiffness, self.damping, self.q.shape[1])
 
     @cached_property
     def net(self) -> StrongComponents | None:
-        """Strongly connected components; None where all is one, symmetric, or splits off the centre of mass."""
+        """Strongly connected components; None for one component, symmetric matrices, or a split centre of mass."""
         if self.symmetric or self.split.exact:
             return None
         net = strong_components(self.stiffness, self.damping)
@@ -136,11 +136,11 @@ class SecondOrder:
 
     @cached_property
     def parts(self) -> tuple[SecondOrder, ...]:
-        """Problems of the strongly connected components, each by itself; none where there is but one."""
+        """Problems of the strongly connected components; empty for one component."""
         return tuple(self._part(rows) for rows in self.net.indices) if self.net else ()
 
     def _part(self, rows: IndexArray) -> SecondOrder:
-        """Return the problem of a component: of whole agents with their places, or of coordinates alone."""
+        """Return the problem of a component, of whole agents or of single coordinates."""
         m = self.q.shape[1]
         agents = np.unique(rows // m)
         q = self.q[agents] if agents.size * m == rows.size else np.zeros((rows.size, 1))
@@ -149,7 +149,7 @@ class SecondOrder:
 
     @cached_property
     def kernel(self) -> Kernel:
-        """Kernels of K, of a motion of the centre that splits off left out (dense)."""
+        """Kernels of K, without the split motion of the centre (dense)."""
         if self.net:
             parts = [
                 kernel_of(part.stiffness.toarray(), part.scales, self.zero, symmetric=part.symmetric)
@@ -176,7 +176,7 @@ class SecondOrder:
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
-        """Return the separated modes if only rigid motions cost nothing (sparse)."""
+        """Return the separated modes if the rigid motions are the only zero modes (sparse)."""
         rigid = rigid_motions(self.q)
         if self.split.exact:
             unit = translations(*self.q.shape)
@@ -211,12 +211,12 @@ class SecondOrder:
         return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
 
     def local_modes(self) -> list[tuple[float, int, Mode]]:
-        """Modes of the components by rising decay rate: (rate, number of the component, mode)."""
+        """Return the modes of the components by rising decay rate: (rate, component number, mode)."""
         ranked_modes = [(mode.decay_rate, k, mode) for k, part in enumerate(self.parts) for mode in part.modes]
         return sorted(ranked_modes, key=lambda one: one[:2])
 
     def spread(self, k: int, mode: Mode) -> ComplexArray:
-        """Return the motion of all coordinates in a mode of component k: those that hear it follow."""
+        """Return the motion of all coordinates in a mode of component k, including hearing components."""
         from scipy.sparse import csc_array, eye_array
         from scipy.sparse.linalg import splu
 
@@ -241,7 +241,7 @@ class SecondOrder:
         return shape
 
     def _follow_one_by_one(self, shape: Any, s: complex, first: int) -> None:
-        """Put in the answers of all components from number `first` on, where these grow beyond all numbers."""
+        """Solve for the responses of all components from number `first` on, if they overflow together."""
         assert self.net is not None
         for rows in self.net.indices[first + 1 :]:
             heard = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
@@ -276,16 +276,16 @@ class SecondOrder:
 
     @cached_property
     def fastest_rate(self) -> float:
-        """Largest |λ|, by which positions are measured beside velocities; 1 where nothing moves by itself."""
+        """Largest |λ|, which scales positions relative to velocities; 1 if all are 0."""
         return float(np.abs(self.eigenvalues).max(initial=0.0)) or 1.0
 
     @cached_property
     def quotient(self) -> Quotient:
-        """Return the dynamics off the zero modes: of a state up to neutral motions (dense)."""
+        """Return the dynamics off the zero modes, of states modulo neutral motions (dense)."""
         return self.quotient_at(self.pace)
 
     def quotient_at(self, pace: float) -> Quotient:
-        """Return the dynamics off the zero modes, with positions measured by a rate beside velocities."""
+        """Return the dynamics off the zero modes, with positions scaled by a rate."""
         size, right = self.q.size, self.invariant.neutral.copy()
         if right.shape[1] != np.count_nonzero(self.eigenvalues == 0.0):
             raise SolverError("zero modes come in chains longer than two here: their quotient is not known")
@@ -295,7 +295,7 @@ class SecondOrder:
         return Quotient(basis[:size].T @ (pace * basis[size:]) + basis[size:].T @ force, basis, force, pace)
 
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
-        """Return named modes from eigenvalues and displacements, with `others` among them, in order."""
+        """Return named modes from eigenvalues and displacements, merged in order with `others`."""
         fields = pure_fields(self.q)
         modes = list(others)
         for value, vector, error in zip(values.tolist(), vectors.T, np.asarray(errors).tolist(), strict=True):
@@ -367,7 +367,7 @@ class SecondOrder:
         return Invariant(tuple(zero), tuple(translational), np.array(values, dtype=np.complex128), *spaces)
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
-        """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 where D motion is 0."""
+        """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 if D motion is 0."""
         matrix, damping = (self.stiffness.T, self.damping.T) if transposed else (self.stiffness, self.damping)
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * float((abs(damping) @ np.abs(motion)).max()):
@@ -376,7 +376,7 @@ class SecondOrder:
 
 
 def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
-    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right."""
+    """Return the function that multiplies by Q or Qᵀ, whose first columns span the basis."""
     # Q is never formed: a few reflections cost a few passes over what they act on.
     from scipy.linalg.lapack import dgeqrf, dormqr
 

@@ -90,7 +90,7 @@ def h2_norm(system: StateSpace) -> float:
 
 
 class Balanced(NamedTuple):
-    """A system whose states are in units of like size: powers of 2, so that nothing is rounded."""
+    """System with states scaled by powers of 2 to similar size."""
 
     a: FloatArray
     b: FloatArray
@@ -105,7 +105,7 @@ class Balanced(NamedTuple):
         return bool(np.all((np.abs(values) - 1.0 if self.discrete else values.real) < -errors))
 
     def covariance(self) -> FloatArray:
-        """Covariance of the outputs of a stable system under white noise of unit intensity in every input."""
+        """Return the output covariance of a stable system under unit white noise in every input."""
         from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
 
         if not self.discrete:
@@ -129,7 +129,7 @@ class Balanced(NamedTuple):
         return float(np.linalg.norm(self.c @ answer + self.d, 2))
 
     def crossings(self, level: float) -> FloatArray:
-        """Return the frequencies >= 0 at which the gain is `level`, above that of D: eigenvalues of a Hamiltonian."""
+        """Return the frequencies >= 0 with gain `level`, above that of D, by eigenvalues of a Hamiltonian."""
         a, b, c, d = self.a, self.b, self.c, self.d
         by_input = np.linalg.solve(level**2 * np.eye(d.shape[1]) - d.T @ d, np.hstack([d.T @ c, level * b.T]))
         to_output = level * c.T @ np.linalg.solve(level**2 * np.eye(d.shape[0]) - d @ d.T, c)
@@ -139,7 +139,7 @@ class Balanced(NamedTuple):
 
 
 def _balanced(system: StateSpace) -> Balanced:
-    """Return the matrices of a system, its states balanced."""
+    """Return the matrices of a system with balanced states."""
     from scipy.linalg.lapack import dgebal
 
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
@@ -154,7 +154,7 @@ def _balanced(system: StateSpace) -> Balanced:
 
 @check_kinds
 def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
-    """Covariance of the outputs under white noise of one intensity in every input, from the Lyapunov equation.
+    """Return the output covariance under white noise in every input, from the Lyapunov equation.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
 
 
 def largest_gain(system: Balanced, tol: float, seen: Iterable[float] = ()) -> tuple[float, float]:
-    """Return (H∞ norm, frequency) of a stable system in continuous time; `seen` are frequencies to begin with."""
+    """Return (H∞ norm, frequency) of a stable continuous-time system; `seen` are initial frequencies."""
     poles = np.linalg.eigvals(system.a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
     best = max((system.gain(w), w) for w in (*seen, *trials.tolist()[:: max(1, trials.size // 24)], inf))

@@ -1,4 +1,4 @@
-"""Largest packet loss that a sampled flock bears in mean square: spectral radius of E[A ⊗ A] below 1."""
+"""Largest mean-square stable packet loss of a sampled flock: spectral radius of E[A ⊗ A] below 1."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _UNHELD = 1e-6  # relative: what a link's force may do along motions that cost n
 
 @dataclass(frozen=True)
 class LossMargin:
-    """Largest probability of a loss with which perturbations die out in mean square.
+    """Largest loss probability with mean-square decay of perturbations.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class LossMargin:
 
 
 class _Step(NamedTuple):
-    """x⁺ = (lost + Σ θ_i heard_i) x, the θ_i independent, 1 with the probability 1 − loss and else 0."""
+    """Random step x⁺ = (lost + Σ θ_i heard_i) x, with independent θ_i = 1 with probability 1 − loss, else 0."""
 
     lost: FloatArray
     heard: tuple[FloatArray, ...]
@@ -64,7 +64,7 @@ class _Step(NamedTuple):
 
 @check_kinds
 def loss_margin(flock: LinearFlock, period: float, *, lost: str = "agent", on_loss: str = "zero") -> LossMargin:
-    """Return the largest packet loss that a flock bears in mean square, sampled with a period.
+    """Return the largest mean-square stable packet loss of a flock, for a sampling period.
 
     Losses are independent from sample to sample, and from agent to agent or link to link where these are lost singly.
 
@@ -109,7 +109,7 @@ def loss_margin(flock: LinearFlock, period: float, *, lost: str = "agent", on_lo
 
 
 def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
-    """Return the steps of the flock off its neutral motions; inputs that are held are states too."""
+    """Return the random step of the flock off its neutral motions; held inputs are states."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     size, basis, pace = n * m, off.basis, off.pace
     one = np.eye(size)
@@ -137,7 +137,7 @@ def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
 
 
 def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:
-    """Return for each directed link the rows of the agent that hears, and what it is pushed by off neutral motions."""
+    """Return for each directed link the hearing agent's rows, and its coupling off neutral motions."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []
     heard = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)

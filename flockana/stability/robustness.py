@@ -1,4 +1,4 @@
-"""Robustness in the engineer's terms: margins of the loop broken at each agent's input.
+"""Robustness margins of the loop broken at each agent's input.
 
 The loop is broken at one component of one agent's input, all others closed: with A of the closed flock and f its row
 of that input, the open loop is L(s) = −f (s − A₀)⁻¹ b, where A₀ is A without that row and b the unit vector of the
@@ -89,7 +89,7 @@ class RobustnessMargins(ShortRepr):
 
     @property
     def table(self) -> dict[str, dict[str, float]]:
-        """All margins by loop and kind, as `flockana.plots.bars` takes them."""
+        """Table of all margins by loop and kind, for `flockana.plots.bars`."""
         return {
             f"agent {one.agent}, {'xyz'[one.axis]}": {
                 "least gain": one.gain[0],
@@ -186,7 +186,7 @@ def _peaks(problem: SecondOrder) -> FloatArray:
 
 
 def _gains_are_masses(problem: SecondOrder) -> bool:
-    """Return whether K and D are symmetric, K >= 0, and D > 0 but for what K does not hold either: any mass will do."""
+    """Return whether all masses are stable: K and D symmetric, K >= 0, and D > 0 off common kernels."""
     if not problem.symmetric:
         return False
     k, d = (0.5 * (x + x.T) for x in (problem.stiffness.toarray(), problem.damping.toarray()))
@@ -212,13 +212,13 @@ def _margins(problem: SecondOrder, index: int, m: int, widest: tuple[float, floa
 
 
 def _where_real_part_is_half(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
-    """Values S(jω) with Re S = ½: S(s) + S(−s) − 1 = 1 + 2 f A (s² − A²)⁻¹ b is 0 at eigenvalues s²."""
+    """Return the values S(jω) with Re S = ½, from eigenvalues s² of a rational equation."""
     squares = np.linalg.eigvals(a @ a - 2.0 * np.outer(b, f @ a))
     return _on_the_axis(a, b, f, squares, lambda s: s.real - 0.5, lambda slope: slope.real)
 
 
 def _where_real(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
-    """Values S(jω) with Im S = 0: S(s) − S(−s) = 2 s f (s² − A²)⁻¹ b is 0 at zeros s², and at s = 0."""
+    """Return the values S(jω) with Im S = 0, from zeros s² of 2 s f (s² − A²)⁻¹ b, and at s = 0."""
     from scipy.linalg import eigvals
 
     at_rest = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
@@ -235,7 +235,7 @@ def _where_real(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
 def _on_the_axis(
     a: FloatArray, b: FloatArray, f: FloatArray, squares: Any, value: Callable[[complex], float], slope: Any
 ) -> list[complex]:
-    """Values S(jω) at the roots ω > 0 of a real function of S, by Newton's method from −s² near the positive axis."""
+    """Return the values S(jω) at the roots ω > 0 of a real function of S, by Newton's method."""
     near = (squares.real < 0.0) & (np.abs(squares.imag) <= _NEAR_AXIS * np.abs(squares))
     one, frequencies = np.eye(len(a)), []
     for omega in np.sqrt(-squares.real[near]).tolist():

@@ -1,4 +1,4 @@
-"""Rounding errors of eigenvalues, the threshold for calling a rate a decay.
+"""Rounding errors of eigenvalues, the threshold for a certain decay.
 
 An eigenvalue λ of A with unit left and right eigenvectors y, x moves by |Δλ| ≤ ‖ΔA‖/|yᴴx| to first order, and LAPACK's
 eigenvalues are those of some A + ΔA with ‖ΔA‖ a small multiple of eps ‖A‖. The linearised flock is not normal, so
@@ -22,14 +22,14 @@ _APART = 1e-3  # from which share on the two parts of a complex eigenvector span
 
 
 def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, FloatArray]:
-    """Return eigenvalues with error bounds, component by strongly connected component, in the order of `eigen`."""
+    """Return eigenvalues with error bounds, by strongly connected components, in the order of `eigen`."""
     parts = [eigen_of_one(matrix[np.ix_(rows, rows)], off) for rows in strong_components(matrix).indices]
     values, errors = (np.concatenate([part[i] for part in parts] or [np.zeros(0)]) for i in (0, 2))
     return values.astype(np.complex128), errors
 
 
 def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's error, of rounding and of the matrix.
+    """Return eigenvalues, right eigenvectors, and error bounds from rounding and matrix errors.
 
     The matrix itself may be off by the share `off` of its size. A block triangular matrix has the
     eigenvalues of its strongly connected components, with the errors of these.
@@ -56,7 +56,7 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
 
 
 def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Return eigenvalues, right eigenvectors and error bounds of a matrix taken as a whole."""
+    """Return eigenvalues, right eigenvectors and error bounds of a matrix without splitting it."""
     from scipy.linalg import eig
     from scipy.linalg.lapack import dgebal
 
@@ -74,7 +74,7 @@ def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Co
 
 
 def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) -> None:
-    """Write conjugate pairs that only rounding lifts off the real axis as the two real eigenvalues that they are."""
+    """Replace conjugate pairs off the real axis only by rounding with two real eigenvalues."""
     # The two of a defective pair (critical damping) come out further apart, or share one direction: these stay a pair.
     for k in np.flatnonzero((values.imag > 0.0) & (values.imag <= rounding)).tolist():
         turned = vectors[:, k] * np.exp(-0.5j * np.angle(np.sum(vectors[:, k] ** 2)))  # real part across the imaginary
@@ -84,7 +84,7 @@ def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) ->
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
-    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one."""
+    """Return the largest error of each eigenvalue's cluster; infinite for a single eigenvalue."""
     # Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     from scipy.spatial import cKDTree
 

@@ -1,4 +1,4 @@
-"""Margins of loops that are both delayed and sampled, by search over the maps of one period (`lifted`)."""
+"""Margins of loops with both delay and sampling, by search over one-period maps (`lifted`)."""
 
 from collections.abc import Callable
 from math import inf, nan, pi
@@ -33,7 +33,7 @@ def _multiplier(system: DelaySystem, delay: float, period: float) -> complex:
 
 
 def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatArray) -> float:
-    """Return the least argument found at which a radius exceeds 1: on a grid, then at the nearest of `whole` below."""
+    """Return the least argument at which a radius exceeds 1: on a grid, then at the nearest of `whole` below."""
     # Between multiples of the period a delay changes little; there growth may begin, end at once, and begin again.
     growth = first_growth(radius, trials)
     if growth in (0.0, inf):
@@ -43,7 +43,7 @@ def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatAr
 
 
 def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = LIMIT) -> DelayMargin:
-    """Return the longest delay with which a flock is stable whose whole input is held for a period.
+    """Return the longest stable delay of a flock whose whole input is held for a period.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = L
 
 
 def delayed_sampling_margin(system: DelaySystem, delay: float, *, limit: float = LIMIT) -> SamplingMargin:
-    """Return the longest period of a hold with which a delayed flock is stable.
+    """Return the longest stable hold period of a delayed flock.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class ModePeriod:
 
     @property
     def frequency(self) -> float:
-        """arg z/h, in radians per time unit, of the oscillation that neither grows nor decays there."""
+        """Frequency arg z/h, in radians per time unit, of the marginal oscillation."""
         return abs(float(np.angle(self.multiplier))) / self.period if 0.0 < self.period < inf else nan
 
 
@@ -85,7 +85,7 @@ class SamplingMargin:
 
     @property
     def certified(self) -> bool:
-        """Return whether the margin is known to a millionth; else it is at most `period`."""
+        """Return whether the margin is accurate to a millionth; otherwise it is at most `period`."""
         return self.least >= (1.0 - CLOSE) * self.period
 
     @property
@@ -94,7 +94,7 @@ class SamplingMargin:
         return self.modes[0] if self.modes else None
 
     def times(self, dt: float) -> float:
-        """Return the margin over the step `dt`; the sampled flock is stable if it is above 1.
+        """Return the margin divided by the step `dt`; above 1 the sampled flock is stable.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class SamplingMargin:
 
 
 def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, complex]:
-    """(largest period, multiplier there) of x'' = −k x − d x', sampled with `factor` (see the module), in closed form.
+    """Return (largest period, multiplier) of x'' = −k x − d x' sampled with `factor`, in closed form.
 
     A damper alone, k = 0, keeps the multiplier 1 of its place, which is neutral.
 
@@ -142,7 +142,7 @@ def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, compl
 
 
 def _flip(k: float, d: float, factor: float) -> float:
-    """Least h > 0 with 4 − 2hd + (1 − 2f)h²k = 0, infinite if there is none."""
+    """Return the least h > 0 with 4 − 2hd + (1 − 2f)h²k = 0, infinite without one."""
     a, square = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
     if square < 0.0 or d + sqrt(square) <= 0.0:
         return inf
@@ -152,7 +152,7 @@ def _flip(k: float, d: float, factor: float) -> float:
 def margin_of_flow(
     name: str, flow: LinearFlock, factor: float = 0.5, *, in_place: bool = False, limit: float = LIMIT
 ) -> SamplingMargin:
-    """Return the sampling margin of a linearised flock under a hold, or of a map with a `factor` (see the module)."""
+    """Return the sampling margin of a linearised flock with a hold, or of a map with a `factor`."""
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
     problem, sure = flow.second_order, flow.second_order.symmetric and not in_place
     ensure_affordable(
@@ -184,7 +184,7 @@ def margin_of_flow(
 
 
 def _explicit(flow: LinearFlock) -> tuple[float, list[ModePeriod]]:
-    """Margins of explicit Euler by eigenvalue: |1 + hλ| < 1 for h < −2 Re λ/|λ|²."""
+    """Return the explicit-Euler margins by eigenvalue: |1 + hλ| < 1 for h < −2 Re λ/|λ|²."""
     modes = []
     for mode in flow.modes:
         value = mode.eigenvalue
@@ -194,7 +194,7 @@ def _explicit(flow: LinearFlock) -> tuple[float, list[ModePeriod]]:
 
 
 def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -> tuple[float, list[ModePeriod]]:
-    """(certified bound, modes) of symmetric K and D, rigid motions that nothing holds or damps set apart."""
+    """Return (certified bound, modes) of symmetric K and D, without free undamped rigid motions."""
     scale = float(np.abs(k).max() * np.abs(d).max())
     if scale == 0.0 or np.abs(k @ d - d @ k).max() <= _COMMUTE * scale:
         return inf, _modal(k, d, factor)
@@ -212,7 +212,7 @@ def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
-    """Each mode in closed form, where K and D have their modes in common."""
+    """Return the margin of each mode in closed form, for K and D with common modes."""
     sizes = [float(np.abs(x).max()) or 1.0 for x in (k, d)]
     shapes = np.linalg.eigh(k / sizes[0] + sqrt(2.0) * d / sizes[1])[1]
     rows = []
@@ -227,7 +227,7 @@ def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
 
 
 def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
-    """Periods at which M is singular: 4 − 2hD + (1 − 2f)h²K, by the eigenvalues 1/h of a linear problem."""
+    """Return the periods at which 4 − 2hD + (1 − 2f)h²K is singular, by eigenvalues 1/h."""
     size, a = len(k), (1.0 - 2.0 * factor)
     if a == 0.0:
         values, vectors = np.linalg.eigh(0.5 * d)
@@ -242,7 +242,7 @@ def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
 
 
 def _least_damped(k: FloatArray, d: FloatArray) -> float:
-    """Largest h for which D − hK is positive definite on what K holds; 0 if D is not."""
+    """Return the largest h with D − hK positive definite off the kernel of K; 0 if D is not."""
     values, vectors = np.linalg.eigh(k)
     held_vectors = vectors[:, values > 1e-8 * float(np.abs(values).max())]
     free = vectors[:, values <= 1e-8 * float(np.abs(values).max())]
@@ -258,7 +258,7 @@ def _least_damped(k: FloatArray, d: FloatArray) -> float:
 def _first_to_grow(
     flow: LinearFlock, factor: float, *, in_place: bool = False, stable_below: float = 0.0
 ) -> tuple[float, list[ModePeriod]]:
-    """Return (certified bound, the mode that grows first) component by component; period NaN where it is not known."""
+    """Return (certified bound, first growing mode) by components; NaN period if unknown."""
     problem, m = flow.second_order, flow.q.shape[1]
     before = [moved_before(x, m) if in_place else 0.0 * x for x in (flow.stiffness.tocsr(), flow.damping.tocsr())]
     first, shortest, part_of = Growth(inf, inf), inf, None
@@ -291,7 +291,7 @@ def _first_to_grow(
 
 
 def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:
-    """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: entries that act at once."""
+    """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: immediate entries."""
     off, size = problem.quotient, problem.q.size
     low, zero = off.basis[size:], np.zeros((len(off.A),) * 2)
     stiffness = problem.stiffness.toarray()

@@ -50,12 +50,12 @@ class Blocks(ShortRepr):
     drifting: FloatArray
 
     def matrix(self) -> FloatArray:
-        """A of (x, x')' = A (x, x'), shape (2 n m, 2 n m)."""
+        """State matrix A of (x, x')' = A (x, x'), shape (2 n m, 2 n m)."""
         one = np.eye(len(self.stiffness))
         return reduced(self.stiffness, self.damping, one, one)
 
     def quotient(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """A and B without the rigid motions that nothing holds, and the bases N of positions, V of velocities.
+        """State and input matrices without free rigid motions, and the bases N of positions, V of velocities.
 
         The state is (Nᵀx, Vᵀx'). (ρ, 0) with K ρ = 0 is invariant, and what drifts is so with its velocity: dividing
         them out is exact. What remains knows every shape, but neither the orientation nor, under Algorithm 1, the
@@ -68,14 +68,14 @@ class Blocks(ShortRepr):
 
 
 def reduced(stiffness: FloatArray, damping: FloatArray, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-    """Return A of x'' = −K x − D x' in bases N of the positions and V of the velocities that are kept."""
+    """Return A of x'' = −K x − D x' in bases N of positions and V of velocities."""
     top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
     return np.vstack([top, -velocities.T @ np.hstack([stiffness @ positions, damping @ velocities])])
 
 
 @check_kinds
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray, *, zero: float = NEUTRAL) -> Blocks:
-    """Classify a flock's rigid motions by the forces that hold them.
+    """Classify a flock's rigid motions by their restoring forces.
 
     Parameters
     ----------
@@ -96,13 +96,13 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray, *, zero: f
 
 
 def is_pairs_and_pull(law: Any) -> bool:
-    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2."""
+    """Return whether a law has pair terms and at most a linear pull to a γ-agent, as Algorithms 1 and 2."""
     terms = getattr(law, "terms", ())
     return bool(terms) and all(isinstance(x, PairTerm) or (isinstance(x, Navigation) and not x.unit) for x in terms)
 
 
 def ensure_pairs_and_pull(law: Any) -> None:
-    """Raise unless a law is one of pairs and a linear pull."""
+    """Raise unless a law has only pair terms and a linear pull."""
     if not is_pairs_and_pull(law):
         raise ArgumentError(
             f"expected Algorithm1 or Algorithm2, pairs and at most a linear pull: got {type(law).__name__}"
@@ -110,7 +110,7 @@ def ensure_pairs_and_pull(law: Any) -> None:
 
 
 def _kernel(matrix: FloatArray, basis: FloatArray, zero: float) -> FloatArray:
-    """Orthonormal basis of the vectors in the span of `basis` that the matrix takes to zero."""
+    """Return an orthonormal basis of the kernel of a matrix within the span of `basis`."""
     if basis.shape[1] == 0:
         return basis
     _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)

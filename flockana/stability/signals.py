@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def labels(name: str, n: int, m: int) -> list[str]:
-    """Names of a quantity of n agents by component, in the order of ``q.ravel()``."""
+    """Return the names of a quantity of n agents by component, in the order of ``q.ravel()``."""
     return [f"{name}{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
 
 
 def axes_of(name: str, m: int) -> list[str]:
-    """Names of the components of one vector."""
+    """Return the names of the components of one vector."""
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 
@@ -53,7 +53,7 @@ def _system(
     names: tuple[list[str], list[str], list[str]],
     title: str,
 ) -> control.StateSpace:
-    """x'' = −K x − D x' + B u, y = C x, as a first-order system."""
+    """Return x'' = −K x − D x' + B u, y = C x, as a first-order system."""
     import control
 
     stiffness, damping = blocks
@@ -67,7 +67,7 @@ def _system(
 
 
 def whole_system(flock: Any) -> control.StateSpace:
-    """All agents: see `Linearisation.state_space`."""
+    """Return the system of all agents: see `Linearisation.state_space`."""
     n, m = flock.q.shape
     ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
@@ -84,7 +84,7 @@ def whole_system(flock: Any) -> control.StateSpace:
 
 
 def structural_system(flock: Any) -> control.StateSpace:
-    """The shape alone: see `Linearisation.structural`."""
+    """Return the system of the shape alone: see `Linearisation.structural`."""
     flock.ensure_split()
     n, m = flock.q.shape
     if n == 1:
@@ -101,7 +101,7 @@ def structural_system(flock: Any) -> control.StateSpace:
 
 
 def translational_system(flock: Any) -> control.StateSpace:
-    """The centre of mass alone: see `Linearisation.translational`."""
+    """Return the system of the centre of mass alone: see `Linearisation.translational`."""
     flock.ensure_split()
     n, m = flock.q.shape
     mean = translations(n, m).T / np.sqrt(n)

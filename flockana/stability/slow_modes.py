@@ -1,4 +1,4 @@
-"""The slowest modes of a large flock: sparse shift-invert about zero, with zero modes set apart."""
+"""Slowest modes of a large flock: sparse shift-invert about zero, with zero modes separated."""
 
 from math import inf
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ _FIRST = 8  # eigenvalues asked for at first, for each mode that is wanted
 
 
 class SlowModes(NamedTuple):
-    """The slowest modes found, and how far the list is complete.
+    """Slowest modes, with the rate up to which the list is complete.
 
     Attributes
     ----------

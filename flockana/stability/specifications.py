@@ -1,4 +1,4 @@
-"""Specifications of a flock (decay, delay, period, noise, overshoot, strain, effort): how far met, which binds."""
+"""Specifications of a flock (decay, delay, period, noise, overshoot, strain, effort) and their fulfilment."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -28,7 +28,7 @@ MEASURES = AT_LEAST + AT_MOST
 
 @dataclass(frozen=True)
 class Specifications:
-    """Requirements on a flock; None where nothing is required.
+    """Requirements on a flock; None for no requirement.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Specifications:
 
 @dataclass(frozen=True)
 class SpecifiedGains:
-    """Gains found for specifications.
+    """Designed gains for given specifications.
 
     Parameters
     ----------
@@ -98,14 +98,14 @@ class SpecifiedGains:
 
     @property
     def binding(self) -> str:
-        """Specification with the least room."""
+        """Specification with the least slack."""
         return min(self.room, key=lambda name: self.room[name])
 
 
 def evaluated(
     law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float, *, also: tuple[str, ...] = ()
 ) -> SpecifiedGains:
-    """Return the performance of a flock with these c1γ and c2γ, at the equilibrium near q that they give."""
+    """Return the performance of a flock with given c1γ and c2γ, at the equilibrium near q."""
     gains = replace(law.gains, c1_gamma=c1, c2_gamma=c2)
     trial = replace(law, gains=gains)
     rest = find_equilibrium(trial, q).q if len(q) > 1 else q
@@ -133,7 +133,7 @@ def _reached(name: str, law: Algorithm2, rest: Any) -> float:
 
 
 def _feedback_system(flock: Blocks, gains: Gains) -> Any:
-    """Return a `control.StateSpace` from a force on each agent to the γ-feedback of all, rigid motions taken out."""
+    """Return a `control.StateSpace` from a force on each agent to all γ-feedback, without rigid motions."""
     import control
 
     a, b, positions, velocities = flock.quotient()

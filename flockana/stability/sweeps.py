@@ -34,7 +34,7 @@ class Sweep:
 
     @property
     def abscissa(self) -> FloatArray:
-        """Largest real part at each value, neutral ones set apart, shape (L,); NaN if nothing else is left."""
+        """Return the largest real part at each value, without neutral ones, shape (L,); NaN without others."""
         rest = self.eigenvalues.real[:, self.neutral :]
         return rest.max(axis=1) if rest.shape[1] else np.full(len(self.values), np.nan)
 
@@ -116,7 +116,7 @@ def _rising(values: Any) -> FloatArray:
 
 
 def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
-    """Return `after` reordered to continue each branch of `before`, with the least sum of squares."""
+    """Return `after` reordered to continue each branch of `before`, with the least squared distance."""
     from scipy.optimize import linear_sum_assignment
 
     return after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]) ** 2)[1]]
@@ -163,7 +163,7 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
 def _followed(
     law: Any, q: Any, name: str, levels: FloatArray, *, follow: bool = True
 ) -> Iterator[tuple[Algorithm1 | Algorithm2, FloatArray]]:
-    """Laws with the values of one gain, and the equilibrium of each, found from the last."""
+    """Yield laws with the values of one gain, and the equilibrium of each, continued from the last."""
     if not isinstance(law, Algorithm1 | Algorithm2):
         raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1(...) or Algorithm2(...)")
     ensure_known("gain", name, GAINS[:2] if law.target is None else GAINS)

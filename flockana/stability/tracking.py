@@ -34,7 +34,7 @@ def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray
 
 
 def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
-    """Return amplitudes of the flock and the γ-agent over the last whole periods, and the error of the fit."""
+    """Return oscillation amplitudes of flock and γ-agent over the last whole periods, and the fit error."""
     path, _ = path_and_factor(run.law.target)
     if not isinstance(path, SineTarget | CircleTarget):
         raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
@@ -56,7 +56,7 @@ def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
 
 
 def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
-    """Return the remaining transient at these times in closed form; of a map its flow's."""
+    """Return the remaining transient at given times in closed form; for a map, of its flow."""
     # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
     start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
@@ -70,7 +70,7 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
 
 @check_kinds
 def response_ratio(run: Trajectory) -> tuple[float, float]:
-    """Return the ratio of the centre's swing to the γ-agent's over the last whole periods, and its error.
+    """Return the ratio of the centre's oscillation to the γ-agent's over the last whole periods, and its error.
 
     At most half of the run is used, but at least one period: what precedes is transient. The error is the root mean
     square of what the fit leaves over, and the swing that what is left of the start would feign by itself, relative to
@@ -102,7 +102,7 @@ def response_ratio(run: Trajectory) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Quantity as predicted by the linear system and as measured.
+    """Quantity with predicted and measured value.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class Tracking:
     quantities: tuple[Quantity, ...]
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity whose name begins with `name`."""
+        """Return the quantity with a given beginning of its name."""
         return next(item for item in self.quantities if item.name.startswith(name))
 
     def __str__(self) -> str:

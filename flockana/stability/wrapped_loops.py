@@ -1,4 +1,4 @@
-"""Linear feedback of a wrapped law: what acts at once, what acts late, and how long the input is held."""
+"""Linear feedback of a wrapped law: immediate part, delayed parts, and hold period."""
 
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -17,14 +17,14 @@ _LOOPS = (Delayed, Sampled, Measured)
 
 
 class _Heard(NamedTuple):
-    """How late neighbours are heard: one delay, or one of each pair; and whether an agent's own state is as late."""
+    """Delays of hearing neighbours, common or for each pair, and whether own states are delayed too."""
 
     delay: Any
     both: bool
 
 
 def instant_law(law: Law) -> Law:
-    """Return a law with the same rest that acts at once: without delays, holds, noise and losses."""
+    """Return the undelayed law with the same rest: without delays, holds, noise and losses."""
     if not isinstance(law, Wrapper):
         return law
     within = instant_law(law.law)
@@ -46,7 +46,7 @@ def instant_law(law: Law) -> Law:
 
 @dataclass(frozen=True)
 class _MeanLoss(WrappingLaw):
-    """Law whose terms between agents push with the share of messages that arrives, their mean under losses."""
+    """Law with mean message loss: pair terms scaled by the share of received messages."""
 
     law: Law
     loss: float
@@ -66,13 +66,13 @@ def hold_of(law: Law) -> Sampled | None:
 
 
 def is_late(law: Law) -> bool:
-    """Return whether a delay longer than 0 is among the wrappers of a law."""
+    """Return whether a positive delay is among the wrappers of a law."""
     wrappers = law.wrappers if isinstance(law, Wrapper) else ()
     return any(isinstance(one, Delayed) and one.memory > 0.0 for one in wrappers)
 
 
 def late_parts(law: Law, state: State) -> list[LatePart]:
-    """Return the parts of K and D of a wrapped law at a steady state (t, q, p), by rising delay.
+    """Return the delayed parts of K and D of a wrapped law at a steady state (t, q, p), by rising delay.
 
     As in a run, what is heard enters the pair terms. Of lost messages the mean remains: these terms, times the share
     that arrives.
@@ -117,7 +117,7 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
 
 
 def _pair_terms(core: Law, state: State) -> list[FloatArray]:
-    """Return K and D of the pair terms of a law, the terms into which heard states can be put; of other laws all."""
+    """Return K and D of the pair terms of a law; of all terms for other laws."""
     if not any(isinstance(term, PairTerm) for term in core.terms):
         whole: Any = core.derivatives(*state)
         return [-part.toarray() for part in whole]
@@ -131,7 +131,7 @@ def _pair_terms(core: Law, state: State) -> list[FloatArray]:
 
 
 def _ensure_at_rest(p: FloatArray, heard: _Heard) -> None:
-    """Raise if agents that move hear where others were: what they hear is another configuration."""
+    """Raise if moving agents hear delayed positions, which form another configuration."""
     if np.any(p != 0.0) and np.any(np.asarray(heard.delay) > 0.0):
         raise ArgumentError(
             "agents that move hear where their neighbours were, which is no rest of the law: expected p = 0, or "

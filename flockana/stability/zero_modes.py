@@ -1,4 +1,4 @@
-"""Zero modes of δq'' + D δq' + K δq = 0: kernels of K, relative to the agents' own stiffness, component by component.
+"""Zero modes of δq'' + D δq' + K δq = 0: kernels of K relative to agent stiffness, by component.
 
 How stiff a motion is, is told by what K does to it relative to the stiffness of the agents that move, not of the
 stiffest agent of all: an agent held by 1e-5 beside links of 1e3 is held. A net that is not strongly connected is looked
@@ -44,7 +44,7 @@ class Split(NamedTuple):
 
 
 def split(stiffness: Any, damping: Any, m: int) -> Split:
-    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
+    """Return the split into centre of mass and shape, if K, D and their transposes map translations to translations."""
     unit = translations(stiffness.shape[0] // m, m)
     own_groups, leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
@@ -59,38 +59,38 @@ def split(stiffness: Any, damping: Any, m: int) -> Split:
 
 
 def agent_scales(stiffness: Any, m: int) -> FloatArray:
-    """Return the largest row sum of K among the coordinates of each agent, by coordinate; of all where none acts."""
+    """Return the largest row sum of K among the coordinates of each agent, by coordinate."""
     rows = np.asarray(abs(stiffness).sum(axis=1)).reshape(-1, m).max(axis=1)
     return np.repeat(np.where(rows > 0.0, rows, rows.max(initial=0.0) or 1.0), m)
 
 
 def extent(q: FloatArray) -> float:
-    """Return the size of a flock; of agents at one place, but for rounding, their distance from the origin."""
+    """Return the size of a flock; for coincident agents, their distance from the origin."""
     size, far = float(np.linalg.norm(moving_frame(q), axis=1).max()), float(np.abs(q).max())
     return size if size > _ONE_PLACE * far else far or 1.0
 
 
 def zero_threshold(stiffness: Any, force: FloatArray, length: float) -> float:
-    """Return the stiffness, relative to the agents' own, that rounding and a force (n, m) left at rest may feign."""
+    """Return the relative stiffness that rounding and a residual force (n, m) may produce."""
     scales = agent_scales(stiffness, force.shape[1])
     left = _LEFT * float((np.abs(force).ravel() / scales).sum()) / length  # a force f turns into f/length, as a stress
     return min(ZERO, max(_ROUNDING * EPS * sqrt(force.size).real, left))
 
 
 class Kernel(NamedTuple):
-    """Right and left kernel of K, and all its sizes relative to the agents' own stiffness, rising."""
+    """Right and left kernel of K, with all rising relative singular values."""
 
     right: FloatArray
     left: FloatArray
     sizes: FloatArray
 
     def doubtful(self, zero: float) -> FloatArray:
-        """Return the sizes beside the threshold, of which it is hard to say whether they are 0."""
+        """Return the singular values too close to the threshold for a decision."""
         return self.sizes[(self.sizes > zero / _BELOW) & (self.sizes < zero * _ABOVE)]
 
 
 def kernel_of(stiffness: FloatArray, scales: FloatArray, zero: float, *, symmetric: bool) -> Kernel:
-    """Return the kernels of a dense K: motions that it multiplies by at most `zero`, relative to `scales`."""
+    """Return the kernels of a dense K: motions with relative stiffness at most `zero`."""
     if symmetric:
         half = 1.0 / np.sqrt(scales)
         values, vectors = np.linalg.eigh(half[:, None] * (0.5 * (stiffness + stiffness.T)) * half)
@@ -116,7 +116,7 @@ def joined_kernel(stiffness: Any, net: StrongComponents, parts: list[Kernel], ze
 
 
 def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, zero: float) -> FloatArray:
-    """Return a kernel built up component by component: each follows those it hears, as far as it can."""
+    """Return a kernel built component by component, each following heard components where possible."""
     basis = np.zeros((stiffness.shape[0], 0))
     for k in order:
         rows, (free, against) = net.indices[k], kernels[k]
@@ -147,7 +147,7 @@ def _orthonormal(basis: FloatArray) -> FloatArray:
 
 
 class Quotient(NamedTuple):
-    """Dynamics x' = A x + `basis`[N:]ᵀ w off the zero modes: x = basisᵀ (pace δq, δp), whatever is along them.
+    """Dynamics x' = A x + `basis`[N:]ᵀ w off the zero modes, with x = basisᵀ (pace δq, δp).
 
     `force` gives δq'' = force x, which zero modes do not change.
     """
