@@ -1,4 +1,4 @@
-"""The mathematics of flocking in sympy: scalar functions, potentials, energies, transfer functions.
+"""Mathematics of flocking in sympy: scalar functions, potentials, energies, transfer functions.
 
 One of three witnesses of every fact (a derivation here, a fast kernel, a test that holds them together),
 this layer imports no kernel. Identities come out as computed residuals, for generic n from one generic pair

@@ -89,7 +89,7 @@ def theorem6_identity(
 
 
 def condition_76_residual(m: int = 2) -> sp.Expr:
-    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag."""
+    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which is 0: condition (76) is the sign of the drag."""
     axes = range(1, m + 1)
     p_d = vector("p_d", m)
     drag = over_agents(sp.Add(*(P[I_, k] ** 2 - P[I_, k] * p_d[k - 1] for k in axes)))
@@ -99,7 +99,7 @@ def condition_76_residual(m: int = 2) -> sp.Expr:
 
 
 def e2_identity(m: int = 2) -> EnergyIdentity:
-    """Derive dH/dt of the printed H, which counts every pair twice: dV_alpha/dt is left over, and it has no sign."""
+    """Derive dH/dt of the printed H, which counts every pair twice and keeps an indefinite dV_alpha/dt."""
     printed = theorem6_identity(m, copies=sp.Integer(2))
     left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", printed.residual)
     name = r"E2: the printed $V_\alpha = \sum_i \sum_{j \neq i} \psi_\alpha$"
@@ -107,7 +107,7 @@ def e2_identity(m: int = 2) -> EnergyIdentity:
 
 
 def e2_counterexample() -> RisingEnergy:
-    """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises."""
+    """Return two close approaching agents on a line, for which the printed H of Algorithm 3 rises."""
     # The gamma-agent rests at the origin; no obstacle is near.
     alpha = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)

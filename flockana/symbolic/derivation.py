@@ -42,7 +42,7 @@ def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
 
 
 class Printed:
-    """Base class of what a notebook shows as LaTeX: steps under a title."""
+    """Base class of derivations shown as LaTeX in notebooks: steps under a title."""
 
     title: str
     steps: tuple[Step, ...]
@@ -57,7 +57,7 @@ class Printed:
 
 @dataclass(frozen=True)
 class Derivation(Printed):
-    """A result with the steps that lead to it.
+    """Derivation: a result with the steps that lead to it.
 
     Parameters
     ----------

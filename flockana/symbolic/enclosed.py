@@ -68,7 +68,7 @@ class Enclosed:
         return self._at[node]
 
     def series(self, x: arb) -> list[arb] | None:
-        """Return Taylor coefficients valid for every centre in a ball, `ctx.cap` of them; None where not analytic."""
+        """Return `ctx.cap` Taylor coefficients valid for every centre in a ball; None where not analytic."""
         parts = self._run(x)
         return None if parts is None else _coefficients(parts[-1][0])
 
@@ -110,7 +110,7 @@ def _coefficients(series: arb_series) -> list[arb]:
 
 
 def _arguments(node: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Return the operands of a node; the exponent of a plain power is not one."""
+    """Return the operands of a node, without the exponent of a plain power."""
     if node.is_Pow and node.exp.is_Rational:
         return (node.base,)
     return () if node.is_Atom else tuple(node.args)
@@ -144,7 +144,7 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
 
 
 def _with_value(series: Any, value: arb) -> Any:
-    """Return a series with another enclosure of its value."""
+    """Return a series with a new enclosure of its value."""
     return arb_series([value, *_coefficients(series)[1:]])
 
 
@@ -160,7 +160,7 @@ def _positive(series: Any) -> Any:
 
 
 def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
-    """Return a plain power, or its inverse unless `up`: whole ones of any base, roots of a positive one."""
+    """Return a plain power, or its inverse unless `up`: integer powers of any base, roots of a positive base."""
     of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
     value = _with_value(_multiplied(of, whole), _power_range(of[0], whole)) if whole > 1 else of
     return value if up else 1 / _where(abs(value[0]) > 0, value)
@@ -178,7 +178,7 @@ def _multiplied(base: Any, whole: int) -> Any:
 
 
 def _power_range(base: arb, whole: int) -> arb:
-    """Return the range of a whole power, which includes 0 where it turns."""
+    """Return the range of an integer power, including 0 where the base changes sign."""
     ends = _multiplied(base.lower(), whole).union(_multiplied(base.upper(), whole))
     if whole % 2 or base > 0 or base < 0:
         return ends
@@ -198,7 +198,7 @@ def _integrated(value: arb, slope: Any, x: Any) -> Any:
 
 
 def _tanh(x: Any) -> Any:
-    """Return tanh of a series, from its ends, as it increases; its slope is 1 − tanh²."""
+    """Return tanh of a series from the ends of its range; its slope is 1 − tanh²."""
     at = x[0].lower().tanh().union(x[0].upper().tanh())
     value = arb_series([at])
     for _ in range(ctx.cap - 1):
@@ -263,7 +263,7 @@ def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
 
 
 class Germ(NamedTuple):
-    """Power t^power times a factor within a ball, for all t in (0, w]; analytic there."""
+    """Power t^power times a factor within a ball, for all t in (0, w]; analytic on that interval."""
 
     power: Fraction
     factor: arb
@@ -274,7 +274,7 @@ class _UnknownError(ArithmeticError):
 
 
 def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
-    """Return the leading behaviour of a formula on (0, width]; None where it is not known."""
+    """Return the leading behaviour of a formula on (0, width]; None if unknown."""
     try:
         return _GermVisitor(variable, width).of(expression)
     except (_UnknownError, ValueError, ZeroDivisionError, OverflowError):

@@ -71,12 +71,12 @@ class GenericPair:
         self.p = vector(f"{velocity}_i", m), vector(f"{velocity}_j", m)
 
     def forces(self, gains: GainSymbols = GAINS) -> tuple[sp.Matrix, sp.Matrix]:
-        """Return the force of j on i and, by the same formula, of i on j."""
+        """Return the forces of j on i and of i on j, from one formula."""
         (q_i, q_j), (p_i, p_j) = self.q, self.p
         return pair_force(q_i, p_i, q_j, p_j, gains=gains), pair_force(q_j, p_j, q_i, p_i, gains=gains)
 
     def along(self, energy: sp.Expr, gains: GainSymbols = GAINS) -> sp.Expr:
-        """Return the rate of a pair's energy under the forces between the two, tidied."""
+        """Return the rate of a pair's energy under the mutual forces, simplified."""
         components = [[*first, *second] for first, second in (self.q, self.p, self.forces(gains))]
         return self.tidy(along_flow(energy, *components))
 
@@ -94,7 +94,7 @@ class GenericPair:
         return self.tidy(ADJACENCY(self.z) * (stacked.T * block * stacked)[0])
 
     def tidy(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression expanded in relative coordinates, the sigma-norm of the pair named z_ij."""
+        """Return an expression expanded in relative coordinates, with the pair's sigma-norm named z_ij."""
         root = sp.Symbol("w", positive=True)
         ends = [pair for both in (self.q, self.p) for pair in zip(*both, strict=True)]
         relative = {i: j + sp.Symbol(f"d{i}", real=True) for i, j in ends}
@@ -106,7 +106,7 @@ class GenericPair:
         return collected.xreplace(back).subs(root, 1 + EPS * self.z)
 
     def lift(self, expression: sp.Expr) -> sp.Expr:
-        """Return the sum over all pairs of an expression of this one."""
+        """Return the sum over all pairs of a one-pair expression."""
         names: dict[sp.Expr, sp.Expr] = {self.z: Z[I_, J_]}
         for base, ends in zip(self.frame, (self.q, self.p), strict=True):
             for index, end in zip((I_, J_), ends, strict=True):
@@ -115,7 +115,7 @@ class GenericPair:
 
 
 def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple[sp.Expr, sp.Expr, tuple[Step, ...]]:
-    """Return the pair's contribution to dH/dt, the one claimed, and the steps between."""
+    """Return the pair's derived contribution to dH/dt, the claimed one, and the steps between."""
     potential, power = pair.energy_rates(gains, factor=factor)
     total = pair.tidy(potential + power)
     claimed = -gains.c2_alpha * pair.laplacian_form()
@@ -163,7 +163,7 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
 
 
 def relative_feedback(x_i: sp.Matrix, v_i: sp.Matrix, gains: GainSymbols) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return the navigational feedback on an agent at (x_i, v_i) from the centre less that on the centre, and this."""
+    """Return the relative navigational feedback on an agent at (x_i, v_i), and the feedback on the centre."""
     q_c, p_c, q_r, p_r = (vector(name, len(x_i)) for name in ("q_c", "p_c", "q_r", "p_r"))
     centre = own_force(q_c, p_c, q_r, p_r, gains=gains)
     return (own_force(q_c + x_i, p_c + v_i, q_r, p_r, gains=gains) - centre).expand(), centre

@@ -36,7 +36,7 @@ def _weight(i: int, j: int) -> sp.Expr:
 def _between_agents(
     q: list[sp.Matrix], p: list[sp.Matrix], weight: Callable[[int, int, sp.Expr], sp.Expr]
 ) -> tuple[list[sp.Matrix], list[sp.Matrix], sp.Expr, sp.Expr]:
-    """Return (forces of the potential, those and the consensus, potential, power of the consensus)."""
+    """Return (forces of the potential, with consensus, potential, power of the consensus)."""
     pulls, u, potential, power = [sp.zeros(*x.shape) for x in q], [sp.zeros(*x.shape) for x in q], sp.S.Zero, sp.S.Zero
     for i, j in combinations(range(_N), 2):
         apart, slip = q[j] - q[i], p[j] - p[i]
@@ -50,7 +50,7 @@ def _between_agents(
 
 
 def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
-    """Derive dH/dt in the given frame, of a γ-agent at rest that pulls some, and of speed control of all."""
+    """Derive dH/dt in the given frame, for a resting γ-agent that pulls some agents, and speed control."""
     # H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² + Σ
     # (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
     q, p, (q_r, _, _) = _state(m)
@@ -68,7 +68,7 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
 
 
 def moving_frame_identity(m: int = 2) -> Derivation:
-    """Derive dH/dt in the moving frame, for a γ-agent on any path that pulls all, with feedforward and drag."""
+    """Derive dH/dt in the moving frame, for a γ-agent on any path, with feedforward and drag."""
     # H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
     # acts on all alike does no work there.
     q, p, (q_r, p_r, a_r) = _state(m)
@@ -83,7 +83,7 @@ def moving_frame_identity(m: int = 2) -> Derivation:
 
 
 def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
-    """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n."""
+    """Derive dH/dt of three agents with velocity matching, from which the pair identity follows for every n."""
     # H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
     q, p, _ = _state(m)
     mean = (p[0] + p[1] + p[2]) / _N
@@ -119,7 +119,7 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
 
 
 def copies_balance() -> Derivation:
-    """Derive what the pull to a copy adds to dH/dt, a component of one agent: q'' = f - c1 (q - q_r) - c2 (q' - q_r').
+    """Derive the part of dH/dt from a pull to a copy: q'' = f - c1 (q - q_r) - c2 (q' - q_r'), by component.
 
     f is all else; what it does, p f, is counted where its energy is.
     """
@@ -137,7 +137,7 @@ def copies_balance() -> Derivation:
 
 
 def copies_part() -> Derivation:
-    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
+    """Derive the distance of a copy from the mean for f_r = -k q - b p, one equation for any number."""
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3
     pulls = (K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies)

@@ -25,7 +25,7 @@ _PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F
 
 
 def e1_identity(m: int = 2) -> EnergyIdentity:
-    """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p, whose first term has no sign.
+    """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p has an indefinite first term.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def e1_identity(m: int = 2) -> EnergyIdentity:
 
 @dataclass(frozen=True)
 class RisingEnergy:
-    """State at which the printed H rises, while the true one falls.
+    """State at which the printed H rises while the true H falls.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def with_pair_law(expression: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
 
 
 def e1_counterexample() -> RisingEnergy:
-    """Return two agents on a line, too close and separating, at which the printed H rises.
+    """Return two close separating agents on a line, for which the printed H rises.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-."""
+    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or the slides' form S+ <q>+ + S- <q>-."""
     # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
     # means.
     total = sp.S.Zero
@@ -110,7 +110,7 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
-    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is."""
+    """Derive the friends' form of u_i^g; the printed form loses -S_i q_i and depends on the origin."""
     true, stated = gradient_part(), friends_form(printed=printed)
     friends = friends_form(printed=printed, shift=SHIFT)
     steps = (

@@ -1,4 +1,4 @@
-"""The scalar functions of flocking as sympy expressions: bump, action functions, adjacency.
+"""Scalar functions of flocking as sympy expressions: bump, action functions, adjacency.
 
 Every function takes and returns sympy expressions. Parameters come in a frozen bundle, symbols by default
 and numbers where given, so that one formula serves a proof, a picture in LaTeX and a forty-digit value; kernels and
@@ -105,6 +105,6 @@ def beta_smooth(z: sp.Expr, beta: BetaSymbols) -> sp.Expr:
 
 
 def beta_closed(z: sp.Expr, beta: BetaSymbols) -> sp.Expr:
-    """Return an antiderivative of `beta_smooth`, by named functions, without a cancellation."""
+    """Return an antiderivative of `beta_smooth` by named functions, without cancellation."""
     area = beta.unit**2
     return area * SigmaNorm(((z - beta.d_beta) / area) ** 2, sp.S.One) - z

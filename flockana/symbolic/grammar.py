@@ -67,7 +67,7 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 
 
 def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
-    """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers."""
+    """Return the number of nodes of an expression, its height of exponentials, and its degree."""
     if value not in known:
         rows = [expression_size(each, known) for each in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)
@@ -91,7 +91,7 @@ def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
 
 
 def _ensure_plain(value: sp.Expr, where: str) -> None:
-    """Raise on a condition that has pieces itself, as its zeros are not known."""
+    """Raise on a piecewise condition inside a condition, as its zeros are unknown."""
     if value.has(sp.Piecewise, sp.Abs):
         raise ArgumentError(
             f"{where}: a condition, or abs, of {_short(str(value))}, which has pieces itself; expected one that is "
@@ -100,7 +100,7 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 
 def write_formula(expression: sp.Expr) -> str:
-    """Return a text that `read_formula` reads as the same expression, every number to the last bit."""
+    """Return text from which `read_formula` restores an expression exactly."""
     return str(_Printer().doprint(expression))
 
 
@@ -194,7 +194,7 @@ class _Reader:
         return self._real(value, node)
 
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
-        """Return a value; raise if it is large, complex, or has a number beyond floating point."""
+        """Return a value; raise if it is too large, complex, or beyond floating point."""
         self._ensure_small(value)
         unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
         if unreal or (value.is_number and not self._size_of(value) < _GREATEST):
@@ -218,7 +218,7 @@ class _Reader:
                 raise ArgumentError(f"{self.where} has {count} {what}: expected at most {most}, a simpler formula")
 
     def _ensure_divisor(self, value: sp.Expr, node: ast.AST) -> None:
-        """Raise on a divisor that is 0, or may be."""
+        """Raise on a divisor that is or may be 0."""
         if not value.is_number or value.is_Rational:
             return
         with precision(_DIVISOR_BITS):

@@ -1,4 +1,4 @@
-"""Decisions about a formula over an interval by branch and bound: smoothness, sign, least value of it or its integral.
+"""Decisions about a formula over an interval by branch and bound: smoothness, sign, least value or integral.
 
 Intervals are halved until an enclosure decides. What decides is the number of intervals, never the clock, so that the
 answer is the same on every machine.
@@ -72,21 +72,21 @@ class Region(NamedTuple):
 
     @property
     def exact(self) -> sp.Expr:
-        """The formula with its numbers inserted."""
+        """Formula with its numbers inserted."""
         return self.expression.xreplace(self.numbers)
 
     def between(self, left: fmpq, right: fmpq) -> tuple[float, float]:
-        """Distances of the ends of an interval, for messages."""
+        """Return the distances of the ends of an interval, for messages."""
         return self.place(left), self.place(right)
 
     @property
     def enclosed(self) -> Enclosed:
-        """The formula as a function of balls."""
+        """Formula as a function of balls."""
         return Enclosed(self.exact, self.variable)
 
 
 def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: str = "") -> list[Fact]:
-    """Return reasons why a formula is not analytic on a closed interval, or leaves it open; empty if it is analytic."""
+    """Return reasons why a formula is, or may be, not analytic on a closed interval; empty if analytic."""
     of, whole = region.enclosed, region.right - region.left
     open_: list[Fact] = []
     stack, looked = [(region.left, region.right, 0)], 0
@@ -118,7 +118,7 @@ def _float(x: fmpq) -> float:
 
 
 def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
-    """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""
+    """Return faults visible in values and slopes near a point: a jump, pole, kink or missing value."""
     whole, place = region.right - region.left, region.place(at)
     near, far = whole / 2**100, whole / 2**50
     sides: list[list[list[arb] | None]] = []
@@ -160,7 +160,7 @@ def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
 
 
 def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
-    """Return the sign of a formula beside an end where it vanishes, and how far it holds; else (0, 0)."""
+    """Return the sign of a formula near an end where it vanishes, and its validity width; else (0, 0)."""
     derivative, whole = region.expression, region.right - region.left
     end = region.ends[side]
     order = 0
@@ -224,7 +224,7 @@ def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
 
 
 class Least(NamedTuple):
-    """Bounds of the least value, and the place of the upper one."""
+    """Bounds of the least value, and the position of the upper one."""
 
     low: float
     high: float
@@ -232,7 +232,7 @@ class Least(NamedTuple):
 
 
 def least_on(region: Region, scale: float) -> Least:
-    """Return an enclosure of the least value on an interval; −∞ below where the formula has none."""
+    """Return an enclosure of the least value on an interval; −∞ as lower bound for undefined formulas."""
     of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
     best, where, looked = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
@@ -260,7 +260,7 @@ def least_on(region: Region, scale: float) -> Least:
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
-    """Return a lower bound on an interval, a value in it and its place."""
+    """Return a lower bound on an interval, a value in the interval, and its position."""
     middle = (left + right) / 2
     series, at = of.series(interval(left, right)), of.series(arb(middle))
     lowest_value = arb.pos_inf() if at is None else at[0].upper()
@@ -280,7 +280,7 @@ def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
 
 
 def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
-    """Return bounds of an integral's least value and of its value at the left end; it is 0 at the anchor."""
+    """Return bounds of an integral's least value and of its value at the left end; 0 at the anchor."""
     total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
     with precision(_INTEGRAL_BITS, _TERMS):
         for region in regions:

@@ -1,4 +1,4 @@
-"""Functions of which the pair laws are composed: each once, for printing, kernels and enclosures.
+"""Named building blocks of pair laws, each once, for printing, kernels and enclosures.
 
 Where a law is composed of `Named` functions, generated code calls these by name, and derivatives are named too
 (`tools.formulas`). `composed` is the formula; `stable` is the same function in a form in which no digits cancel, which
@@ -14,7 +14,7 @@ TINY = sp.Symbol("tiny", nonnegative=True)  # 1e-300 in compiled code, 0 in math
 
 
 class Named(sp.Function):
-    """Function that generated code calls by name."""
+    """Named function, called by its name in generated code."""
 
     composed: sp.Expr  # by other named functions, where the formula has some
     stable = property(lambda self: self.composed)
@@ -22,7 +22,7 @@ class Named(sp.Function):
     formula = property(lambda self: written(self.composed))  # as printed
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return the derivative in the first argument; the others are parameters."""
+        """Return the derivative by the first argument; the others are parameters."""
         at = sp.Dummy("at", real=True)
         composed = self.func(at, *self.args[1:]).composed
         slope = sp.diff(composed, at)
@@ -42,7 +42,7 @@ class SigmaNorm(Named):
 
 
 class Sigma1(Named):
-    """sigma_1 of a number; increasing."""
+    """Function sigma_1 of a number; increasing."""
 
     composed = property(lambda self: sigma_1(self.args[0]))
 
@@ -54,19 +54,19 @@ class QuarterSine(Named):
 
 
 class Taper(Named):
-    """Half-cosine as a function of the place on the taper, from 0 to 1; decreasing."""
+    """Half-cosine as a function of the position on the taper, from 0 to 1; decreasing."""
 
     composed = property(lambda self: HALF * (1 + sp.cos(sp.pi * self.args[0])))
 
 
 class Place(Named):
-    """Place on the taper of a bump, 0 at z = h and 1 at z = 1; code for balls and series keeps it in [0, 1]."""
+    """Position on the taper of a bump, 0 at z = h and 1 at z = 1, clipped to [0, 1] in balls and series."""
 
     composed = property(lambda self: (self.args[0] - self.args[1]) / (1 - self.args[1]))
 
 
 class Bump(Named):
-    """Bump rho_h of z >= 0 and h; the stable form falls to 0 without cancellation, and keeps a NaN."""
+    """Bump rho_h of z >= 0 and h, in a form without cancellation that keeps NaN."""
 
     composed = property(lambda self: self._pieces((Taper(Place(*self.args)), self.args[0] <= 1), (0, True)))
     stable = property(lambda self: self._pieces((0, self.args[0] >= 1), (QuarterSine(self._angle) ** 2, True)))
@@ -76,7 +76,7 @@ class Bump(Named):
         return sp.Piecewise((1, self.args[0] < self.args[1]), *pieces)
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return the slope, which is continuous."""
+        """Return the derivative, the continuous slope."""
         return BumpSlope(*self.args)
 
 
@@ -108,7 +108,7 @@ class Phi(Named):
 
     @property
     def _parts(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-        """Return (s + c, g, product of the roots); g keeps 0/0 out by a summand beyond all rounding."""
+        """Return (s + c, g, product of the roots), with g regularised against 0/0."""
         s, _, _, c = self.args
         x = s + c
         at_x, at_c = sp.sqrt(1 + x**2), sp.sqrt(1 + c**2)
@@ -132,7 +132,7 @@ class PhiBelow(Phi):
 
 
 class PhiIntegral(Named):
-    """Integral of phi from 0 to s, never below 0; the stable form keeps its digits where s is small."""
+    """Integral of phi from 0 to s, never below 0, in a form accurate at small s."""
 
     @property
     def composed(self) -> sp.Expr:  # noqa: D102
@@ -148,5 +148,5 @@ class PhiIntegral(Named):
         return HALF * (a + b) * (s / (at_s + at_0)) ** 2 * (gap + 1) / at_0
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return phi."""
+        """Return the derivative phi."""
         return Phi(*self.args)

@@ -60,7 +60,7 @@ class GenericObstacle:
         self.derivative = beta[0].jacobian(self.x)  # of q_hat in q = y + x
 
     def reduce(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression in normal form, with |x| named rho, so that identities come out as 0."""
+        """Return an expression in normal form, with |x| named rho, so that identities reduce to 0."""
         square, first = self.x.dot(self.x), self.x[0]
         on_a_line = {sp.Abs(first): self.distance, sp.sign(first): first / self.distance}  # sqrt(x . x) if m = 1
         named = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})

@@ -1,4 +1,4 @@
-"""The generic pair: its potential, its forces, and the chain rule along the flow.
+"""Generic pair: potential, forces, and the chain rule along the flow.
 
 The potential psi_alpha, its derivative phi_alpha and the weight a_ij are undefined functions of the sigma-
 distance here: what is derived from them holds for every interaction with psi' = phi.
@@ -87,6 +87,6 @@ def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], 
 def energy_balance(
     title: str, energy: sp.Expr, rate: sp.Expr, *flow: Sequence[sp.Matrix], of: str = "The energy"
 ) -> Derivation:
-    """Derive that an energy of columns q and p changes at a stated rate along q' = p, p' = u; the flow is (q, p, u)."""
+    """Derive that an energy of columns q and p changes at a stated rate along the flow (q, p, u)."""
     derived = along_flow(energy, *([entry for column in columns for entry in column] for columns in flow))
     return Derivation(title, (Step(of, energy), Step("changes at", rate)), rate, (sp.expand(derived - rate),))

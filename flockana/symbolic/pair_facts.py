@@ -1,4 +1,4 @@
-"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential, slopes."""
+"""Proved facts of a formula's pair law: smoothness, sign of the adjacency, least potential, slopes."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -43,13 +43,13 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
 
 
 def pair_facts(cut: PiecewiseFormula, eps: float, strength: float, tallest: float) -> PairFacts:
-    """Return the facts proved of a formula with its numbers."""
+    """Return the proved facts of a formula with its numbers."""
     return _NumericFormula(cut, eps, strength, tallest).facts
 
 
 @dataclass(frozen=True, eq=False)
 class _NumericFormula:
-    """Formula with its numbers, on which facts are decided."""
+    """Formula with numbers, for proving facts."""
 
     cut: PiecewiseFormula
     eps: float
@@ -82,7 +82,7 @@ class _NumericFormula:
         return [sp.Integer(0), *self.cut.exact_marks[1:-1], self._declared("r")]
 
     def _declared(self, name: str) -> sp.Symbol:
-        """Return the symbol of the range or the length in the formula's distance."""
+        """Return the symbol of the range or length in the formula's distance variable."""
         return sp.Symbol(f"{name}_z" if self._y == Z else name, positive=True)
 
     def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
@@ -97,12 +97,12 @@ class _NumericFormula:
         return self._chosen(self.cut.formula.adjacency)
 
     def place(self, at: fmpq | float) -> float:
-        """Return the Euclidean distance of y."""
+        """Return the Euclidean distance of a value of y."""
         y = float(arb(at))
         return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
 
     def _point(self, mark: sp.Expr, side: int) -> fmpq:
-        """Return a rational number at a mark, rounded outwards."""
+        """Return the rational value of a mark, rounded outwards."""
         exact = mark.xreplace(self._numbers)
         if isinstance(exact, sp.Rational):
             return rational(exact)
@@ -120,7 +120,7 @@ class _NumericFormula:
                 yield Region(formula, self._y, self._numbers, self._point(a, 0), self._point(b, 1), (a, b), self.place)
 
     def _inner(self) -> Iterator[Fact]:
-        """Yield faults of smoothness between the marks."""
+        """Yield smoothness faults between the marks."""
         forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
@@ -142,7 +142,7 @@ class _NumericFormula:
                     yield Fact("unmet", text, fact.witness) if at_end else fact
 
     def _clear(self, region: Region) -> tuple[fmpq, bool]:
-        """Return the point from which a formula is checked near contact, and whether it is analytic before."""
+        """Return the start of the checked range near contact, and whether the formula is analytic before."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS, 2):
@@ -153,7 +153,7 @@ class _NumericFormula:
         return region.right / 2 ** _NEAR[-1], False
 
     def _joints(self) -> Iterator[Fact]:
-        """Yield jumps where pieces meet."""
+        """Yield jumps at the joints of pieces."""
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
         slopes = self._main_pieces if forces else [sp.diff(each, self._y) for each in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
@@ -173,7 +173,7 @@ class _NumericFormula:
             yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, place, text)
 
     def _vanishes(self, number: sp.Expr, scale: float, place: float, fault: str) -> Iterator[Fact]:
-        """Yield a fault if a number is certainly not 0, beyond rounding of the parameters."""
+        """Yield a fault if a number is certainly nonzero, beyond rounding of the parameters."""
         zero = is_zero(number, self._numbers)
         if zero:
             return
@@ -204,7 +204,7 @@ class _NumericFormula:
         return conjunction(weights, text), conjunction(insides, f"{text} below the range")
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
-        """Yield ends of a region, except contact and range, at which the adjacency vanishes or may."""
+        """Yield ends of a region, except contact and range, at which the adjacency may vanish."""
         for end, at in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
@@ -213,7 +213,7 @@ class _NumericFormula:
                 yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
 
     def _sign_near(self, region: Region) -> tuple[Fact, fmpq]:
-        """Return the sign near contact of a formula that has no value there, and how far it is known."""
+        """Return the sign near contact of a formula without a value there, and its validity width."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
@@ -229,7 +229,7 @@ class _NumericFormula:
         return Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0)), region.left
 
     def _limit(self, formula: sp.Expr) -> arb | None:
-        """Return the value at contact of a formula that is analytic there."""
+        """Return the value at contact of a formula analytic there."""
         enclosed = Enclosed(formula, self._y)
         with precision(_BITS, 2):
             if enclosed.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
@@ -263,7 +263,7 @@ class _NumericFormula:
         return low, high
 
     def _contact(self, region: Region) -> tuple[tuple[float, float], Least, fmpq]:
-        """Return the potential at contact, its least value near there, and where the checked range begins."""
+        """Return the potential at contact, its least value nearby, and the start of the checked range."""
         formula, y = region.exact, self._y
         value = self._limit(formula)
         if value is not None:
@@ -295,7 +295,7 @@ class _NumericFormula:
         return (-inf, inf), Least(-inf, inf, 0.0), width
 
     def _close(self, formula: sp.Expr, slope: Germ) -> tuple[float, float] | None:
-        """Return the limit at contact, from a nearby value and a bound of the slope."""
+        """Return the limit at contact, from a nearby value and a slope bound."""
         width = fmpq(1) / 2**_CLOSE
         with precision(4 * _CLOSE):
             end = Enclosed(formula, self._y).series(arb(width))
@@ -320,7 +320,7 @@ def _bounds(own: Germ) -> tuple[float, float] | None:
 
 
 def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
-    """Return a polynomial as a product, in which double zeros are visible."""
+    """Return a polynomial as a product with visible double zeros."""
     small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
     return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
 
@@ -328,7 +328,7 @@ def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
 def slope_bounds(
     cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
 ) -> Iterator[tuple[float, float, float, float]]:
-    """Yield ends of parts of the range, also split at the cuts, with bounds of |dF/ds| and |da/ds| on each."""
+    """Yield ends of parts of the range, also split at the cuts, with bounds of |dF/ds| and |da/ds|."""
     numbers = exact_numbers(cut.numbers, eps)
     root = sp.sqrt(1 + EPS * S**2)
     norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))

@@ -40,12 +40,12 @@ class PairFormula:
 
     @property
     def derivative(self) -> sp.Expr:
-        """Derivative ψ' by the distance."""
+        """Derivative ψ' of the potential by the distance."""
         return self.main if self.forces else sp.diff(self.main, self.distance)
 
 
 def read_pair(potential: str, force: str, adjacency: str, names: Iterable[str]) -> PairFormula:
-    """Return a pair law from texts, given either the potential or its derivative; each text is read once."""
+    """Return a pair law from texts of potential or force, and adjacency."""
     return _read_pair(potential, force, adjacency, tuple(names))
 
 
@@ -130,12 +130,12 @@ class PiecewiseFormula:
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
-        """Numbers 0, the distances at which pieces meet, and the end, in rising order."""
+        """Rising distances 0, joints of pieces, and the end, as numbers."""
         return (0.0, *self._meetings, self.end)
 
     @cached_property
     def exact_marks(self) -> tuple[sp.Expr, ...]:
-        """The marks as expressions in the parameters; the end as a number."""
+        """Joints of pieces as expressions in the parameters; the end as a number."""
         return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
 
     @cached_property
@@ -148,7 +148,7 @@ class PiecewiseFormula:
         return inside
 
     def _meeting(self, condition: Any) -> sp.Expr:
-        """Return where a condition begins or ceases to hold."""
+        """Return the distance at which a condition changes its truth value."""
         y = self.formula.distance
         if not isinstance(condition, sp.core.relational.Relational):
             raise ArgumentError(f"the condition {condition} is not one comparison: expected one such as {y} < r/2")
@@ -171,7 +171,7 @@ class PiecewiseFormula:
         return tuple(parts)
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """Return an expression with the piece that holds at a distance."""
+        """Return an expression with the piece valid at a distance."""
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
@@ -186,14 +186,14 @@ class PiecewiseFormula:
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """Return the value of an expression in parameters alone, to `DIGITS`."""
+        """Return the value of an expression in parameters alone, with `DIGITS` digits."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
             raise ArgumentError(f"{expression} has no value for these parameters: expected a finite number") from None
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
-        """Return an expression as a function of y, to `DIGITS`; NaN where it is not real."""
+        """Return an expression as a function of y, with `DIGITS` digits; NaN where not real."""
         compiled = _compiled(expression, Z if self.formula.distance == Z else SQUARE, tuple(self.numbers))
         values = [mpmath.mpf(number) for number in self.numbers.values()]
 
@@ -251,7 +251,7 @@ def _conditions(expression: sp.Basic) -> Iterator[Any]:
 
 
 def pair_derivation(formula: PairFormula) -> Derivation:
-    """Derive the consequences of a formula, with the residual of every equation that can be checked."""
+    """Derive the consequences of a formula, with the residuals of all checkable equations."""
     y = formula.distance
     psi, named = sp.Function("psi")(y), "s" if y == S else "z"
     derivative = formula.derivative

@@ -27,7 +27,7 @@ def exact(name: str, value: Any) -> sp.Expr:
 
 
 def _fill(bundle: Any, *derived: str, least: str = "a number > 0", sign: str = "is_positive") -> None:
-    """Convert the given fields of a frozen bundle to exact expressions; raise on one that is certainly too small."""
+    """Convert the given fields of a frozen bundle to exact expressions; raise on certainly too small ones."""
     for name in (field.name for field in fields(bundle) if field.name not in derived):
         value = exact(name, getattr(bundle, name))
         object.__setattr__(bundle, name, value)
@@ -35,7 +35,7 @@ def _fill(bundle: Any, *derived: str, least: str = "a number > 0", sign: str = "
 
 
 def _derive(bundle: Any, **values: sp.Expr) -> None:
-    """Set the fields of a frozen bundle that were not given."""
+    """Set the missing fields of a frozen bundle."""
     _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
     for name, value in values.items():
         number = getattr(bundle, name)

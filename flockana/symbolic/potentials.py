@@ -1,4 +1,4 @@
-"""The pair potentials psi_alpha and psi_beta, derived piece by piece.
+"""Pair potentials psi_alpha and psi_beta, derived piece by piece.
 
 Both are integrals of (bump) x (smooth function): closed where the bump is 1, a smooth one-dimensional
 integral on its taper, constant beyond its cut-off. Which constant the closed piece carries depends on which
@@ -57,7 +57,7 @@ class _Potential:
         return sp.S.Zero if low == high else sp.Integral(self.tapered(_S), (_S, low, high))
 
     def pieces(self, zero_on_plateau: bool) -> tuple[Scalar, Scalar, Scalar]:
-        """Return the potential on the plateau, on the taper and beyond, for either place of its zero."""
+        """Return the potential on the plateau, on the taper and beyond, for a zero on either."""
         start = self.edge if zero_on_plateau else self.zero
         level = self.closed(self.edge) - self.closed(self.zero) if zero_on_plateau else sp.S.Zero
         return (
@@ -67,7 +67,7 @@ class _Potential:
         )
 
     def expression(self, z: sp.Expr) -> sp.Expr:
-        """Return all pieces in one Piecewise; numeric parameters leave only the case that holds."""
+        """Return all pieces in one Piecewise; numeric parameters select one case."""
         on_plateau = sp.Ge(self.edge, self.zero)
         branches: list[tuple[sp.Expr, sp.Basic]] = []
         for place, case in ((True, on_plateau), (False, sp.Not(on_plateau))):
@@ -77,7 +77,7 @@ class _Potential:
         return sp.Piecewise(*branches)
 
     def residuals(self, zero_on_plateau: bool) -> tuple[sp.Expr, ...]:
-        """Return residuals that must vanish: derivative less force, jumps, and the value at the zero."""
+        """Return residuals that must be 0: derivative less force, jumps, and the value at the zero."""
         near, middle, far = self.pieces(zero_on_plateau)
         at_zero = near if zero_on_plateau else middle
         computed = (
@@ -166,7 +166,7 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 
 
 def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
-    """Return one step per piece, with the condition under which it holds."""
+    """Return one step per piece, with its condition."""
     psi = sp.Function(name)(Z)
     edge, cutoff, pieces = potential.edge, potential.cutoff, potential.pieces(zero_on_plateau)
     rows = (
@@ -181,7 +181,7 @@ def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: 
 
 
 def _phi_at_zero() -> tuple[sp.Expr, sp.Expr]:
-    """Return phi(0) with its root extracted, and its value where b = a + k, k >= 0."""
+    """Return phi(0) with its root extracted, and its value for b = a + k, k >= 0."""
     root = ALPHA.c**2 + 1
     value = phi(sp.S.Zero).subs(root, sp.factor(root))
     return value, value.subs(ALPHA.b, ALPHA.a + sp.Symbol("k", nonnegative=True))

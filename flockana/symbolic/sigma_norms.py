@@ -1,4 +1,4 @@
-"""The sigma-norm, its gradient and sigma_1 as sympy expressions."""
+"""Sigma-norm, its gradient and sigma_1 as sympy expressions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The energies of n agents in m dimensions as sums over pairs and agents, for generic n and m."""
+"""Energies of n agents in m dimensions as sums over pairs and agents, for generic n and m."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tupl
 
 
 def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square: sp.Expr = SQUARE) -> sp.Expr:
-    """Return the numerator of d|G(j omega)|^2 / d(omega^2), whose sign is that of the slope over the speed."""
+    """Return the numerator of d|G(j omega)|^2 / d(omega^2), which has the sign of the slope."""
     numerator, denominator = _squared_moduli(scale, gains, square)
     return sp.expand(sp.diff(numerator, square) * denominator - numerator * sp.diff(denominator, square))
 

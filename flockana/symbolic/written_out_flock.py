@@ -76,7 +76,7 @@ class ConcreteFlock(Printed):
 
     @cached_property
     def moving(self) -> tuple[tuple[sp.Matrix, ...], tuple[sp.Matrix, ...]]:
-        """The state (x, v) relative to the centre of mass."""
+        """State (x, v) relative to the centre of mass."""
         x, v = (tuple(each - sum(rows[1:], rows[0]) / self.n for each in rows) for rows in (self.q, self.p))
         return x, v
 
@@ -104,13 +104,13 @@ class ConcreteFlock(Printed):
 
     @cached_property
     def rate(self) -> sp.Expr:
-        """The energy's time derivative along the flow, by the chain rule over all agents."""
+        """Time derivative of the energy along the flow, by the chain rule over all agents."""
         q, p, u = ([s for rows in part for s in rows] for part in (self.q, self.p, self.acceleration))
         return along_flow(self.energy, q, p, u)
 
     @cached_property
     def laplacian(self) -> sp.Matrix:
-        """The graph Laplacian L = Delta(A) - A of the weights a_ij."""
+        """Graph Laplacian L = Delta(A) - A of the weights a_ij."""
 
         def weight(i: int, j: int) -> sp.Expr:
             return sp.S.Zero if i == j else ADJACENCY(sigma_norm(self.q[j] - self.q[i]))
@@ -120,7 +120,7 @@ class ConcreteFlock(Printed):
 
     @cached_property
     def claimed(self) -> sp.Expr:
-        """The closed form: -c2_alpha p^T L p; for Algorithm 2, -c2_alpha v^T L v - c2_gamma |v|^2."""
+        """Closed form of the rate: -c2_alpha p^T L p; for Algorithm 2, -c2_alpha v^T L v - c2_gamma |v|^2."""
         v = self.moving[1] if self.law == "algorithm2" else self.p
         stacked = sp.Matrix.vstack(*v)
         quadratic = (stacked.T * sp.kronecker_product(self.laplacian, sp.eye(self.m)) * stacked)[0]
