@@ -1,4 +1,4 @@
-"""Theorems and errata: all that the files of this package define are in the catalogue."""
+"""Theorems and errata of the catalogue, defined in the files of this package."""
 
 from flockana.theorems.catalogue import theorem, theorems
 from flockana.theorems.theorem import Claim, Hypothesis, Status, Theorem, Tolerances, Verdict

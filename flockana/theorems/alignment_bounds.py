@@ -1,4 +1,4 @@
-"""What a functional |v| + ∫φ of the spreads x and v bounds: integrals of the weight, and claims on a run.
+"""Alignment bounds from a functional |v| + ∫φ of the spreads x and v, and claims on a run.
 
 With y = c s/ℓ and y = sinh w the integral of φ(s) = λ (1 + (c s/ℓ)²)^−β is λℓ/c times that of (cosh w)^(1 − 2β), which
 is as smooth at all distances.
@@ -20,14 +20,14 @@ _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
 @dataclass(frozen=True)
 class AlignmentRate:
-    """φ(s) = λ (1 + (c s/ℓ)²)^−β, at which a velocity spread falls when the position spread is s."""
+    """Decay rate φ(s) = λ (1 + (c s/ℓ)²)^−β of a velocity spread at position spread s."""
 
     weight: RationalWeight  # β and ℓ
     strength: float  # λ
     stretch: float  # c: 2 as printed, √2 where it is sharp, 1 for the distance of two agents
 
     def __call__(self, s: float) -> float:
-        """φ(s)."""
+        """Return φ(s)."""
         return self.strength * float((1.0 + (self.stretch * s / self.weight.length) ** 2) ** -self.weight.decay)
 
     @property
@@ -39,11 +39,11 @@ class AlignmentRate:
         return asinh(self.stretch * s / self.weight.length)
 
     def between(self, start: float, end: float) -> float:
-        """∫φ from one number to another, of either sign."""
+        """Return ∫φ from one number to another, of either sign."""
         return self._unit * self._over(self._w(start), self._w(end))
 
     def _over(self, start: float, end: float) -> float:
-        """∫ (cosh w)^(1 − 2β) dw."""
+        """Return ∫ (cosh w)^(1 − 2β) dw."""
         from scipy.integrate import quad
 
         power = 1.0 - 2.0 * self.weight.decay
@@ -61,7 +61,7 @@ class AlignmentRate:
         return self._unit * (tail if start >= 0.0 else whole - tail)
 
     def reached(self, start: float, speed: float) -> float:
-        """The x_M at which ∫φ from `start` is the speed; infinite if there is none."""
+        """Return the x_M at which ∫φ from `start` equals the speed; infinite without one."""
         from scipy.optimize import brentq
 
         speed_ratio, low = speed / self._unit, self._w(start)
@@ -82,14 +82,14 @@ class AlignmentRate:
         return start.falling(np.vectorize(self.beyond, otypes=[float])).scaled_out(QUADRATURE)
 
     def reached_by(self, start: Enclosure, speed: Enclosure) -> Enclosure:
-        """Return `reached` of an enclosed start and speed, of which it is a rising function."""
+        """Return `reached` of an enclosed start and speed, as an increasing function."""
         ends = (self.reached(float(getattr(start, end)), float(getattr(speed, end))) for end in ("lo", "mid", "hi"))
         return Enclosure(*ends).scaled_out(QUADRATURE)
 
 
 @dataclass(frozen=True, eq=False)
 class Guarantee:
-    """What the functional guarantees of a run of a law of alignment: x <= x_M and v <= v(0) e^(−φ(x_M) t)."""
+    """Guarantee of the alignment functional on a run: x <= x_M and v <= v(0) e^(−φ(x_M) t)."""
 
     seen: Observed
     phi: AlignmentRate
@@ -101,7 +101,7 @@ class Guarantee:
 
     @cached_property
     def integral_to_infinity(self) -> Enclosure:
-        """∫φ from x(0) to infinity."""
+        """Integral ∫φ from x(0) to infinity."""
         return self.phi.beyond_enclosed(self.x[0])
 
     @cached_property
@@ -110,7 +110,7 @@ class Guarantee:
         return self.phi.reached_by(self.x[0], self.v[0])
 
     def hypothesis(self, name: str) -> Hypothesis:
-        """Hypothesis v(0) < ∫φ from x(0) on, which always holds for β <= ½."""
+        """Return the hypothesis v(0) < ∫φ from x(0) on, always met for β <= ½."""
         v0 = self.v[0]
         if self.integral_to_infinity.lo == inf:
             return Hypothesis(name, "met", 1.0, f"β = {self.phi.weight.decay:g}: the integral is infinite")
@@ -119,7 +119,7 @@ class Guarantee:
         return positive_room(name, self.integral_to_infinity - v0, detail, remedy=remedy)
 
     def claims(self, needs: list[Hypothesis], limit: str = "velocities") -> Checked:
-        """Return the claims that positions spread at most to x_M and velocities match, at a rate and in the limit."""
+        """Return the claims that positions spread at most to x_M and velocities match, with rate and limit."""
         if unmet(needs):
             return needs, []
         return needs, [self._bounded(needs), self._falls(needs), self._limit(limit, needs)]
@@ -137,7 +137,7 @@ class Guarantee:
         )
 
     def _falls(self, needs: list[Hypothesis]) -> Claim:
-        """Return the claim that v falls at the guaranteed rate up to each sample at which it exceeds its error."""
+        """Return the claim that v falls at the guaranteed rate, at each sample at which v exceeds its error."""
         seen, v, name, rate = self.seen, self.v, self.names[1], self.bound.falling(np.vectorize(self.phi))
         count = seen.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:

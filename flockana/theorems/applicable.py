@@ -1,4 +1,4 @@
-"""Which claims of which theorems hold of a flock by its law and its start alone, before anything is integrated."""
+"""Applicability of theorems to a flock from law and start alone, before any integration."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _COSTS = {"met": "nothing", "unmet": "nothing", "assumed": "a look at the need",
 def applicable(
     law: Any, q0: Any, p0: Any = None, *, t0: float = 0.0, tolerances: Tolerances | None = None
 ) -> pd.DataFrame:
-    """Return which theorems' claims hold of a flock by its law and start, as a table with a row for each claim.
+    """Return a table of claims of theorems that apply to a flock by law and start, one row per claim.
 
     The hypotheses are those of the theorems' own checks, asked of the start alone; nothing is integrated. A claim that
     is ``"met"`` is proved under hypotheses that all hold, and `verify` finds it verified on every run from there; of
@@ -86,7 +86,7 @@ def applicable_to(flock: Any) -> pd.DataFrame:
 
 
 def start_of(law: Any, q0: Any, p0: Any, t0: float) -> Observed:
-    """Return a start as a run of one sample, which is exact."""
+    """Return a start as an exact run of one sample."""
     if isinstance(law, VelocityLaw):
         u = law.acceleration(t0, q0)
     else:
@@ -112,7 +112,7 @@ def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, .
 
 
 def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tuple[Any, ...]:
-    """Return the row of one claim: the first need that is not met decides, else its proof or disproof.
+    """Return the row of one claim: decided by the first unmet requirement, else by proof or disproof.
 
     `shown` is a hypothesis of the whole theorem that only a motion meets or misses.
     """

@@ -1,4 +1,4 @@
-"""Claims about limits that several theorems share: velocities match, the flock ends as a lattice."""
+"""Limit claims shared by several theorems: velocities match, the flock ends as a lattice."""
 
 from collections.abc import Iterable
 from math import sqrt
@@ -19,7 +19,7 @@ from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs,
 def velocities_match(
     seen: Observed, needs: Needs, *, name: str, caught: Iterable[Certificate] = (), proof: str | None = None
 ) -> Claim:
-    """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
+    """Return the claim that velocities match in the moving frame in the limit, by certificate or proof."""
     what: dict[str, Any] = {"what": "velocity mismatch K̃", "of": "K̃", "start": "K̃ at the start"}
     return decays_to_zero(seen, name, needs, caught, series=seen.mismatch.mid, stated="K̃ -> 0", proof=proof, **what)
 
@@ -30,7 +30,7 @@ def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
 
 
 def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str) -> Claim:
-    """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum."""
+    """Return the claim that the limit is an α-lattice, decided if the flock stays near a strict minimum."""
     # There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
     # link, so that a small strain verifies nothing.
     try:
@@ -54,6 +54,6 @@ def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name:
 
 
 def limit_strain(seen: Observed, end: TerminalState, caught: Basin) -> Enclosure:
-    """Return the largest |link − d|/d of the minimum beside the last state: two agents move by √2 δ apart at most."""
+    """Return the largest |link − d|/d at the minimum near the last state, with position error δ."""
     rounding = 4.0 * EPS * float(abs(seen.run.q[-1]).max())
     return Enclosure.around(end.strain, (sqrt(2.0) * caught.distance + rounding) / seen.law.alpha.d)

@@ -1,4 +1,4 @@
-"""Basin of the strict minimum beside a state of Algorithm 1 or 2: a certificate of its limit.
+"""Basin of the strict minimum near a state of Algorithm 1 or 2: a certificate of its limit.
 
 The argument is that of `flockana.theorems.basin`, in the moving frame, with U the structural potential.
 """
@@ -22,7 +22,7 @@ _PIECES = 16  # into which the lengths that a link may take are divided: each is
 def attraction(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, off: float = 0.0, p_off: float = 0.0
 ) -> basins.Basin:
-    """Return the basin of the minimum beside a state that is known to some distance."""
+    """Return the basin of the minimum near a state with a known position error."""
     # Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's,
     # and of a flock with more coordinates than a dense Hessian is made for.
     if q.shape[0] == 1:
@@ -49,14 +49,14 @@ def attraction(
 
 
 def final_basin(seen: Observed) -> basins.Basin:
-    """Return the basin beside the last state of a run, as far as that is known; kept with the run."""
+    """Return the basin near the last state of a run, with its error; cached with the run."""
     q, p, q_error, p_error = seen.end
     off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
     return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
-    """Return ‖∇U(x)‖ over all coordinates, with the rounding of its sums added."""
+    """Return ‖∇U(x)‖ over all coordinates, plus a bound of its rounding."""
     near = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
     rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (near + 1.0) + 16.0 * EPS * pull

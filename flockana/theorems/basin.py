@@ -1,4 +1,4 @@
-"""Basins of strict minima: the least energy that a flock needs to leave the minimum of U beside its state.
+"""Basins of strict minima: the least energy with which a flock can leave the nearby minimum of U.
 
 Where x' = v, v' = -∇U - D(x) v with D >= 0, the energy E = U + K never rises. Let λ be the least eigenvalue of ∇²U(x)
 off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz with constant L within the distance w of x.
@@ -38,7 +38,7 @@ _GROWTH = 10.0  # factor by which the energy of a map of steps may rise
 
 @dataclass(frozen=True)
 class Basin:
-    """Basin of the strict minimum beside a state, with the state's energy above the minimum."""
+    """Basin of the strict minimum near a state, with the state's energy above the minimum."""
 
     excess: float = inf  # Bound of the energy above the minimum; ∞ where there is none
     barrier: float = 0.0  # Energy that the flock needs at least to leave; 0 where nothing is known
@@ -48,7 +48,7 @@ class Basin:
 
     @property
     def reach(self) -> float:
-        """Bound of the distance, over all coordinates up to rigid motions, that the flock can move while trapped."""
+        """Bound of a trapped flock's distance from the state, over all coordinates up to rigid motions."""
         return self.distance + 2.0 * sqrt(self.excess / self.curvature)
 
     @property
@@ -68,7 +68,7 @@ ALONE = Basin(0.0, inf, 0.0, inf)  # of one agent, which has no relative motion
 
 
 def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
-    """Return the least eigenvalue off some rigid motions, less its rounding, and the largest; NaN and 0 if none."""
+    """Return the least eigenvalue off rigid motions, less its rounding, and the largest; NaN and 0 without any."""
     free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
     if free.shape[1] == 0:
         return nan, 0.0
@@ -78,13 +78,13 @@ def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
 
 
 def kinetic(p: FloatArray, off: float = 0.0) -> float:
-    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added."""
+    """Return an upper bound of K(v) = ½ Σ‖p_i − p_c‖² for velocities with known error."""
     rounding = sqrt(p.size) * 8.0 * EPS * float(np.abs(p).max())
     return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding + off) ** 2
 
 
 def gyration(q: FloatArray) -> float:
-    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line."""
+    """Return the least size of the motion of a unit rotation, over all coordinates; ∞ on a line."""
     x, m = moving_frame(q), q.shape[1]
     turns = []
     for a in range(m):
@@ -109,7 +109,7 @@ def barrier(
     *,
     off: float = 0.0,
 ) -> tuple[float, float]:
-    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none."""
+    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ without one."""
     # A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when
     # even with L = 0 they were no better.
     best, constant = 0.0, inf
@@ -130,7 +130,7 @@ def barrier(
 def excess(
     p: FloatArray, p_off: float, force: float, curvature: float, off: float, stiffest: float, lipschitz: float
 ) -> float:
-    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`."""
+    """Return an upper bound of the energy above the minimum, for states with errors `off` and `p_off`."""
     height = kinetic(p, p_off) + force**2 / curvature
     return height if off == 0.0 else height + force * off + 0.5 * (stiffest + lipschitz * off) * off**2
 

@@ -31,12 +31,12 @@ def _motion(seen: Observed) -> FloatArray:
 
 
 def fastest_between(seen: Observed) -> FloatArray:
-    """Return an upper bound of ‖p_i − p_c‖ over each interval between samples, of every agent, shape (T − 1,)."""
+    """Return an upper bound of ‖p_i − p_c‖ over each interval between samples, shape (T − 1,)."""
     return _motion(seen)[0]
 
 
 def mismatch_over(seen: Observed) -> Enclosure:
-    """Return the largest normalised velocity mismatch K̃ from each sample to the next, shape (T − 1,), or (1,) of one.
+    """Return the largest normalised velocity mismatch K̃ over each interval between samples, shape (T − 1,).
 
     Between samples it is bounded by its values at the control points of the velocities, as it is convex.
     """
@@ -53,7 +53,7 @@ def mismatch_over(seen: Observed) -> Enclosure:
 
 
 def stretch_between(seen: Observed) -> FloatArray:
-    """Return by how much any distance may leave the range of its two end values in each interval, shape (T − 1,)."""
+    """Return bounds of how far distances may leave the range of their end values, shape (T − 1,)."""
     if seen.is_map:
         return np.zeros(len(seen.t) - 1)
     (speed, force, off), h, min_distance = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
@@ -64,12 +64,12 @@ def stretch_between(seen: Observed) -> FloatArray:
 
 
 def radius_over(seen: Observed) -> Enclosure:
-    """Return the largest cohesion radius from each sample to the next, shape (T − 1,), or (1,) of one sample."""
+    """Return the largest cohesion radius over each interval between samples, shape (T − 1,)."""
     return _over(seen, seen.radius, lambda: seen.run.cohesion_bounds + seen.between_error)
 
 
 def spread_over(seen: Observed) -> Enclosure:
-    """Return the largest √Σ‖q_i − q_c‖² from each sample to the next, shape (T − 1,), or (1,) of one sample."""
+    """Return the largest √Σ‖q_i − q_c‖² over each interval between samples, shape (T − 1,)."""
 
     def bound() -> FloatArray:
         steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
@@ -80,7 +80,7 @@ def spread_over(seen: Observed) -> Enclosure:
 
 
 def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]) -> Enclosure:
-    """Return the larger of the values at both ends of each interval, and at most a bound of what is between them."""
+    """Return the larger end value of each interval, at most a bound of the values between."""
     if len(seen.t) == 1:
         return at_samples
     ends = stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
@@ -88,7 +88,7 @@ def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]
 
 
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
-    """Return the least distance of some pairs over the run: reached at a sample, bounded by control points between."""
+    """Return an enclosure of the least distance of given pairs over the run, also between samples."""
     at_samples = seen.distances(i, j).min()
     if seen.is_map or len(seen.t) == 1:
         return at_samples
@@ -104,7 +104,7 @@ def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
 
 
 def polygons(run: Trajectory, steps: Iterable[int] | None = None) -> Iterator[tuple[float, FloatArray, FloatArray]]:
-    """Yield the length of each step, control points of the agents' paths in it, (n, 6, 3), and each path's error."""
+    """Yield the length of each step, control points of the agents' paths, (n, 6, 3), and path errors."""
     path = run.path
     for k in range(len(path.t) - 1) if steps is None else steps:
         h = float(path.t[k + 1] - path.t[k])
@@ -119,7 +119,7 @@ def _legs(h: float, points: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Nets:
-    """Bounds on the net at samples, or throughout the intervals between them; one number for each."""
+    """Bounds on the net at samples, or throughout intervals; one number for each."""
 
     # components, components_least: Number of components at most, and at least: without and with the pairs of which it
     # is open
@@ -132,7 +132,7 @@ class Nets:
 
 
 def reach(seen: Observed) -> float:
-    """Return the distance within which two agents are linked: r of the lattice, or the range of the pair law."""
+    """Return the distance below which agents are linked: r of the lattice, or the range of the pair law."""
     return float(seen.law.alpha.range if seen.law.lattice is None else seen.law.lattice[1])
 
 
@@ -152,7 +152,7 @@ def _nets_at(seen: Observed) -> Nets:
 
 
 def nets_between(seen: Observed) -> Nets:
-    """Return the net in each interval between samples: what the motion may bring to r is left open."""
+    """Return the net in each interval between samples; pairs that may reach r are left open."""
     return seen.cached("nets between samples", lambda: _nets_between(seen))
 
 
@@ -179,19 +179,19 @@ def _nets_between(seen: Observed) -> Nets:
 
 
 def _unknown_nets(seen: Observed, count: int) -> Nets:
-    """Return nets of which nothing is known."""
+    """Return nets without known links."""
     n = seen.n
     return _nets([(n, 1, 1, n, 0, n * (n - 1) // 2)] * count)
 
 
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
-    """Return how far a distance may go beyond its end values, given relative speeds and accelerations."""
+    """Return how far a distance may exceed its end values, given relative speeds and accelerations."""
     straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
     return np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
 
 
 def _relative(run: Trajectory, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
-    """Return the largest relative speed and acceleration of some pairs over some steps."""
+    """Return the largest relative speed and acceleration of given pairs over given steps."""
     speed, force = np.zeros((2, len(pairs)))
     for h, points, _ in polygons(run, steps):
         legs = _legs(h, points[pairs[:, 1]] - points[pairs[:, 0]])

@@ -1,4 +1,4 @@
-"""The catalogue of theorems: all that the modules of this package and the sources define, by id."""
+"""Catalogue of theorems: all theorems of this package and the sources, by id."""
 
 import re
 from collections.abc import Iterator
@@ -25,17 +25,17 @@ def theorem_modules() -> Iterator[ModuleType]:
 
 
 def theorems_in(module: ModuleType) -> dict[str, Theorem]:
-    """Return the theorems that a module defines, by their names in it."""
+    """Return the theorems defined in a module, by name."""
     return {name: item for name, item in vars(module).items() if isinstance(item, Theorem)}
 
 
 def _natural(name: str) -> tuple[Any, ...]:
-    """Sort key of an id: E2 before E10, and the errata after the theorems."""
+    """Return the sort key of an id: E2 before E10, errata after theorems."""
     return (name[:1].isupper(), *(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)))
 
 
 def theorems() -> tuple[str, ...]:
-    """Ids of every theorem, correction and erratum that can be checked.
+    """Return the ids of every theorem, correction and erratum.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def theorems() -> tuple[str, ...]:
 
 
 def theorem(name: str | Theorem) -> Theorem:
-    """Return a theorem by its id or printed name: its statement, its source, the cases it is checked on.
+    """Return a theorem by its id or printed name.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def theorem(name: str | Theorem) -> Theorem:
 
 
 def _printed_as(name: str) -> Theorem:
-    """Return the theorem that its source prints under a name such as "Theorem 3"."""
+    """Return the theorem with a printed name such as "Theorem 3"."""
     pattern = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
     matches = [x for x in catalogue().values() if x.id[0].islower() and pattern.search(re.split(r";| \(", x.source)[0])]
     if len(matches) == 1:

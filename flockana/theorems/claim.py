@@ -1,4 +1,4 @@
-"""Hypotheses and claims: what a theorem says of one case, and how it is known."""
+"""Hypotheses and claims: statements of a theorem about one case, and their evidence."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -24,7 +24,7 @@ BYLINES: Mapping[str, str] = {"source": "the source's", "corrected": "corrected"
 
 @dataclass(frozen=True)
 class Hypothesis(ShortRepr):
-    """A condition of a theorem, and whether it holds in one case.
+    """Condition of a theorem, and whether it holds in one case.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Hypothesis(ShortRepr):
 
 @dataclass(frozen=True)
 class Claim(ShortRepr):
-    """One statement of a theorem about one case, with its status, margin and numerical error.
+    """Statement of a theorem about one case, with its status, margin and numerical error.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class Claim(ShortRepr):
             )
 
     def described(self, *, detail: str = "", **fields: Any) -> "Claim":
-        """Return the claim with words and numbers added to what was decided.
+        """Return the claim with added words and numbers.
 
         Parameters
         ----------
@@ -150,7 +150,7 @@ class Claim(ShortRepr):
 
     @property
     def explanation(self) -> str:
-        """Detail; for a vacuous claim with the unmet hypothesis in front."""
+        """Explanation of the claim: its detail, preceded by the unmet hypothesis if vacuous."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
         if missed is None or self.detail.startswith(does_not_hold(missed.name)):
             return self.detail
@@ -158,7 +158,7 @@ class Claim(ShortRepr):
 
     @property
     def cited(self) -> str:
-        """Results of the literature that the claim's proof cites, in words, or an empty text."""
+        """Literature cited by the claim's proof, in words, or an empty text."""
         return f" [proof cites {', '.join(self.cites)}]" if self.cites else ""
 
 
@@ -174,7 +174,7 @@ def unmet(hypotheses: Needs) -> Hypothesis | None:
 
 
 def with_alarm(claims: Iterable[Claim]) -> tuple[Claim, ...]:
-    """Return claims; where numbers contradict a proof, none that has hypotheses is decided.
+    """Return claims; if numbers contradict a proof, no claim with hypotheses stays decided.
 
     Examples
     --------
@@ -200,5 +200,5 @@ def with_alarm(claims: Iterable[Claim]) -> tuple[Claim, ...]:
 
 
 def does_not_hold(need: str) -> str:
-    """Return the sentence that a hypothesis does not hold; a name in words is quoted."""
+    """Return a sentence that a hypothesis does not hold, with names in words quoted."""
     return f"{need if re.search('[<>=≤≥]', need) else repr(need)} does not hold"

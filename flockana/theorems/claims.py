@@ -1,4 +1,4 @@
-"""Constructors of claims, one for each kind of evidence: they alone decide a status.
+"""Constructors of claims, one for each kind of evidence, which alone decide statuses.
 
 A claim about a run holds if a margin, an enclosure over time, is nowhere negative. Where its needs are met a proof
 decides instead, and the numbers stand beside it.
@@ -114,7 +114,7 @@ def _status_of(margin: Enclosure, about: About) -> Status:
 
 
 def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
-    """Return a status under hypotheses: vacuous if one is unmet; an assumed one bears facts about the run alone.
+    """Return a status under hypotheses: vacuous if one is unmet; assumed ones allow facts about the run only.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
 
 
 def counted(name: str, most: int, certain: int, possible: int, needs: Needs = (), **fields: Any) -> Claim:
-    """Return a claim that at most `most` things happen, from counts of certain and of possible ones.
+    """Return a claim that at most `most` events happen, from counts of certain and possible ones.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def counted(name: str, most: int, certain: int, possible: int, needs: Needs = ()
 
 
 def spectral(name: str, margin: float, error: float, needs: Needs = (), **fields: Any) -> Claim:
-    """Return a claim about eigenvalues, roots or integrals, whose margin is known to an error by their residual.
+    """Return a claim about eigenvalues, roots or integrals with a margin error from the residual.
 
     So are claims about stored numbers, such as a configuration (`of_state`), and about the orbit of a map in floating
     point (`of_map`), whose margins have rounding errors alone.
@@ -177,7 +177,7 @@ of_state = of_map = spectral
 
 
 def by_count(name: str, failures: int, needs: Needs = (), **fields: Any) -> Claim:
-    """Return a claim by the number of instants or cases in which it fails, where no rounding can change a sign.
+    """Return a claim by the number of failing instants or cases, where rounding cannot change a sign.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def by_count(name: str, failures: int, needs: Needs = (), **fields: Any) -> Clai
 
 
 def exact(name: str, holds: bool, **fields: Any) -> Claim:
-    """Return a claim that algebra decides, without a numerical error.
+    """Return a claim decided by algebra, without numerical error.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def exact(name: str, holds: bool, **fields: Any) -> Claim:
 
 
 def equal(name: str, residual: Any, **fields: Any) -> Claim:
-    """Return an identity that holds if the residual that sympy computed, a number or several, is 0.
+    """Return an identity claim that holds if the symbolic residual is 0.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
 
 
 def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
-    """Return a claim that says nothing of this case, for a reason or under an unmet hypothesis.
+    """Return a vacuous claim, for a reason or under an unmet hypothesis.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
 
 
 def undecided(name: str, detail: str, needs: Needs = (), **fields: Any) -> Claim:
-    """Return a claim of which nothing is known here; vacuous if a hypothesis is unmet.
+    """Return an undecided claim; vacuous if a hypothesis is unmet.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def statement_of(check: Callable[..., Any]) -> str:
 
 
 def _from_table(name: str, claims: Iterable[str], fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a theorem has from its row of ``errata.csv``, if it has one, and which claims are corrections."""
+    """Return a theorem's data from its row of ``errata.csv``, if any, and the names of corrections."""
     row, right = erratum_of(name), {"corrected"}
     fields_known: dict[str, Any] = {}
     if row is not None:
@@ -300,7 +300,7 @@ def _from_table(name: str, claims: Iterable[str], fields: Mapping[str, Any]) -> 
 
 
 def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
-    """Return a decorator that makes a theorem about runs of the function that checks it.
+    """Return a decorator that turns a checking function into a theorem about runs.
 
     Parameters
     ----------
@@ -327,7 +327,7 @@ def run_theorem(name: str, **fields: Any) -> Callable[[Check], Theorem]:
 def erratum(
     name: str, *, expected: Mapping[Status, str] = _EXPECTED, **fields: Any
 ) -> Callable[[Callable[[Tolerances], list[Claim]]], Theorem]:
-    """Return a decorator that makes an erratum of a function: a theorem checked without a user's run.
+    """Return a decorator that turns a function into an erratum, checked without a user's run.
 
     The function returns the claims, from the tolerances; its docstring is the statement.
 

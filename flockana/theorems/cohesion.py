@@ -1,4 +1,4 @@
-"""An agent that a γ-agent pulls stays near it, under every composition whose energy never rises."""
+"""Cohesion near a γ-agent: a pulled agent stays near it in every composition with nonrising energy."""
 
 import numpy as np
 
@@ -19,13 +19,13 @@ def gains_of(run: Trajectory | Observed) -> FloatArray:
 
 
 def bound(energy: Enclosure, gain: float, unit: float | None) -> Enclosure:
-    """Return how far a potential of this height lets an agent go, pulled linearly or with a bounded force."""
+    """Return the distance that a given potential energy allows an agent, with linear or bounded pull."""
     height = energy.clip(0.0) / gain
     return (2.0 * height + (0.0 if unit is None else (height / unit).square())).sqrt()
 
 
 def farthest(seen: Observed, place: FloatArray) -> Enclosure:
-    """Return the largest distance of each agent from a place, reached at a sample and bounded between, shape (n,)."""
+    """Return an enclosure of the largest distance of each agent from a point over a run, shape (n,)."""
     run = seen.run
     error = seen.shape_error + seen.centre_error[:, None]
     at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
@@ -39,7 +39,7 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
 
 
 def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound", proof: str | None = None) -> Claim:
-    """Return the claim that each agent that is pulled stays within the distance that the energy at the start allows."""
+    """Return the claim that each pulled agent stays within the distance allowed by the initial energy."""
     law, gains = seen.law, gains_of(seen)
     unit, pulled = law.term(Navigation).unit, np.flatnonzero(gains > 0.0)
     energy = seen.energy[0] - (0.0 if law.alpha is None else meeting(seen).floor)

@@ -1,4 +1,4 @@
-"""Claims about collisions: which pairs certainly meet during a run, which may, and how many the energy allows.
+"""Collision claims: pairs that certainly or possibly meet during a run, and the number allowed by energy.
 
 Between samples paths are known up to an allowance, so contact is decided on three levels: a lower bound of a distance
 that stays positive excludes it; two agents that stand to each other's left and right in turn, on a line that neither
@@ -35,7 +35,7 @@ def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
-    """Return pairs that certainly met, as they changed places on a line that both keep to, and by how much."""
+    """Return pairs that certainly met, as they swapped order on a line, with the overlap."""
     # How far they go past is known to the error of the run.
     depths: dict[Pair, float] = {}
     noise = _noise(seen, tolerances)
@@ -79,19 +79,19 @@ def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
 
 
 def _intervals(run: Trajectory, distance: FloatArray | float) -> tuple[IndexArray, IndexArray]:
-    """Return path intervals in which a pair may come within contact, and the samples around each interval."""
+    """Return path intervals in which a pair may come into contact, and the neighbouring samples."""
     lower = run.closest_approach().lower_by_interval
     of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
     return np.flatnonzero(~(lower > distance)[of_sample]), of_sample
 
 
 def _noise(seen: Observed, tolerances: Tolerances) -> float:
-    """Distance at which two agents count as coincident, the rounding of their coordinates added."""
+    """Return the distance below which two agents count as coincident, rounding included."""
     return float(tolerances.contact * seen.law.alpha.length + ROUNDING * np.abs(seen.run.q).max())
 
 
 def least_distance(seen: Observed) -> Enclosure:
-    """Return the least distance of any two agents over the run: bounded by the path, reached at a time."""
+    """Return an enclosure of the least distance of any two agents over the run, and its time."""
     closest = seen.run.closest_approach()
     if len(seen.t) == 1 or seen.doubt:
         return Enclosure(0.0, closest.distance, np.inf)
@@ -101,7 +101,7 @@ def least_distance(seen: Observed) -> Enclosure:
 
 
 def energy_at_start(seen: Observed) -> Enclosure:
-    """Return the energy of the start in the moving frame: exact but for rounding."""
+    """Return the start's energy in the moving frame, exact up to rounding."""
     run = seen.run
     energy = run.law.structural_energy(run.q[0], run.p[0])
     allowed = energy_within_accuracy(seen, 0)
@@ -109,7 +109,7 @@ def energy_at_start(seen: Observed) -> Enclosure:
 
 
 def energy_within_accuracy(seen: Observed, k: int) -> float:
-    """Return how far the energy of sample k may be off over the balls that a recording's accuracy allows; 0 for a run.
+    """Return the energy error of sample k from a recording's accuracy; 0 for a run.
 
     A pair's potential falls to d and rises beyond: it is farthest off at an end of the lengths that the pair may have,
     or at d. Other potentials are looked at on 33 lengths.
@@ -136,7 +136,7 @@ def energy_within_accuracy(seen: Observed, k: int) -> float:
 
 
 def energy_at_end(seen: Observed) -> Enclosure:
-    """Return the energy of the last state in the moving frame, as far as both runs agree on it."""
+    """Return the energy of the last state in the moving frame, enclosed by both runs."""
     best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
     rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
     allowed = energy_within_accuracy(seen, -1)
@@ -179,7 +179,7 @@ def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothes
 
 
 def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None) -> Claim:
-    """Return the claim that no two agents ever coincide: a lower bound of all distances is positive at all times."""
+    """Return the claim that no two agents ever coincide, by a positive lower bound of all distances."""
     closest, distance = seen.run.closest_approach(), least_distance(seen)
     pair, margin = closest.pair, distance - _noise(seen, tolerances)
     text = f"no two agents come nearer than {distance.lo:.4g}"
@@ -202,7 +202,7 @@ def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: 
 def distinct_pairs(
     seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, disproof: str | None = None
 ) -> Claim:
-    """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
+    """Return the printed claim that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
     c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
     fewest, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
     bites = condition("k < n(n-1)/2", fewest < pairs, float(pairs - fewest - 1))

@@ -38,7 +38,7 @@ _EXPONENT = 0.05  # how far from 2: the first amplitudes still hold a share of t
 
 
 def lattice_equilibria() -> dict[str, Linearisation]:
-    """Flocks of the catalogue, linearised: hexagonal patches, an FCC site, a hexagon held against a wall."""
+    """Return linearised flocks of the catalogue: hexagonal patches, an FCC site, a hexagon at a wall."""
     d = AlphaInteraction().d
     nets: dict[str, FloatArray] = {f"hexagon {3 * k * (k + 1) + 1}": hexagonal_patch(k, d) for k in (1, 2, 3)}
     nets["FCC site 13"] = fcc_star(d)
@@ -68,7 +68,7 @@ def row(rates: Decay) -> dict[str, Any]:
 
 
 def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
-    """The claims about the decay rate along the slowest mode, and about late rates from random starts."""
+    """Return the claims about the decay rate along the slowest mode, and late rates from random starts."""
     worst = max(decays, key=lambda each: each.difference)
     other = max(decays, key=lambda each: each.random_difference)
     error = max(each.error / each.predicted for each in decays)
@@ -92,7 +92,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
 
 
 def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
-    """The deviation's exponent: the first neglected term is quadratic about a lattice."""
+    """Return the claim about the deviation's exponent: the first neglected term is quadratic about a lattice."""
     exponents = [each.exponent for each in ranges.values()]
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
     error = max(each.exponent_error for each in ranges.values())
@@ -111,7 +111,7 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
 
 
 def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
-    """The equilibrium beside the run's last state, linearised; or None and why there is none."""
+    """Return the linearised equilibrium near the run's last state; or None with a reason."""
     law: Any = seen.law
     if type(law) not in (Algorithm1, Algorithm2, Algorithm3):  # a subclass may push otherwise
         return None, f"{type(law).__name__} has no equilibria that are sought here"

@@ -1,4 +1,4 @@
-"""The delay at which a flock loses stability."""
+"""Delay margins of flocks: the delay at which stability is lost."""
 
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
@@ -19,7 +19,7 @@ _AROUND = 0.02  # of the margin: how far to either side stability is looked at
 
 
 def _pair(law: Algorithm1) -> Claim:
-    """Two agents on a line have one mode beside uniform motion: the sweep must find the closed form's delay."""
+    """Return the claim that the sweep finds the closed-form delay of two agents on a line."""
     system = delay_system(law, find_equilibrium(law, [[0.0], [law.alpha.length]]).q, delayed="all")
     stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
     swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
@@ -33,7 +33,7 @@ def _pair(law: Algorithm1) -> Claim:
 
 
 def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
-    """A delay margin by a sweep over frequency, and to either side of it roots by discretising the delayed state."""
+    """Return the claim on a delay margin from a frequency sweep, checked by roots on either side."""
     kind, q = type(law).__name__[-1], find_equilibrium(law, hexagonal_patch(1, law.alpha.length)).q
     system = delay_system(law, q, delayed=delayed)
     critical = delay_margin(system)
@@ -50,7 +50,7 @@ def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
 
 
 def _rightmost(system: DelaySystem, delay: float) -> tuple[float, float]:
-    """The largest real part of a characteristic root, and its error."""
+    """Return the largest real part of a characteristic root, and its error."""
     root = complex(rightmost_roots(system, delay, count=2)[0])
     return root.real, root_error(system, root, delay)
 

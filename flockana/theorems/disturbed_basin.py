@@ -41,7 +41,7 @@ def _law(seen: Observed) -> Hypothesis:
 
 
 def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
-    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise."""
+    """Return a bound of √Σ‖d_i − mean‖² at all times, for a disturbance d without noise."""
     parts = [(part,) for part in (law.force, law.swing) if part is not None]  # each at the times when it is largest
     parts += [] if law.table is None else [law.table]  # linear between its rows
     sizes = (max(np.linalg.norm(moving_frame(np.broadcast_to(row, shape))) for row in part) for part in parts)

@@ -1,4 +1,4 @@
-"""Interval arithmetic on observables: each number between two ends, with the best value in between."""
+"""Interval arithmetic on observables: two ends of each number, with a best value between."""
 
 from __future__ import annotations
 
@@ -42,19 +42,19 @@ class Enclosure:
 
     @classmethod
     def of(cls, x: Real) -> Enclosure:
-        """Return x itself, or the enclosure of exact numbers."""
+        """Return an enclosure unchanged, or the enclosure of exact numbers."""
         return x if isinstance(x, Enclosure) else cls(x, x, x)
 
     @classmethod
     def around(cls, value: Real, half_width: Real = 0.0) -> Enclosure:
-        """Return the enclosure of half a width around a value; a half width of ∞ or NaN encloses everything."""
+        """Return the enclosure of a half width around a value; ∞ or NaN as half width encloses everything."""
         value, half = np.asarray(value, dtype=np.float64), np.asarray(half_width, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             return _outward(value - half, value, value + half, exact=half == 0.0)
 
     @classmethod
     def between(cls, lo: Real, hi: Real) -> Enclosure:
-        """Return the enclosure of two ends, with the nearer finite end or the middle as best value."""
+        """Return the enclosure with given ends, with the middle or a finite end as best value."""
         lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             middle = np.where(np.isinf(lo), hi, np.where(np.isinf(hi), lo, 0.5 * lo + 0.5 * hi))
@@ -74,7 +74,7 @@ class Enclosure:
 
     @property
     def worst(self) -> Enclosure:
-        """The entry that decides whether none is negative, as a scalar enclosure; 1 of an empty array."""
+        """Entry that decides nonnegativity, as a scalar enclosure; 1 for an empty array."""
         if not self.mid.size:
             return Enclosure.of(1.0)
         k = self.worst_index
@@ -82,7 +82,7 @@ class Enclosure:
 
     @property
     def worst_index(self) -> int:
-        """Flat index of the most certainly negative entry, else of the one nearest to being so."""
+        """Flat index of the most certainly negative entry, else of the nearest to being negative."""
         return int(np.argmin(self.hi if (self.hi < 0.0).any() else self.lo))
 
     def __getitem__(self, index: Any) -> Enclosure:
@@ -140,7 +140,7 @@ class Enclosure:
         return size * size
 
     def sqrt(self) -> Enclosure:
-        """Return √x, of the part of the enclosure that is not negative."""
+        """Return √x of the nonnegative part of the enclosure."""
         return self.clip(0.0).rising(np.sqrt, ulps=1).clip(0.0)
 
     def exp(self) -> Enclosure:
@@ -148,21 +148,21 @@ class Enclosure:
         return self.rising(np.exp).clip(0.0)
 
     def log(self) -> Enclosure:
-        """Return ln x, of the part of the enclosure that is not negative; -∞ where it holds 0."""
+        """Return ln x of the nonnegative part of the enclosure; -∞ if it contains 0."""
         return self.clip(0.0).rising(np.log)
 
     def rising(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
-        """Return a non-decreasing function of the enclosure, its ends rounded outwards by some ulp."""
+        """Return a nondecreasing function of the enclosure, with ends rounded outwards."""
         with np.errstate(all="ignore"):
             lo, mid, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
         return _outward(lo, mid, hi, ulps=ulps)
 
     def falling(self, function: Callable[[FloatArray], Any]) -> Enclosure:
-        """Return a non-increasing function, as `rising`."""
+        """Return a nonincreasing function of the enclosure, with ends rounded outwards."""
         return -self.rising(lambda x: -np.asarray(function(x), dtype=np.float64))
 
     def clip(self, least: float) -> Enclosure:
-        """Return max(x, least)."""
+        """Return max(x, least) of the enclosure."""
         return Enclosure(*(np.maximum(end, least) for end in (self.lo, self.mid, self.hi)))
 
     def widened(self, by: Real) -> Enclosure:
@@ -194,7 +194,7 @@ class Enclosure:
             return total.widened(terms * np.finfo(float).eps * sizes)
 
     def largest_so_far(self) -> Enclosure:
-        """Return the largest entry up to each, along the first axis."""
+        """Return the running maximum along the first axis."""
         return Enclosure(*(np.maximum.accumulate(end, axis=0) for end in (self.lo, self.mid, self.hi)))
 
 
@@ -212,7 +212,7 @@ def _product(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _outward(lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True) -> Enclosure:
-    """Return computed ends moved outwards by their rounding; exact ends stay."""
+    """Return computed ends moved outwards by their rounding; exact ends are kept."""
     lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
     down, up = lo, hi
     for _ in range(ulps):

@@ -1,4 +1,4 @@
-"""The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
+"""Energy identities of Algorithms 1 to 3, the basis of the theorems, checked along a run."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -44,7 +44,7 @@ def balance(
 
 
 def cancelling(run: Trajectory) -> FloatArray:
-    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample."""
+    """Return the magnitude of the terms of dH/dt that are differences and may cancel, at each sample."""
     # They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
     # of a γ-agent that moves, or whose acceleration is fed forward. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag,
     # are sums of squares.
@@ -62,7 +62,7 @@ def cancelling(run: Trajectory) -> FloatArray:
 
 
 def _damps_only(run: Trajectory) -> bool:
-    """Whether dH/dt is a sum of squares outside of walls, spheres and capsules, the γ-agent being at rest or absent."""
+    """Return whether dH/dt is a sum of squares outside of obstacles, with a resting or absent γ-agent."""
     # ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
     target, is_known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
     return is_known and (
@@ -77,7 +77,7 @@ def falling_share(
     *,
     one_sign: bool = False,
 ) -> Enclosure:
-    """Return −rate over the magnitude of its terms, from 1 (all of them fall) to −1, at each sample.
+    """Return −rate over the magnitude of its terms, from 1 (all terms fall) to −1, at each sample.
 
     Terms that have one sign in exact arithmetic cancel in their computation alone, whatever the error of the state.
     """
@@ -105,7 +105,7 @@ def never_rises(
     name: str = "rate",
     proof: str | None = None,
 ) -> Claim:
-    """Return the claim that dH/dt ≤ 0 from `since` on, by its fall over its terms' magnitude at the samples."""
+    """Return the claim that dH/dt ≤ 0 from `since` on, by its size relative to its terms at the samples."""
     # Samples refute it; a proof, or a formula of one sign, verifies it: nothing bounds what lies between. A sum
     # of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every
     # state. Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
@@ -136,7 +136,7 @@ def never_rises(
 
 
 def stays_outside(run: Observed) -> Hypothesis:
-    """The hypothesis that no agent enters an obstacle: inside a sphere ⟨p_i, p̂_ik − p_i⟩ may be positive."""
+    """Return the hypothesis that no agent enters an obstacle, where the obstacle term may add energy."""
     name, room = "no agent enters an obstacle", run.run.clearance()
     if not run.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
@@ -151,7 +151,7 @@ def stays_outside(run: Observed) -> Hypothesis:
 
 
 def smooth_where_needed(run: Observed) -> list[Hypothesis]:
-    """The hypothesis that the pair law is C¹, unless it is proved."""
+    """Return the hypothesis that the pair law is C¹; empty if proved."""
     return [need for need in [smooth_pair(run)] if need.status != "met"]
 
 
@@ -173,17 +173,17 @@ def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
 
 
 def declared(run: Observed) -> list[Hypothesis]:
-    """Return the hypotheses of the balance: in the given frame, the γ-agent's declared velocity is its true one."""
+    """Return the hypotheses of the balance: the γ-agent's declared velocity is true in the given frame."""
     return [declared_rate_is_true(run.run)] if run.law.target is not None and not run.law.moving else []
 
 
 def is_own(law: Any) -> bool:
-    """Return whether a law is a sum of terms other than Algorithms 1 to 3 and compositions of their terms."""
+    """Return whether a law is a user's sum of terms, other than Algorithms 1 to 3 and compositions."""
     return isinstance(law, SumOfTerms) and not isinstance(law, Algorithm1 | Algorithm2 | Algorithm3 | Composition)
 
 
 def _law(seen: Observed) -> Hypothesis:
-    """The hypothesis that the law is a sum of terms that give their energy and its rate."""
+    """Return the hypothesis that the law is a sum of terms with known energy and rate."""
     if not is_own(seen.law):
         return law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3, composed=True)(seen)
     terms = ", ".join(type(term).__name__ for term in seen.law.terms)

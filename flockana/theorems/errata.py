@@ -1,4 +1,4 @@
-"""Errata of the sources: what each prints and what is right, with the status of both."""
+"""Errata of the sources: printed and correct statement, with the status of both."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ _MARKS = {"verified": "✓", "refuted": "✗", "": "·"}
 
 @dataclass(frozen=True)
 class Erratum:
-    """A statement that a source prints, and the right one.
+    """Printed statement of a source, and the correct one.
 
     Examples
     --------
@@ -57,7 +57,7 @@ class Erratum:
 
     @property
     def right_mark(self) -> str:
-        """Mark of the right statement: ✗ if false, ✓ if true, · if only read."""
+        """Mark of the correct statement: ✗ if false, ✓ if true, · if only read."""
         return _MARKS[self.right_claim[1]]
 
     def __str__(self) -> str:
@@ -80,7 +80,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def _read_table(path: Path) -> Iterator[Erratum]:
-    """Yield the errata of a source's table: ``# references``, the names of the columns, then an erratum a line."""
+    """Yield the errata of a source's table: ``# references``, column names, then one erratum per line."""
     references, _, *lines = path.read_text(encoding="utf-8").splitlines()
     for line in lines:
         cells = [cell.strip() for cell in line.split("|")]
@@ -104,12 +104,12 @@ def _claim(text: str) -> tuple[str, str]:
 
 
 def erratum_of(theorem: str) -> Erratum | None:
-    """Return the erratum that a theorem checks, if it checks one."""
+    """Return the erratum checked by a theorem; None without one."""
     return next((item for item in errata() if item.id == theorem), None)
 
 
 def printed(theorem: str) -> str:
-    """Return what a source prints, which is the title of the theorem that checks it."""
+    """Return the printed statement of a source, the title of its theorem."""
     if (item := erratum_of(theorem)) is None:
         raise UnknownNameError("erratum", theorem, [item.id for item in errata()])
     return f"{item.printed[:1].upper()}{item.printed[1:]} (as printed)"

@@ -1,4 +1,4 @@
-"""Evidence: what theorems are judged on, and the few things that each kind of it offers."""
+"""Evidence for judging theorems, and the common interface of its kinds."""
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
@@ -12,25 +12,25 @@ from flockana.theorems.verdicts import Verdicts
 
 
 class Evidence(ABC):
-    """A run, a map's run, a recording, a tube, a state, or nothing at all, as theorems are judged on it."""
+    """Evidence for a theorem: a run, a map's run, a recording, a tube, a state, or nothing."""
 
     law: Any = None  # None if no law is known
     until: float | None = None  # up to when it shows motion, None where it shows none
 
     @abstractmethod
     def examine(self, item: Theorem, tolerances: Tolerances) -> Known:
-        """Return hypotheses and claims of a theorem, from enclosures of observables; raise if it is no case of it."""
+        """Return hypotheses and claims of a theorem, from enclosures of observables; raise on an unsuitable case."""
 
     def describe(self, subject: str) -> str:
-        """Return what a verdict says it was checked on."""
+        """Return a description of the evidence for the verdict."""
         return subject
 
     def theorem_ids(self) -> tuple[str, ...]:
-        """Return the ids of theorems that are judged where none is named."""
+        """Return the ids of theorems judged by default."""
         return ()
 
     def known_until(self) -> int | None:
-        """Return the last step at which the orbit of a map is known; None of other evidence."""
+        """Return the last step with a known orbit of a map; None for other evidence."""
         return None
 
     def judge(self, item: Theorem, tolerances: Tolerances, subject: str = "") -> Verdict:
@@ -49,14 +49,14 @@ class Evidence(ABC):
 
 
 class NoCase(Evidence):
-    """The evidence of theorems that are decided by themselves."""
+    """Empty evidence, for theorems decided without a case."""
 
     def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
         return item.examine(tolerances)
 
 
 class State(Evidence):
-    """Positions, with the scale and the range of their net."""
+    """Positions, with scale and range of their net."""
 
     def __init__(self, q: Any, d: Any, r: Any) -> None:
         self.q: FloatArray = ensure_points("q", q)
@@ -67,6 +67,6 @@ class State(Evidence):
 
 
 class NotEvidence:
-    """Base of what users take for evidence: `advice` is the message that `verify` refuses it with."""
+    """Base class of objects mistaken for evidence: `advice` is the error message of `verify`."""
 
     advice: ClassVar[str]

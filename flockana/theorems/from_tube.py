@@ -1,4 +1,4 @@
-"""Claims decided by a tube (`flockana.enclose`): of rigour interval, for every start that it encloses.
+"""Claims decided by a tube (`flockana.enclose`): rigorous for every enclosed start.
 
 A margin is a ball. Where it lies on one side of 0, it decides; where it does not, it is too wide, and the claim is
 inconclusive. A limit is claimed from the certified basin that the tube ends in.
@@ -28,7 +28,7 @@ Pair = tuple[int, int]
 
 @dataclass(frozen=True)
 class TubeAndBasin:
-    """A tube, and the basin that it ends in, if it certainly ends in one."""
+    """Tube with the basin at its certain end, if any."""
 
     tube: Tube  # The tube
     basin: BasinLike | None  # A certified basin that holds all of its end; None if none is known to
@@ -36,7 +36,7 @@ class TubeAndBasin:
 
     @classmethod
     def of(cls, tube: Tube, basin: BasinLike | None) -> TubeAndBasin:
-        """A tube with the basin that it may end in."""
+        """Return a tube with the basin at its end, if any."""
         if basin is None:
             return cls(tube, None, "no certified basin was given")
         if tube.status != "complete":
@@ -47,7 +47,7 @@ class TubeAndBasin:
 
     @property
     def until(self) -> str:
-        """Time for which the tube's claims hold, in words."""
+        """Time of validity of the tube's claims, in words."""
         tube = self.tube
         note = f"; {tube.message}" if tube.message and tube.message not in self.doubt else ""
         if self.basin is not None:
@@ -56,7 +56,7 @@ class TubeAndBasin:
 
 
 def enclosed_by(name: str, module: str) -> Callable[..., Checked]:
-    """Return a function of a module that decides a theorem from a tube, imported at its first call."""
+    """Return a deciding function for tubes from a module, imported at its first call."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
         decide = getattr(import_module(module), name)
@@ -73,7 +73,7 @@ def ends(ball: arb) -> Enclosure:
 
 
 def decided(name: str, margin: arb, needs: Needs = (), *, detail: str = "", **fields: Any) -> Claim:
-    """Return a claim that holds if its margin is certainly not negative, and fails if it is certainly negative."""
+    """Return a claim that holds for a certainly nonnegative margin, and fails for a certainly negative one."""
     room = ends(margin)
     if room.lo < 0.0 <= room.hi:
         wide = f"the enclosure alone is too wide to tell: the margin is between {room.lo:.3g} and {room.hi:.3g}"
@@ -82,13 +82,13 @@ def decided(name: str, margin: arb, needs: Needs = (), *, detail: str = "", **fi
 
 
 def below(name: str, energy: arb, bound: arb) -> Hypothesis:
-    """Return the hypothesis that an energy lies below a bound: assumed where balls leave it open."""
+    """Return the hypothesis that an energy lies below a bound, assumed if balls leave it open."""
     text = f"H(0) is in [{float(energy.lower()):.6g}, {float(energy.upper()):.6g}], the bound is {float(bound):.6g}"
     return positive_room(name, ends(bound - energy), text)
 
 
 def met(tube: Tube) -> dict[Pair, float]:
-    """Return pairs that certainly meet, as they change places on a line, with the latest time at which they do."""
+    """Return pairs that certainly meet, as they swap order on a line, with the latest meeting times."""
     times: dict[Pair, float] = {}
     if tube.m > 1:
         return times
@@ -103,7 +103,7 @@ def met(tube: Tube) -> dict[Pair, float]:
 
 
 def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | None = None) -> Claim:
-    """The claim that no two agents ever coincide: all distances are certainly positive, or a pair certainly meets."""
+    """Return the claim that no two agents ever coincide: certain by positive distances, refuted by a meeting."""
     from flint import arb
 
     tube = case.tube
@@ -129,7 +129,7 @@ def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | No
 
 
 def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *, name: str, **fields: Any) -> Claim:
-    """Return a claim about the limit of every start: by a margin of the basin that the tube ends in, if it has one."""
+    """Return a limit claim for every start of a tube, by a margin of the basin at its end."""
     if case.basin is None:
         return limit_claim(name, needs, [Certificate(-1.0, case.doubt)], rigour="interval", **fields)
     room = Enclosure.of(1.0) if margin is None else ends(margin)
@@ -144,14 +144,14 @@ def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *,
 
 
 def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: str, proof: str | None = None) -> Claim:
-    """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
+    """Return the claim that every start of the tube converges to the basin's orbit, or by a proof."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""
     return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught, proof=proof)
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:
-    """(pairs that are certainly in range, pairs that may be)."""
+    """Return (pairs certainly in range, pairs possibly in range)."""
     return (
         [pair for pair, distance in distances.items() if distance < reach],
         [pair for pair, distance in distances.items() if not distance >= reach],
@@ -159,13 +159,13 @@ def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair]
 
 
 def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
-    """Sizes of the connected components of n agents, largest first."""
+    """Return the sizes of the connected components of n agents, largest first."""
     label = components(n, np.array(pairs, dtype=np.int32).reshape(-1, 2))
     return sorted(np.bincount(label).tolist(), reverse=True)
 
 
 def rest_strain(basin: BasinLike, alpha: Any) -> arb:
-    """Largest |link − d|/d of a basin's equilibrium, a ball at the present precision; 1 without links."""
+    """Return the largest |link − d|/d of a basin's equilibrium, as a ball; 1 without links."""
     from flint import arb
 
     from flockana.certified.balls import exact

@@ -1,4 +1,4 @@
-"""Checks of the γ-agent during a run: whether it rests, and moves as it declares.
+"""Checks of the γ-agent during a run: rest, and agreement with its declared motion.
 
 A target that has a closed form says what it is (`flockana.environment.target`). Of any other one the difference of its
 positions over each interval between samples is compared with the integral of what it declares, each half of the
@@ -23,7 +23,7 @@ _MOST_TIMES = 100_000
 
 
 def _is_closed(target: Target) -> bool:
-    """Return whether the path is a known sum of a line and a swing, which rests always or never."""
+    """Return whether the path is a known sum of a line and an oscillation."""
     return target.consistent is not None and target.harmonic is not None
 
 
@@ -39,7 +39,7 @@ def _sample_times(run: Trajectory) -> FloatArray:
 
 
 def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
-    """Return whether nothing can hide between times: of a closed form, or by how slowly its user says it changes."""
+    """Return whether nothing can hide between sample times, by closed form or by the declared time scale."""
     target = run.law.target
     slow = target.feature is not None and len(times) > 1
     return _is_closed(target) or bool(slow and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE)
@@ -53,7 +53,7 @@ def _between(t: FloatArray) -> FloatArray:
 
 
 def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
-    """Return the hypothesis that the γ-agent rests in the whole run, with p_r = 0, or with `any_p_r` a constant p_r."""
+    """Return the hypothesis that the γ-agent rests in the whole run, with p_r = 0 (or constant with `any_p_r`)."""
     target, at = run.law.target, _sample_times(run)
     times = np.concatenate([at, _between(at).ravel()])
     states = [target.state(float(time)) for time in times]
@@ -84,7 +84,7 @@ def _describe_rest(moves: bool, any_p_r: bool, p_r: FloatArray) -> str:
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> tuple[float, float]:
-    """Return the largest difference of a declared velocity from that of the γ-agent's positions, and its error."""
+    """Return the largest difference of a declared velocity from the γ-agent's motion, and its error."""
     target, t = run.law.target, _sample_times(run)
     h = np.diff(t)
     if h.size == 0:
@@ -107,7 +107,7 @@ def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatAr
 
 
 def consistent(run: Trajectory) -> Hypothesis:
-    """Return the hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it reports."""
+    """Return the hypothesis dq_r/dt = p_r: the γ-agent's reported velocity is true."""
     name, fact = "dq_r/dt = p_r", run.law.target.consistent
     agreement = _agrees(run, name, "p_r", lambda t: run.law.target.state(t)[1])
     if fact is None or (fact is False and agreement.status == "unmet"):

@@ -1,4 +1,4 @@
-"""The status of a verdict with counts, in one line, and its numbers as plain data."""
+"""One-line verdict status with counts, and its numbers as plain data."""
 
 import math
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ def headline(
 
 
 def _counts(status: Status, claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
-    """The count of the deciding status out of all, then the others."""
+    """Return the count of the deciding status out of all, then the other counts."""
     if not claims:
         return "no claim"
     order = dict.fromkeys((status, "refuted", "inconclusive", "verified", "vacuous"))
@@ -40,7 +40,7 @@ def _reason(claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> st
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
-    """Return claims with their names; adjacent ones that are vacuous for the same reason are merged."""
+    """Return claims with their names; adjacent vacuous ones with equal reasons are merged."""
 
     def reason(claim: Claim) -> tuple[str, str]:
         silent = claim.status == "vacuous" and claim.computed is None
@@ -51,19 +51,19 @@ def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
 
 
 def _listed(claims: Iterable[Claim]) -> str:
-    """Each claim in short with its status; vacuous ones only where all are."""
+    """Return each claim in short with its status; vacuous claims only if all are."""
     claims_given = tuple(claims)
     counted = [claim for claim in claims_given if claim.status != "vacuous"] or list(claims_given[:1])
     return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted))
 
 
 def _short(claim: Claim) -> str:
-    """Return a claim's statement where that is short, else its name."""
+    """Return a claim's statement if short, else its name."""
     return claim.stated if isinstance(claim.stated, str) and len(claim.stated) <= _SHORT else claim.name
 
 
 def overall(statuses: Iterable[Status]) -> Status:
-    """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
+    """Return a theorem's status from its claims: refuted, inconclusive, verified or vacuous, in this order.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def overall(statuses: Iterable[Status]) -> Status:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON has it; infinities, NaN and what it does not know become text."""
+    """Return a value as JSON data; infinities, NaN and unknown objects become text."""
     import numpy as np
 
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""Hypotheses that several theorems share: on laws, gains, pair laws and inequalities."""
+"""Hypotheses shared by several theorems: on laws, gains, pair laws and inequalities."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def condition(
 def law_is(
     name: str, *laws: type, formulas: bool = False, composed: bool = False, one_gain: bool = False
 ) -> Callable[[Observed], Hypothesis]:
-    """Return the hypothesis that a run is of one of these laws; a theorem's `law`.
+    """Return the hypothesis that a run's law is of given kinds; a theorem's `law`.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def hypothesis_from_fact(name: str, fact: Fact) -> Hypothesis:
 
 
 def smooth_pair(run: Observed) -> Hypothesis:
-    """Return the hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
+    """Return the hypothesis that the pair law is C¹ off coincidence, and smooth at its range.
 
     A force without a limit where two agents meet is no fault here: runs that come to that point end.
 
@@ -151,7 +151,7 @@ def weight_nonnegative(run: Observed) -> Hypothesis:
 
 
 def _fact_of(function: DistanceFunction | None, name: str, whose: str) -> Fact:
-    """Return a fact about a function of the distance that a law reads; assumed if the law does not say which."""
+    """Return a fact about a function of the law; assumed if the law does not declare one."""
     fact: Fact = Fact("assumed", f"{whose} is not known") if function is None else getattr(function.facts, name)
     return fact
 
@@ -211,7 +211,7 @@ def alpha_gain(run: Observed) -> list[Hypothesis]:
 
 
 def positive_room(name: str, room: Enclosure, detail: str, *, remedy: str = "") -> Hypothesis:
-    """Return the hypothesis that a number is positive: assumed where its enclosure holds 0.
+    """Return the hypothesis that a number is positive, assumed if its enclosure contains 0.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Certificates of limits, and claims that rest on the best of several.
+"""Certificates of limits, and claims by the best of several certificates.
 
 A claim about t → ∞ is verified by a certificate alone: a state in the basin of a strict minimum
 (`flockana.theorems.basin`), an exact solution, or a proof. It is refuted by an escape: something that is certain at all
@@ -37,13 +37,13 @@ class Certificate:
 
 
 def best_of(certificates: Iterable[Certificate]) -> Certificate:
-    """Return the certificate with the largest margin; an undecided one if there is none."""
+    """Return the certificate with the largest margin; an undecided one without any."""
     certificates_given = [each for each in certificates if not isnan(each.margin)]
     return max(certificates_given, key=lambda each: each.margin - each.error, default=Certificate(-1.0, ""))
 
 
 def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
-    """Return in words by how much an amplitude has fallen from its largest value to the last eighth of a run."""
+    """Return in words the decay of an amplitude from its maximum to the last eighth of a run."""
     times, values = np.asarray(t, dtype=np.float64), np.maximum(np.asarray(amplitude, dtype=np.float64), _LEAST)
     late = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
     factor = float(values.max() / late)
@@ -88,7 +88,7 @@ def decays_to_zero(
     start: str = "",
     **fields: Any,
 ) -> Claim:
-    """Return the claim that a series of a run tends to 0: `of` is its symbol, `start` the name of its first value."""
+    """Return the claim that a series of a run tends to 0, with symbol `of` and name `start` of its first value."""
     t = seen.t
     text = evidence(t, series, of) if of else ""
     return limit_claim(name, needs, certificates, evidence=text, **fields).described(
@@ -99,7 +99,7 @@ def decays_to_zero(
 
 
 def without_assumed(needs: Needs, make: Callable[[list[Hypothesis]], Claim]) -> Claim:
-    """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
+    """Return a claim under met hypotheses alone if certified so, else under all hypotheses.
 
     A certificate of the limit itself does not rest on what is only assumed; a refutation would.
     """

@@ -1,4 +1,4 @@
-"""Runs of maps: their consistency with the map, checked at some samples, and how far their orbits are known.
+"""Runs of maps: consistency with the map at some samples, and the known length of their orbits.
 
 Where a scheme steps a law that is known in balls, its exact orbit is enclosed (`flockana.certified.orbits`), and judged
 instead of the run's own numbers. Elsewhere two orbits from starts nudged to both sides are an estimate of its error:
@@ -26,14 +26,14 @@ _SPREAD = 12  # intervals that are made again
 
 
 def ensure_steps_of_map(run: Trajectory) -> None:
-    """Raise unless the map leads from sample to sample, by some intervals from the first to the last."""
+    """Raise unless the map reproduces selected sample intervals, from the first to the last."""
     steps = np.maximum(np.rint(np.diff(run.t) / run.law.dt), 1.0).astype(np.int64).tolist()
     for k in sorted({int(k) for k in np.linspace(0, len(steps) - 1, min(_SPREAD, len(steps)))}):
         _ensure_next_step(run, k, steps[k])
 
 
 def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
-    """Raise unless the map leads from sample k to the next, beyond what rounding may grow to over several steps."""
+    """Raise unless the map leads from sample k to the next, within rounding grown over several steps."""
     for name, off, difference in _differences(run, k, steps):
         if not (off <= SAME or (steps > 1 and off <= SAME + SLACK * _growth(run, k, steps, name))):
             raise ArgumentError(
@@ -43,7 +43,7 @@ def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
 
 
 def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, float, float]]:
-    """Return (name, relative error, error) of each series at the sample after sample k."""
+    """Yield (name, relative error, error) of each series at the sample after sample k."""
     scales = run.scales
     floors = {"q": scales.length, "p": scales.speed, "u": scales.force}
     for name, values in _recompute(run, k, steps, 0.0).items():
@@ -62,7 +62,7 @@ def _growth(run: Trajectory, k: int, steps: int, name: str) -> float:
 
 
 def paired_orbit(run: Trajectory) -> Pair:
-    """Return a map's run with its errors: of its orbit in balls, or of orbits from nudged starts until they part."""
+    """Return a map's run with errors, from its orbit in balls or from perturbed starts."""
     from flockana.certified.orbits import enclose_orbit, has_ball_orbit
 
     if doubt := doubt_about(run):
@@ -84,7 +84,7 @@ def paired_orbit(run: Trajectory) -> Pair:
 
 
 def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
-    """Return a map's run with the orbits of two starts beside its own; after they part nothing is known."""
+    """Return a map's run with two orbits from perturbed starts; unknown after they part."""
     begins = all(np.array_equal(memory[name], run.extra[name][0]) for name in memory)
     rng, scales, orbits = np.random.default_rng(0), run.scales, []
     signs = [rng.choice([-1.0, 1.0], size=run.q[0].shape) for _ in range(2)]
@@ -107,7 +107,7 @@ def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
 
 
 def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, memory: Any, wanted: Any) -> Any:
-    """Return states after some steps, in as many blocks as the law makes at once."""
+    """Return states after some steps, in blocks of the law's size."""
     blocks: list[Any] = []
     for first in range(0, len(times), law.steps_at_once):
         rows = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
@@ -122,7 +122,7 @@ def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, 
 
 
 def _known_errors(t: FloatArray, q: FloatArray, p: FloatArray, length: float = 1.0, speed: float = 1.0) -> Errors:
-    """Return half widths from those of each agent, infinite from the first sample on at which one has parted."""
+    """Return half widths over the run, infinite from the first separation of the orbits on."""
     together = ((q <= _PARTED * length) & (p <= _PARTED * speed)).all(axis=1)
     unknown = ~np.logical_and.accumulate(together)
     q, p = (np.where(unknown[:, None], np.inf, x) for x in (q, p))

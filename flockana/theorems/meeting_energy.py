@@ -1,4 +1,4 @@
-"""Energy needed for two agents to meet: c1α ψ_α(0) under the paper's pair law, whose potential is never negative."""
+"""Energy needed for two agents to meet: c1α ψ_α(0) for Olfati-Saber's pair law."""
 
 from typing import NamedTuple
 
@@ -28,7 +28,7 @@ def meeting(run: Trajectory | Observed) -> PairEnergies:
 
 
 def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return bounds of the least potential and of the potential at contact; if unproved, values at two distances."""
+    """Return bounds of the least potential and of the potential at contact; values if unproved."""
     lowest, contact = pair.facts.least, pair.facts.contact
     if np.isfinite(lowest[0]) and contact[0] > -np.inf:
         return lowest, contact
@@ -46,7 +46,7 @@ def above_least(run: Trajectory | Observed, energy: Enclosure) -> Enclosure:
 
 
 def least_is_known(run: Trajectory | Observed) -> list[Hypothesis]:
-    """Return the hypothesis that no pair potential is below the least one seen; empty where a bound is proved."""
+    """Return the hypothesis that no pair potential is below the least known value; empty if proved."""
     facts = run.law.alpha.facts
     if np.isfinite(facts.least[0]) and facts.contact[0] > -np.inf:
         return []

@@ -1,4 +1,4 @@
-"""Roots of nets: agents that are heard by all, directly or through others."""
+"""Roots of nets: agents heard by all others, directly or through others."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ _SHOWN = 4  # agents of a group
 
 
 def unheard_groups(weights: Any) -> list[list[int]]:
-    """Return the groups of agents that hear nobody outside, weights_ij > 0 where i hears j; a root is alone in one.
+    """Return the groups of agents that hear nobody outside (weights_ij > 0: i hears j); a root is a group of one.
 
     A net has a root exactly if there is one group, and is strongly connected exactly if that is all agents.
     """
@@ -22,7 +22,7 @@ def unheard_groups(weights: Any) -> list[list[int]]:
 
 
 def describe_groups(groups: list[list[int]]) -> str:
-    """Return in words which agent is a root, or which groups hear nobody outside."""
+    """Return in words the root of a net, or the groups that hear nobody outside."""
     if len(groups) == 1:
         return f"root {groups[0][0]}"
     listed = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])

@@ -1,4 +1,4 @@
-"""Run with its numerical error: enclosures of observables, from the run and a second one.
+"""Run with its numerical error: enclosures of observables, from the run and a second run.
 
 The second run starts alike and is a hundred times tighter, or looser where that cannot be. By how much the two differ,
 doubled, encloses the state: each agent seen from the centre of mass, and the centre apart, at worst within one time
@@ -49,7 +49,7 @@ class End(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observed(ResultCache):
-    """Run paired with a second one from the same start, with enclosures of the observables of both."""
+    """Run paired with a second run from the same start, with enclosures of observables."""
 
     given: Trajectory  # The run that is judged
     run: Trajectory  # The tighter of the two, at the same samples: best values are its own
@@ -61,19 +61,19 @@ class Observed(ResultCache):
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
-        """Return a run as observed, with its second run; kept with the run."""
+        """Return a run with its second run; cached with the run."""
         of_kind = paired_orbit if run.law.is_map else paired
         return run.cached("observed", lambda: cls(run, *of_kind(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
-        """Return a run as exact up to rounding, for comparisons of claims between two runs."""
+        """Return a run taken as exact up to rounding, for comparing claims of two runs."""
         zeros = np.zeros((len(run.t), run.n))
         return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_about(run))
 
     @property
     def law(self) -> Any:
-        """The law."""
+        """Law of the run."""
         return self.run.law
 
     @property
@@ -103,7 +103,7 @@ class Observed(ResultCache):
 
     @property
     def floors(self) -> ErrorFloors:
-        """Least errors of the looser run: of position, speed and work."""
+        """Least errors of the less accurate run: position, speed and work."""
         return self.other.floors
 
     # half widths ---------------------------------------------------------------------------------------------------
@@ -132,25 +132,25 @@ class Observed(ResultCache):
         return not self.doubt and bool(self.t[0] == self.errors.t[0])
 
     def window(self, start: float, end: float) -> Observed:
-        """Return the part of the run within some times, with what is known of its error there."""
+        """Return the part of the run within given times, with its errors."""
         given_run, run, other = (each.window(start, end) for each in (self.given, self.run, self.other))
         return replace(self, given=given_run, run=run, other=other)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return the largest half width from one law time before each interval to one after; of a map, within it."""
+        """Return the largest half width within one law time of each interval; for a map, within the interval."""
         unit, times = 0.0 if self.is_map else self.run.scales.time, self.errors.t
         first = np.searchsorted(times, start - unit)
         return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
 
     @cached_property
     def known(self) -> int:
-        """Number of samples before the first one at which nothing is known of the orbit of a map."""
+        """Number of samples before a map's orbit becomes unknown."""
         parted = ~np.isfinite(self.shape_error).all(axis=1)
         return int(np.argmax(parted)) if self.is_map and parted.any() else len(self.t)
 
     @property
     def known_until(self) -> int | None:
-        """Last step of a map that is known, counted from the first sample; None of a flow."""
+        """Last known step of a map, counted from the first sample; None for a flow."""
         if not self.is_map or self.doubt:
             return None
         return round((float(self.t[self.known - 1]) - float(self.t[0])) / float(self.law.dt)) if self.known else 0
@@ -163,7 +163,7 @@ class Observed(ResultCache):
     # observables ---------------------------------------------------------------------------------------------------
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
-        """Return an observable over time, enclosed by its own difference between the two runs."""
+        """Return an observable over time, enclosed by its difference between the two runs."""
         best, loose = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
         if self.doubt or len(best) != len(loose):
             return Enclosure.around(best, np.inf)
@@ -181,21 +181,21 @@ class Observed(ResultCache):
 
     @property
     def accuracy_of_end(self) -> float:
-        """Stated error of the last positions: 0 for runs, the stated one for recordings."""
+        """Stated error of the last positions: 0 for runs."""
         return 0.0
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
-        """Other final states that the accuracy allows; empty for a run."""
+        """Other final states within the accuracy; empty for a run."""
         return ()
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> Any:
-        """Return how much an observable differs among the states that the accuracy allows; 0 for a run."""
+        """Return the variation of an observable over the states within the accuracy; 0 for a run."""
         return 0.0
 
     @cached_property
     def energy(self) -> Enclosure:
-        """H at each sample, shape (T,)."""
+        """Energy H at each sample, shape (T,)."""
         floor = np.where(self.t == self.errors.t[0], 0.0, self.floors.work)
         return self.series(Trajectory.energy, floor=floor + energy_rounding(self.run))
 
@@ -209,7 +209,7 @@ class Observed(ResultCache):
 
     @cached_property
     def distances_from_centre(self) -> Enclosure:
-        """‖q_i − q_c‖ at each sample, shape (T, n)."""
+        """Distances ‖q_i − q_c‖ at each sample, shape (T, n)."""
         return Enclosure.around(lengths(centred(self.run.q)), self.shape_error).clip(0.0)
 
     @cached_property
@@ -219,17 +219,17 @@ class Observed(ResultCache):
 
     @cached_property
     def relative_speeds(self) -> Enclosure:
-        """‖p_i − p_c‖ at each sample, shape (T, n)."""
+        """Relative speeds ‖p_i − p_c‖ at each sample, shape (T, n)."""
         return Enclosure.around(lengths(centred(self.run.p)), self.speed_error).clip(0.0)
 
     @cached_property
     def spread(self) -> Enclosure:
-        """√Σ‖q_i − q_c‖² at each sample, shape (T,)."""
+        """Position spread √Σ‖q_i − q_c‖² at each sample, shape (T,)."""
         return _norm(centred(self.run.q), self.shape_error)
 
     @cached_property
     def velocity_spread(self) -> Enclosure:
-        """√Σ‖p_i − p_c‖² at each sample, shape (T,)."""
+        """Velocity spread √Σ‖p_i − p_c‖² at each sample, shape (T,)."""
         return _norm(centred(self.run.p), self.speed_error)
 
     @cached_property
@@ -244,7 +244,7 @@ class Observed(ResultCache):
 
     @cached_property
     def end(self) -> End:
-        """The last state."""
+        """Last state of the run."""
         return End(self.run.q[-1], self.run.p[-1], self.shape_error[-1], self.speed_error[-1])
 
     # spans ---------------------------------------------------------------------------------------------------------
@@ -263,12 +263,12 @@ class Observed(ResultCache):
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
-    """Simulate a law and return the run with its numerical error; for the cases that errata show."""
+    """Simulate a law and return the run with its numerical error, for the cases of errata."""
     return Observed.of(ensure_uninterrupted(simulate(law, q0, p0, t_span, **options)))
 
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
-    """Return claims with a doubt about the run in their details; of a failed run no claim is decided."""
+    """Return claims with a doubt about the run in their details; undecided for a failed run."""
     if seen.is_map and (seen.doubt or seen.known < len(seen.t)):
         claims = (_within_known_orbit(claim, seen) for claim in claims)
     if not seen.doubt:
@@ -284,7 +284,7 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
 
 
 def _within_known_orbit(claim: Claim, seen: Observed) -> Claim:
-    """Return a claim about a map, not decided by numbers unless refuted at a time at which its orbit is known."""
+    """Return a claim about a map, decided by numbers only within its known orbit."""
     if claim.status not in ("verified", "refuted") or claim.rigour not in ("numeric", "statistical"):
         return claim
     time = claim.witness.get("time", np.inf) if isinstance(claim.witness, dict) else np.inf
@@ -295,12 +295,12 @@ def _within_known_orbit(claim: Claim, seen: Observed) -> Claim:
 
 
 def in_balls(claim: Claim) -> Claim:
-    """Return a claim about the run of a map that was judged on its orbit in balls, with that rigour."""
+    """Return a claim about a map's run from its orbit in balls, with that rigour."""
     return replace(claim, rigour="interval") if claim.rigour == "numeric" and claim.about == "run" else claim
 
 
 def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) -> Known:
-    """Return hypotheses and claims, with one more hypothesis where steps may not resolve the law."""
+    """Return hypotheses and claims, with an extra hypothesis if steps may not resolve the law."""
     claims = with_doubt(claims, seen)
     if not seen.unresolved:
         return tuple(hypotheses), claims
@@ -309,7 +309,7 @@ def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) 
 
 
 def with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
-    """Return a claim under one more hypothesis, unless a proof decides it or it says nothing of this run."""
+    """Return a claim under an extra hypothesis, unless proved or vacuous."""
     if claim.rigour not in ("numeric", "statistical") or claim.status == "vacuous":
         return claim
     status = with_needs(claim.status, (need,), claim.about)
@@ -318,7 +318,7 @@ def with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
 
 
 def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
-    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs."""
+    """Return a claim from a function of one run, with a margin enclosed by the two runs' difference."""
     # For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
     # made from enclosures of its parts instead.
     best, *others = (check(run) for run in (seen.run, seen.other, *seen.allowed))
@@ -338,6 +338,6 @@ def _apart(one: Claim, other: Claim) -> float:
 
 
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
-    """Return the norm over all agents of vectors, each known with an error."""
+    """Return the norm over all agents of vectors with errors."""
     sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
     return sizes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)

@@ -22,12 +22,12 @@ _FINE = 8  # times finer than usual the flow is integrated
 
 @cache
 def claims_on_steps() -> Mapping[str, tuple[str, Callable[[Observed], int]]]:
-    """Return, by theorem, what holds of a scheme's run and from which sample on, as its module's `STEPS` says."""
+    """Return claims for fixed-step runs by theorem, with their first samples, from the modules' `STEPS`."""
     return {name: meaning for module in theorem_modules() for name, meaning in getattr(module, "STEPS", {}).items()}
 
 
 def scheme_note(item: Theorem) -> str:
-    """Return a sentence on what a theorem on motion yields for a scheme's run; empty for other theorems."""
+    """Return a sentence on a theorem's meaning for fixed-step runs; empty for other theorems."""
     if item.kind != "trajectory":
         return ""
     if item.id in claims_on_steps():
@@ -38,7 +38,7 @@ def scheme_note(item: Theorem) -> str:
 
 
 def is_about_steps(item: Theorem, seen: Observed) -> bool:
-    """Return whether a run is in steps of a scheme whose law the theorem is about, and the scheme is not."""
+    """Return whether a theorem is about the law behind a fixed-step run, and not about the scheme."""
     law = seen.law
     if not isinstance(law, FixedSteps) or item.kind != "trajectory" or item.law is None:
         return False
@@ -46,7 +46,7 @@ def is_about_steps(item: Theorem, seen: Observed) -> bool:
 
 
 def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
-    """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
+    """Return the verdict of a flow theorem on a fixed-step run: vacuous claims, and flockana's own."""
     law: FixedSteps = seen.law
     detail = f"the run is in steps of {law.dt:g} of {law.law.title} by {law.title}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
@@ -59,14 +59,14 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
 
 
 def _of_law(seen: Observed, law: FixedSteps) -> Observed:
-    """The states of a scheme's run as samples of its law, nothing known between them."""
+    """Return the states of a fixed-step run as samples of its law, unknown in between."""
     run = seen.run
     work = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here
     return Observed.alone(Trajectory(run.t, run.q, run.p, run.u, law.law, work))
 
 
 def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerances: Tolerances) -> list[Claim]:
-    """Return flockana's two claims: the energy falls at every sample, and rises by at most the scheme's defect."""
+    """Return two claims of flockana: the energy falls at every sample, and rises at most by the scheme's defect."""
     run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS

@@ -1,4 +1,4 @@
-"""Verdicts on recordings: do the samples follow the law, and what do the theorems say within their accuracy?
+"""Verdicts on recordings: whether the samples follow the law, and theorems within their accuracy.
 
 The first hypothesis is that each sample is where the law leads from the one before, within the stated accuracy. If it
 is, the law's solution from the recorded start is judged, on enclosures that hold the recording, too: as wide as the two
@@ -33,18 +33,18 @@ _WAYS = 3  # random directions in which states are moved to the ends of their en
 
 @dataclass(frozen=True, eq=False)
 class ObservedRecording(Observed):
-    """The law's solution from a recorded start, with enclosures that hold the recording; `given` is the recording."""
+    """Law's solution from a recorded start, with enclosures of the recording (`given`)."""
 
     place: float = 0.0  # accuracy of the last positions
     begins_exactly = False  # the recorded start is known to its accuracy
 
     @property
     def accuracy_of_end(self) -> float:
-        """How far the last recorded positions may be off."""
+        """Error of the last recorded positions."""
         return self.place
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> FloatArray:
-        """Return by how much an observable differs between the solution and states that the recording allows."""
+        """Return the variation of an observable between the solution and states within the accuracy."""
         best = np.asarray(observable(self.run), dtype=np.float64)
         widest = np.zeros(best.shape)
         for other in self.allowed:
@@ -54,17 +54,17 @@ class ObservedRecording(Observed):
         return widest
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
-        """Return an observable over time, as wide as the states that the recording allows make it."""
+        """Return an observable over time, widened to the states within the accuracy."""
         return super().series(observable, floor=floor + self.sensitivity(observable))
 
     @property
     def residual(self) -> Enclosure:
-        """Energy balance of the law's solution: a recording has no work of its own."""
+        """Energy balance of the law's solution, as a recording has no work."""
         return Observed(self.given, self.run, self.other, self.errors, self.doubt).residual
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
-        """The recording, and states at the ends of the enclosures, in some directions and along the forces."""
+        """Recording, and states at the ends of the enclosures, in some directions and along the forces."""
         return self.cached("allowed", self._allowed)
 
     def _allowed(self) -> tuple[Trajectory, ...]:
@@ -86,7 +86,7 @@ def _unit(x: FloatArray) -> FloatArray:
 
 
 class RecordingEvidence(Evidence):
-    """A recording, with the law that is said to have made it, or without a law the scale and the range of nets."""
+    """Recording with the law said to have made it, or with scale and range of nets."""
 
     def __init__(self, rec: Recording, law: Any = None, d: float | None = None, r: float | None = None) -> None:
         self.rec, self.law, self.d, self.r, self.until = rec, law, d, r, float(rec.t[-1])
@@ -132,7 +132,7 @@ class RecordingEvidence(Evidence):
         return rec if rec.p is not None else rec.with_velocities()
 
     def _examine_samples(self, item: Theorem, tolerances: Tolerances) -> Known:
-        """Return what a definition about samples says of them, with nothing assumed between them."""
+        """Return the result of a definition about samples, without assumptions between them."""
         if item.id not in DEFINITIONS:
             raise ArgumentError(
                 f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
@@ -158,13 +158,13 @@ def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]
 
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
-    """Accuracy of places and velocities, shape (T, n)."""
+    """Return the accuracy of positions and velocities, shape (T, n)."""
     place, speed = (np.asarray(each, dtype=np.float64) for each in (rec.accuracy.place, rec.accuracy.speed))
     return np.broadcast_to(place, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
 
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
-    """Return the law's solution from the recorded start, with enclosures that hold the recording."""
+    """Return the law's solution from the recorded start, with enclosures of the recording."""
     span = float(rec.t[0]), float(rec.t[-1])
     run = ensure_uninterrupted(simulate(law, follow.q0, follow.p0, span, t_eval=rec.t))
     seen = Observed.of(run)
@@ -193,12 +193,12 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
 
 
 def _weighed(known: Known, rec: Recording, first: Hypothesis) -> Known:
-    """Return hypotheses, one more in front, and claims with the rigour that the accuracy allows."""
+    """Return hypotheses, with an extra first one, and claims with the rigour allowed by the accuracy."""
     return (first, *known[0]), tuple(_weighed_claim(claim, rec, first) for claim in known[1])
 
 
 def _weighed_claim(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
-    """A claim with the rigour that the accuracy allows; one under a hypothesis that is only assumed decides nothing."""
+    """Return a claim with the rigour allowed by the accuracy; undecided under an assumed hypothesis."""
     if claim.status not in ("verified", "refuted"):
         return claim
     if first.status != "met":

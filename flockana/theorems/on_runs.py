@@ -1,4 +1,4 @@
-"""Verdicts on runs: the law is the theorem's, the run is as simulated, and a second run encloses its error."""
+"""Verdicts on runs: the law matches the theorem's, and a second run encloses the error."""
 
 from typing import Any
 
@@ -39,7 +39,7 @@ class RunEvidence(Evidence):
 
 
 def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
-    """Return what a theorem says of an observed run, in steps of a scheme or along the flow."""
+    """Return a theorem's result on an observed run, in fixed steps or along the flow."""
     if is_about_steps(item, seen):
         return with_resolution(*on_steps(item, seen, tolerances), seen)
     hypotheses, claims = with_resolution(*item.examine(seen, tolerances), seen)
@@ -47,7 +47,7 @@ def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> K
 
 
 def claims_on_another_law(item: Theorem, law: Any) -> Known:
-    """Return the vacuous claims on a run of a wrapped law, which a theorem about the bare law does not cover."""
+    """Return vacuous claims for a run of a wrapped law outside a theorem about the bare law."""
     around = ", ".join(type(one).__name__ for one in wrappers_of(law))
     detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)

@@ -1,4 +1,4 @@
-"""Verdicts on tubes: rigorous, for every start that the tube encloses."""
+"""Verdicts on tubes: rigorous for every enclosed start."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from flockana.theorems.theorem import Known, Theorem, Tolerances
 
 
 class TubeEvidence(Evidence):
-    """A tube, and a certified basin that it may end in."""
+    """Tube with a certified basin at its end, if any."""
 
     def __init__(self, tube: Tube, basin: Any = None) -> None:
         self.tube, self.basin, self.law, self.until = tube, basin, tube.law, float(tube.t[-1])

@@ -1,4 +1,4 @@
-"""A claim of the user's own, from a function that says how far a run fulfils it."""
+"""User's own claim, from a function that measures its fulfilment on a run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ BETWEEN = "the margin is not negative between samples"
 
 
 def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = "") -> Theorem:
-    """Return a theorem with one claim: that a margin is not negative at any sample of a run.
+    """Return a theorem with one claim: a margin is nonnegative at all samples of a run.
 
     The margin's numerical error is its difference between the run and a second, tighter one. What lies between the
     samples of a flow is assumed, and the verdict says so.
@@ -52,7 +52,7 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
 
 @dataclass(frozen=True)
 class OwnCheck:
-    """Check of a user's claim: worker processes take it if they can import its margin."""
+    """Check of a user's claim, sent to worker processes if its margin can be imported."""
 
     name: str
     margin: Callable[[Trajectory], Any]

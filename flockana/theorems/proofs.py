@@ -1,4 +1,4 @@
-"""Rigour of the executable proofs that claims name, and what they cite; a test holds both against the proofs."""
+"""Rigour and citations of the executable proofs named in claims."""
 
 from flockana.theorems.theorem import Rigour
 

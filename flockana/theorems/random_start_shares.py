@@ -21,17 +21,17 @@ def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float
 
 
 def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """Return a claim about every start: refuted if the share is below 1 for certain, never verified by a sample."""
+    """Return a claim about every start: refuted if the share is certainly below 1, never verified by samples."""
     return _judged(name, list(holds), 1.0, what, about="all", stated=stated, witness=witness)
 
 
 def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """Return a claim that a share is at least half: verified by its lower end, refuted by its upper one."""
+    """Return a claim that a share is at least half: verified by its lower bound, refuted by its upper bound."""
     return _judged(name, list(holds), 0.5, what, stated=stated, witness=witness)
 
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
-    """Return a claim by the share of the starts for which something holds; None is undecided."""
+    """Return a claim by the share of starts with a property; None entries are undecided."""
     count, size, unknown = sum(map(bool, holds)), len(holds), sum(each is None for each in holds)
     low, high = interval(count, size, undecided=unknown)
     text = f", undecided in {unknown}" if unknown else ""

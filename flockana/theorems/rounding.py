@@ -1,4 +1,4 @@
-"""Bounds of rounding errors in what a verdict compares, from the number of terms and their magnitudes.
+"""Rounding error bounds of quantities in verdicts, from the number and size of their terms.
 
 A sum of k numbers in floating point is off by at most about k ε times the sum of their magnitudes, and a difference
 of two numbers by ε times the larger of the two. Nothing here says how far the integration is off: that a second,
@@ -66,7 +66,7 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
 
 
 def deepest_of(pair: PairInteraction) -> float:
-    """Return the size of a pair's potential: c* of the paper's, else the largest at 0, d and the range."""
+    """Return the depth of a pair's potential: c* of Olfati-Saber's, else the largest of sampled values."""
     # A potential that has no bound at 0 counts by what it is at a tenth of d.
     if isinstance(pair, AlphaInteraction):
         return float(pair.c_star)

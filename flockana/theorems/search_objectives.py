@@ -1,4 +1,4 @@
-"""Surrogate objectives for counterexample searches where a claim's margin has no slope."""
+"""Surrogate objectives for counterexample searches, for claims with flat margins."""
 
 from math import isfinite
 
@@ -15,7 +15,7 @@ def squash(x: float) -> float:
 
 
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a count of meeting pairs: the distance of the nearest pair that has not met, over d."""
+    """Return the surrogate for a count of meetings: the least distance of pairs not yet met, over d."""
     i, j = np.triu_indices(run.n, 1)
     apart = lengths(run.q[:, i] - run.q[:, j]).min(axis=0)
     touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
@@ -24,7 +24,7 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a count of components: how far the longest connecting link stays below r."""
+    """Return the surrogate for a count of components: the slack of the longest connecting link below r."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 

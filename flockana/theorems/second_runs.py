@@ -1,4 +1,4 @@
-"""Second run of the same start, the difference of the two, and reasons why a run may show nothing.
+"""Second run of the same start, its difference, and reasons why a run may prove nothing.
 
 The second run is a hundred times tighter, or looser where that cannot be; of a fixed step it is an adaptive one. By the
 same method its steps are bounded by a part of the first's longest, so that the two share no stage; of a pair law given
@@ -46,7 +46,7 @@ class Errors(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two runs of one start at the same samples, their half widths, and reasons why a verdict may not rest on them."""
+    """Two runs of one start at the same samples, their half widths, and reasons for doubt."""
 
     tighter: Trajectory
     looser: Trajectory
@@ -57,7 +57,7 @@ class Pair(NamedTuple):
 
 
 def paired(run: Trajectory) -> Pair:
-    """Return a flow's run with its second one; a run of which nothing is known is paired with itself."""
+    """Return a flow's run with its second run; an unknown run is paired with itself."""
     doubt = doubt_about(run)
     if doubt:
         return Pair(run, run, unbounded_errors(run), doubt)
@@ -77,7 +77,7 @@ def paired(run: Trajectory) -> Pair:
 
 
 def _longest_step(run: Trajectory) -> float | None:
-    """Return the longest step that the second run may take; None if it is free."""
+    """Return the longest step of the second run; None without a limit."""
     steps, _ = steps_of(run)
     most = max(_MOST_STEPS, _TIMES * len(steps))
     longest = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / most)
@@ -88,7 +88,7 @@ def _longest_step(run: Trajectory) -> float | None:
 
 
 def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float | None) -> Trajectory:
-    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor."""
+    """Return the law integrated from the run's start at given times, with tolerances scaled by a factor."""
     # A run with a fixed step is followed by an adaptive method.
     stats, span = run.stats, (float(times[0]), float(times[-1]))
     options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
@@ -107,14 +107,14 @@ def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float
 
 
 def doubt_about(run: Trajectory) -> str:
-    """Return why a run by itself shows nothing, or an empty text."""
+    """Return the reason why a run alone proves nothing, or an empty text."""
     if reason := failure(run):
         return reason
     return "one sample shows no motion" if len(run.t) == 1 else ""
 
 
 def failure(run: Trajectory) -> str:
-    """Return why a run is not one of its law (it failed, or left the law's domain); empty if it is."""
+    """Return why a run is invalid (failed, or outside the law's domain); empty if valid."""
     if run.status == "failed":
         return f"the run failed: {run.message}"
     if run.law.is_map:  # a step may lead anywhere
@@ -130,13 +130,13 @@ def failure(run: Trajectory) -> str:
 
 
 def unbounded_errors(run: Trajectory) -> Errors:
-    """Return infinite half widths, of a run of which nothing is known."""
+    """Return infinite half widths, for an unknown run."""
     unknown = np.full((1, run.n), np.inf)
     return Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
 
 
 def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Return the times at which the two runs are compared, and the first run's states there."""
+    """Return the comparison times of two runs, and the first run's states at these times."""
     path = run.path
     stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
     keep = np.isin(path.t, run.t)
@@ -152,7 +152,7 @@ def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
 
 
 def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
-    """Return the run at some of its samples, with the others as steps between."""
+    """Return the run at selected samples, with the others as steps between."""
     if len(t) == len(run.t):
         return run
     keep, path = np.isin(run.t, t), run.path
@@ -168,7 +168,7 @@ def centred(x: FloatArray) -> FloatArray:
 
 
 def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:
-    """Return the largest of the rows from `first` to before `stop`, a result for each range."""
+    """Return the largest of the rows from `first` to before `stop`, for each range."""
     first, stop = np.asarray(first), np.minimum(stop, len(values))
     first = np.minimum(first, stop - 1)
     level = np.floor(np.log2(stop - first)).astype(int)

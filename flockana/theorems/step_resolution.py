@@ -1,4 +1,4 @@
-"""Whether a run's steps resolve what its law reads: no feature may hide between the stages of a step.
+"""Resolution check: whether a run's steps resolve the narrowest features of its law.
 
 A law names the narrowest features of its parts (`law.features()`), through wrappers: lengths that no agent or pair may
 leap over within a step, and times that no step may exceed. Where a function of the distance has slopes, these decide,
@@ -28,7 +28,7 @@ _FEW, _BLOCK = 40, 20_000  # agents of which all pairs are looked at, and pairs 
 
 
 class NeededSteps(NamedTuple):
-    """Steps that contain each interval of a run's path, and the longest ones that would resolve the law there."""
+    """Actual step of each interval of a run's path, and the longest step that resolves the law."""
 
     t: FloatArray
     step: FloatArray
@@ -37,18 +37,18 @@ class NeededSteps(NamedTuple):
 
     @property
     def missed(self) -> Any:
-        """Intervals whose steps are too long; 1e-9 of a step is rounding of its ends."""
+        """Intervals with too long steps, beyond rounding of 1e-9 of a step."""
         return np.flatnonzero(self.step > self.longest * (1.0 + 1e-9))
 
     @property
     def bound(self) -> float:
-        """Step that would resolve the law wherever its features are known; infinite if all steps do."""
+        """Longest step that resolves all known features of the law; infinite if all steps do."""
         steps_missed = self.longest[self.missed]
         return float(steps_missed[steps_missed > 0.0].min(initial=np.inf))
 
 
 def unknown_parts(law: Any) -> tuple[str, ...]:
-    """Return the parts of a law that do not say what they read, or how narrow it is."""
+    """Return the parts of a law with undeclared functions or unknown feature widths."""
     return tuple(dict.fromkeys(one.name for one in law.features() if one.width is None and not _has_slopes(one)))
 
 
@@ -58,7 +58,7 @@ def _has_slopes(feature: Feature) -> bool:
 
 
 def demand_of(run: Trajectory, place: float) -> NeededSteps:
-    """Return the steps of a run with the longest ones that its law's features allow, positions known to an error."""
+    """Return the steps of a run with the longest steps allowed by its law's features."""
     t, step = run.path.t, steps_of(run)[1]
     longest, part = np.full(len(t) - 1, np.inf), np.zeros(len(t) - 1, dtype=np.int64)
     for number, feature in enumerate(run.law.features()):
@@ -71,7 +71,7 @@ def demand_of(run: Trajectory, place: float) -> NeededSteps:
 
 
 def _allowed_by_lengths(run: Trajectory, feature: Feature, step: FloatArray, place: float) -> FloatArray:
-    """Return the longest step over each interval that a feature between agents allows."""
+    """Return the longest step over each interval allowed by a feature between agents."""
     ways = _largest_speeds(run, pairs=feature.of == "pairs") * step
     width = 0.0 if feature.width is None else feature.width
     allowed = np.full(len(step), np.inf)
@@ -96,7 +96,7 @@ def _largest_speeds(run: Trajectory, *, pairs: bool) -> FloatArray:
 
 
 def _one_by_one(run: Trajectory, function: LawFunction, at: Any, step: FloatArray, place: float) -> FloatArray:
-    """Return over each interval the largest ω² of pairs that may hide more than the error of positions in a step."""
+    """Return over each interval the largest ω² of pairs that may hide more than the position error in a step."""
     assert function.function is not None
     worst, span = np.zeros(len(at)), np.diff(run.path.t)
     for row, k in enumerate(at.tolist()):
@@ -109,7 +109,7 @@ def _one_by_one(run: Trajectory, function: LawFunction, at: Any, step: FloatArra
 
 
 def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray, place: float) -> FloatArray:
-    """Return what `_one_by_one` does, of few pairs over many intervals at once."""
+    """Return the results of `_one_by_one` for few pairs over many intervals at once."""
     n, span, worst = len(run.q[0]), np.diff(run.path.t), np.zeros(len(at))
     i, j = np.triu_indices(n, 1) if function.edges is None else np.array(function.edges, dtype=np.intp).reshape(-1, 2).T
     size = max(1, _BLOCK // max(1, len(i)))
@@ -127,7 +127,7 @@ def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray
 def _largest(
     of: LawFunction, apart: FloatArray, off: FloatArray, span: Any, step: Any, place: float, n: int
 ) -> FloatArray:
-    """Return the largest ω² of the pairs along the last axis; of those alone that hide more than `place`."""
+    """Return the largest ω² along the last axis, of pairs that hide more than `place`."""
     rate, way = _hidden(of, apart, off, span)
     rate = rate / n if of.mean else rate
     hidden = rate * step * step * (way * step / span)
@@ -153,7 +153,7 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 
 def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any) -> tuple[FloatArray, FloatArray]:
-    """Return ω² of each pair over an interval, from its relative control points, and how far its distance moves."""
+    """Return ω² of each pair over an interval, from relative control points, and its distance change."""
     assert of.function is not None
     sides, ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
     middle, table = 0.5 * ends.sum(axis=-1), _table(of.function)
@@ -170,7 +170,7 @@ def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any
 
 @lru_cache(maxsize=64)
 def _table(function: DistanceFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return edges of parts of the range, and the largest slopes of force and adjacency from part to part."""
+    """Return edges of parts of the range, and the largest slopes of force and adjacency between parts."""
     bounds = function.slopes(_PARTS)
     assert bounds is not None
     edges = np.array([*(bound.left for bound in bounds), bounds[-1].right])
@@ -184,7 +184,7 @@ def _from_to(values: list[float]) -> FloatArray:
 
 
 def unresolved(run: Trajectory, place: float) -> str:
-    """Return where a run's steps may leap over a feature of its law, in words; empty if they resolve it."""
+    """Return in words where a run's steps may skip a feature of its law; empty if resolved."""
     law: Any = run.law
     if unknown := unknown_parts(law):
         return f"how fast {unknown[0]} changes is not known, and so whether steps resolve it"

@@ -1,4 +1,4 @@
-"""Theorems: what a published statement is, and how a verdict on a case follows from its check."""
+"""Theorems: published statements, and verdicts on cases from their checks."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -30,7 +30,7 @@ Check = Callable[..., tuple[Needs, Iterable[Claim]]]
 
 @dataclass(frozen=True)
 class Theorem:
-    """A published statement, or its correction, with the function that checks it.
+    """Published statement, or its correction, with the function that checks it.
 
     Parameters
     ----------
@@ -95,11 +95,11 @@ class Theorem:
 
     @property
     def erratum(self) -> Erratum | None:
-        """Erratum that the theorem checks (what is printed and what is right), or None."""
+        """Erratum checked by the theorem (printed and correct statement), or None."""
         return erratum_of(self.id)
 
     def by(self, claim: str) -> By:
-        """Return whose a claim is.
+        """Return the author of a claim.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class Theorem:
         return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
 
     def hypotheses(self, start: Any) -> tuple[Hypothesis, ...]:
-        """Return the hypotheses of the theorem and of its claims at a start, those that its check itself states.
+        """Return the hypotheses of the theorem and its claims at a start.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ class Theorem:
         return tuple(dict.fromkeys((*hypotheses, *(need for claim in claims for need in claim.needs))))
 
     def examine(self, *case: Any, check: Check | None = None) -> Known:
-        """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
+        """Return hypotheses and claims of one case; claims left out by `check` are vacuous.
 
         Parameters
         ----------

@@ -9,7 +9,7 @@ from flockana.base.short_repr import ShortRepr
 
 @dataclass(frozen=True)
 class Tolerances(ShortRepr):
-    """Every threshold that a verdict uses; it is shown with the verdict.
+    """Thresholds used in verdicts, shown with each verdict.
 
     Parameters
     ----------

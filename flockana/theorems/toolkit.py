@@ -1,4 +1,4 @@
-"""Names that most theorem files use: of runs and enclosures, of hypotheses, of claims."""
+"""Common names for theorem files: runs and enclosures, hypotheses, claims."""
 # ruff: noqa: F401
 # mypy: implicit-reexport
 

@@ -1,4 +1,4 @@
-"""Verdicts: how the outcome of checking a theorem follows from its claims, as text, HTML, LaTeX and data."""
+"""Verdicts: results of checking theorems, from their claims, as text, HTML, LaTeX and data."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome of checking a theorem on a case.
+    """Outcome of checking a theorem on a case.
 
     Parameters
     ----------
@@ -55,12 +55,12 @@ class Verdict:
 
     @property
     def status(self) -> Status:
-        """Of the author's claims: refuted if one is; else inconclusive if one is; else verified; else vacuous."""
+        """Status of the author's claims: refuted, inconclusive, verified or vacuous, in this order."""
         return overall(claim.status for claim in self.main_claims)
 
     @property
     def summary(self) -> str:
-        """The status with counts, and apart from it the corrections and extensions.
+        """Status with counts, and separately the corrections and extensions.
 
         Examples
         --------
@@ -77,12 +77,12 @@ class Verdict:
 
     @property
     def rigour(self) -> Rigour:
-        """The weakest rigour among the claims that decide the status."""
+        """Weakest rigour among the claims that decide the status."""
         deciding = [c.rigour for c in self.main_claims if c.status == self.status] or ["numeric"]
         return min(deciding, key=RIGOURS.index)
 
     def claim(self, name: str) -> Claim:
-        """The claim of that name.
+        """Return the claim with a given name.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class Verdict:
         raise KeyError(f"{self.theorem} has no claim {name!r}; it has {', '.join(c.name for c in self.claims)}")
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON; infinities and NaN become text."""
+        """Return plain data for JSON; infinities and NaN become text."""
         data: dict[str, Any] = plain(asdict(self))
         for claim in data["claims"]:
             claim["needs"] = [need["name"] for need in claim["needs"]]
@@ -136,7 +136,7 @@ class Verdict:
         return latex_table(rows, ("claim", "status", "rigour", "margin", "in words"), "lllrp{0.45\\linewidth}")
 
     def _named(self, claim: Claim) -> str:
-        """Return the name of a claim, and whose it is where it is not the author's."""
+        """Return the name of a claim, with its author if other than the theorem's."""
         return claim.name if claim.by == self.author else f"{claim.name} ({BYLINES[claim.by]})"
 
 

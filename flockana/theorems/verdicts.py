@@ -20,7 +20,7 @@ _COLUMN = 28  # characters
 
 
 class Verdicts(tuple[Verdict, ...]):
-    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook."""
+    """Verdicts on one run: a tuple printed as a table, in text and notebooks."""
 
     __slots__ = ()
 
@@ -42,7 +42,7 @@ class Verdicts(tuple[Verdict, ...]):
         return html_table(self.rows(), _HEADS)
 
     def about_the_law(self) -> Verdicts:
-        """Return these verdicts without the vacuous ones of theorems that name no law."""
+        """Return these verdicts without vacuous ones of theorems that name no law."""
         return Verdicts(v for v in self if v.status != "vacuous" or theorem(v.theorem).law is not None)
 
     def to_latex(self) -> str:
@@ -55,7 +55,7 @@ class Verdicts(tuple[Verdict, ...]):
         return [verdict.to_dict() for verdict in self]
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """Return a pandas table with a row for each claim: its status, how it is known, whose it is, its numbers."""
+        """Return a pandas table with a row for each claim: status, evidence, author, numbers."""
         return claim_table(self)
 
     def to_mat(self, path: str | os.PathLike[str]) -> Path:
@@ -77,7 +77,7 @@ class Verdicts(tuple[Verdict, ...]):
 
 
 def _deciding(verdict: Verdict) -> str:
-    """Return the name of the first claim with the verdict's own status; of a vacuous one, the unmet hypothesis."""
+    """Return the name of the first claim with the verdict's status, or the unmet hypothesis of a vacuous one."""
     missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
     if missed is not None:
         return missed.name
@@ -85,5 +85,5 @@ def _deciding(verdict: Verdict) -> str:
 
 
 def _cut(text: str) -> str:
-    """Return a text that fits a column: a hypothesis can be a sentence."""
+    """Return a text shortened to a column's width."""
     return text if len(text) <= _COLUMN else f"{text[: _COLUMN - 1]}…"

@@ -1,4 +1,4 @@
-"""`verify`: check a theorem on a run, a recording, a tube, a configuration, or by itself."""
+"""Checking of theorems on a run, a recording, a tube, a configuration, or alone: `verify`."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -56,7 +56,7 @@ def verify(
     tolerances: Tolerances | None = None,
     subject: str = "",
 ) -> Verdict | Verdicts:
-    """Check a theorem: on a run, on a law that is run first, on a configuration, or (errata) by itself.
+    """Check a theorem: on a run, on a law that is run first, on a configuration, or (errata) alone.
 
     Without a theorem, check all that are about the law of the run.
 
@@ -117,7 +117,7 @@ def verify(
 
 
 def ensure_tolerances(tolerances: Any) -> Tolerances:
-    """Return tolerances, the usual ones for None; raise on anything else."""
+    """Return tolerances, the defaults for None; raise on anything else."""
     tolerances_used = Tolerances() if tolerances is None else tolerances
     if not isinstance(tolerances_used, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
@@ -132,7 +132,7 @@ def _recording_evidence(case: dict[str, Any]) -> Evidence:
 
 
 def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> Evidence:
-    """Return the evidence of a run, a tube, a state, or none; raise unless a theorem gets what it is checked on."""
+    """Return the evidence of a run, a tube, a state, or none; raise on unsuitable arguments."""
     motion = [case[name] for name in ("trajectory", "law", "q0", "p0", "t_span")]
     if item is None:
         return RunEvidence(_run(*motion))
@@ -149,7 +149,7 @@ def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> 
 
 
 def _ensure_given(item: Theorem, **case: Any) -> None:
-    """Raise unless exactly what a theorem is checked on is given."""
+    """Raise unless exactly the theorem's required arguments are given."""
     names = {name for name, value in case.items() if value is not None}
     motion = {"law", "q0", "p0", "t_span"}
     start = names & motion if {"law", "q0"} <= names else motion
@@ -160,7 +160,7 @@ def _ensure_given(item: Theorem, **case: Any) -> None:
 
 
 def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
-    """Return the run, or one from a start; without p0 at rest, without t_span over 20 time units."""
+    """Return the run, or simulate one from a start (by default at rest, over 20 time units)."""
     if trajectory is None:
         if law is None or q0 is None:
             raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
@@ -177,7 +177,7 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
 
 
 def _is(kind: str, run: Any) -> bool:
-    """Return whether a value is a recording or a tube, without importing what it is an instance of unless needed."""
+    """Return whether a value is a recording or a tube, importing its class only if needed."""
     if run is None or isinstance(run, Trajectory):
         return False
     module, name = _KINDS[kind]
