@@ -1,4 +1,4 @@
-"""Cases of the page: a start with changed parameters and moved agents, as law and flock and as Python."""
+"""Cases of the explorer's page: a start with changed parameters and moved agents, as law, flock and Python code."""
 
 import tempfile
 from collections.abc import Mapping

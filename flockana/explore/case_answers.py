@@ -1,4 +1,4 @@
-"""Messages that answer a case of the page, in the order in which they are computed."""
+"""Answers to a case of the explorer's page, in order of computation."""
 
 from collections.abc import Callable, Iterator
 from functools import cache, partial
@@ -99,7 +99,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
 
 
 def poles(run: Trajectory) -> dict[str, Any]:
-    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there."""
+    """Return poles and slowest modes at the end of a run, about the nearby equilibrium or the frozen final state."""
     law, q = run.law.continuous, run.q[-1]
     if law is None:
         return {"note": f"{run.law.title} is a map of its own: it has no poles in continuous time"}
@@ -141,7 +141,7 @@ def _shown_mode(mode: Any) -> dict[str, Any]:
 
 
 def _collapses_by_ratio(law: Any) -> bool:
-    """Return whether one linear pull acts on all agents, so that c1γ/c1α decides on collapse (erratum E11)."""
+    """Return whether one linear pull acts on all agents, so that c1γ/c1α decides collapse (erratum E11)."""
     gains, decouples = getattr(law, "gains", None), getattr(law, "centre_decouples", False)
     follows = law.target is not None and decouples and isinstance(law.pair, AlphaInteraction)
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)

@@ -1,4 +1,4 @@
-"""The explorer for a flock of the user's own."""
+"""Explorer for a user's own flock."""
 
 import asyncio
 import tempfile
@@ -17,7 +17,7 @@ _LAST_PORT = 65535
 
 
 def save_case(case: Scenario | Trajectory, folder: str) -> dict[str, str]:
-    """Return the page's first case: a run, or that of a scenario, saved in a folder."""
+    """Return the page's first case: a run, or a scenario's run, saved in a folder."""
     run, name = (case, "run") if isinstance(case, Trajectory) else (case.run(), case.name.replace(" ", "-"))
     return {"kind": "file", "name": str(run.save(Path(folder) / f"{name}.nc"))}
 

@@ -1,4 +1,4 @@
-"""The explorer's page, with its scripts and styles in it."""
+"""HTML of the explorer's page, with its scripts and styles inlined."""
 
 import json
 from functools import cache

@@ -22,7 +22,7 @@ _COMPONENTS = 3
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or a short vector, in a law."""
+    """Numeric parameter of a law: a number or a short vector."""
 
     path: str  # names of fields and numbers in tuples, such as ``"gains.c1_gamma"`` or ``"obstacles.0.centre"``
     value: Value  # as it is
@@ -58,7 +58,7 @@ def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
-    """Return changes by path as a tree, with values checked against what they replace.
+    """Return changes by path as a tree, checked against the values they replace.
 
     Examples
     --------

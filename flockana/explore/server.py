@@ -1,4 +1,4 @@
-"""A server on the loopback address: one page, one socket for each tab, one process for each socket."""
+"""Local web server: one page, one socket per tab, one worker process per socket."""
 
 import asyncio
 import hmac
@@ -35,7 +35,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'
 
 
 class Process:
-    """A worker process, whose messages reach the server's own thread."""
+    """Worker process whose messages reach the server's thread."""
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")
@@ -68,7 +68,7 @@ class Process:
 
 @dataclass
 class Server:
-    """State shared by all tabs."""
+    """Server state shared by all tabs."""
 
     token: str  # requests without it are refused
     first: dict[str, Any]  # the case that a page begins with
@@ -77,14 +77,14 @@ class Server:
     spare: Process | None = None
 
     def take(self) -> Process:
-        """Return a process, ready if possible, and start another for the next page."""
+        """Return a worker process, ready if possible, and start a spare one."""
         spare, self.spare = self.spare, None
         process = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return process
 
     def prepare(self) -> None:
-        """Start a process in reserve."""
+        """Start a spare worker process."""
         if self.spare is None or not self.spare.process.is_alive():
             self.spare = Process(self.limit)
 
@@ -95,7 +95,7 @@ class Server:
                 process.end()
 
     def admitted(self, case: Any) -> Any:
-        """Return a case; raise on a file other than the one that the explorer was started with."""
+        """Return a case; raise on a file other than the explorer's own."""
         if case.get("kind") == "file" and case != {**case, "kind": self.first["kind"], "name": self.first["name"]}:
             raise ArgumentError("expected the file that the explorer was started with")
         return case

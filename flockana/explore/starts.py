@@ -28,7 +28,7 @@ FILES = (".nc", ".json")
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """A law, a flock and a time span, before anything is changed."""
+    """Law, flock and time span of a case before changes."""
 
     title: str
     law: Any
@@ -68,7 +68,7 @@ def _class_name(candidate: Candidate) -> str:
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
-    """Return a law with default parameters, a γ-agent and a ball if it uses them, and its Python."""
+    """Return a law with default parameters, a γ-agent and a ball if needed, and its Python code."""
     here = (0.0,) * m
     there, between = (2.0 * side, *here[1:]), (side, *here[1:])
     if name == "Algorithm2":

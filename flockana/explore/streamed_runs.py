@@ -1,4 +1,4 @@
-"""Runs streamed while they are computed: first frames at once, an error if they take too long."""
+"""Runs streamed during computation: first frames at once, an error if the run would take too long."""
 
 import time
 from collections.abc import Callable

@@ -13,7 +13,7 @@ from flockana.base.interrupts import defer_sigint, restore_interrupts
 
 
 class Worker:
-    """Questions from a pipe, one after the other; an older one ends where a newer has come."""
+    """Worker of one page: answers questions from a pipe; a newer question interrupts an older one."""
 
     def __init__(self, pipe: Connection, limit: float) -> None:
         self.pipe, self.limit = pipe, limit

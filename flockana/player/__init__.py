@@ -1,4 +1,4 @@
-"""A run that moves in a page: the player of notebooks and of the report."""
+"""Interactive player of runs, for notebooks and the report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Player:
         return f"<Player of {self.trajectory!r}>"
 
     def html(self) -> str:
-        """The page that plays it, which needs neither network nor other files."""
+        """Self-contained page that plays the run."""
         return page(self._scene())
 
     def _scene(self) -> bytes:

@@ -23,7 +23,7 @@ _STEPS = 2.0**30  # more of them in one array than this would not fit 32 bits
 
 @dataclass(frozen=True)
 class Packed:
-    """Array to be encoded."""
+    """Array for encoding."""
 
     values: Any  # shape (T, …): numbers; the first axis is time
     step: float = 0.0  # resolution to which they are kept, > 0; or 0 for that of float32
@@ -76,7 +76,7 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
 
 
 def _quantise(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
-    """Return an array as 32-bit integers, and the origin that was subtracted."""
+    """Return an array as 32-bit integers, and the subtracted origin."""
     with np.errstate(over="ignore"):
         single = values.astype("<f4")
     if not np.isfinite(single).all():

@@ -1,4 +1,4 @@
-"""Marked instants of a player: the witnesses of claims."""
+"""Marked instants of a player: times at which claims are decided."""
 
 from collections.abc import Iterable, Mapping
 
@@ -9,7 +9,7 @@ Marks = list[tuple[float, str]]
 
 
 def marks_of(run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[float] = ()) -> Marks:
-    """Return the instants of a run in order, each with the claims that it witnesses.
+    """Return the marked instants of a run in order, each with its claims.
 
     Examples
     --------

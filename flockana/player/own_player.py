@@ -1,4 +1,4 @@
-"""The player of a flock of the user's own."""
+"""Player of a user's own flock."""
 
 from collections.abc import Sequence
 from typing import Any

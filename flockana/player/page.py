@@ -33,7 +33,7 @@ def style() -> str:
 
 
 def text_of(data: bytes) -> str:
-    """Return bytes as text that a page can hold.
+    """Return bytes as text that can be embedded in a page.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def text_of(data: bytes) -> str:
 
 
 def played(data: bytes) -> str:
-    """Return the elements of a page that play a run in its element ``player``."""
+    """Return the page elements that play a run in the element ``player``."""
     start = "flockanaPlayer(document.getElementById('player'),bytesOfText(document.getElementById('run').textContent));"
     run = f'<script type="text/plain" id="run">{text_of(data)}</script>'
     return f"{run}<script>(() => {{\n{script()}{start}\n}})();</script>"
@@ -57,7 +57,7 @@ def framed(title: str, html: str, height: int) -> str:
 
 
 def templates() -> Environment:
-    """Return the environment of all pages' templates, which escapes every value; each page has its own."""
+    """Return the template environment of all pages, which escapes every value."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     return Environment(

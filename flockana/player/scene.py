@@ -59,7 +59,7 @@ class World:
 
 @singledispatch
 def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the surroundings of a run's agents; a source gives those of its laws in `SCENE`."""
+    """Return the surroundings of a run's agents; sources register their own in `SCENE`."""
     pair, target = law.pair, law.target
     return World(
         reach=finite_or_none(None if pair is None else pair.range),
@@ -123,7 +123,7 @@ def _register_scenes() -> None:
 
 
 def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
-    """Return which samples to keep: first and last, and others evenly between.
+    """Return the indices of samples to keep: first, last, and others evenly between.
 
     Examples
     --------
