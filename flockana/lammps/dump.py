@@ -1,4 +1,4 @@
-"""A run that LAMMPS dumped, as a `Trajectory` that says how far it is from a law."""
+"""Import of a LAMMPS dump as a `Trajectory`, with its distance from a law."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Write a folder that LAMMPS runs: data file, tabulated pair style, input script, and what is missing in words."""
+"""Export of a folder for LAMMPS: data file, tabulated pair style, input script, and notes on missing parts."""
 
 import os
 import re
@@ -189,7 +189,7 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:
-    """Raise if a file exists there that no export wrote."""
+    """Raise if a file exists there that is not from an earlier export."""
     for path in paths:
         if not os.path.lexists(path):
             continue

@@ -80,7 +80,7 @@ def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
 
 
 def _pull_and_adjacency(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return (φ ‖n_ij‖, a_ij) at each distance, from many pairs that are out of each other's range."""
+    """Return (φ ‖n_ij‖, a_ij) at each distance, from many separate pairs."""
     n, reach = len(r), term.pair.range
     below = np.minimum(r, np.nextafter(reach, 0.0))  # at the range itself the limit from within
     q, p = np.zeros((2 * n, 2)), np.zeros((2 * n, 2))

@@ -53,7 +53,7 @@ def _ensure_fits(n: int, m: int) -> None:
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:
-    """Return the sites `basis` in each of counts[0] × counts[1] ... cells of edge vectors `cell`, in units of d."""
+    """Return the sites `basis` in counts[0] × counts[1] × ... cells with edge vectors `cell`, in units of d."""
     sizes = [ensure_count(name, value) for name, value in counts.items()]
     _ensure_fits(len(basis) * prod(sizes), len(counts))
     corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))

@@ -81,12 +81,12 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
 
 
 def _padded(q: FloatArray) -> FloatArray:
-    """Return positions in space, with zeros for the coordinates that they lack."""
+    """Return positions padded with zeros to three coordinates."""
     return np.pad(q, ((0, 0), (0, 3 - q.shape[1])))
 
 
 def _close_links(x: FloatArray, links: LinkArray, reach: float) -> Iterator[tuple[Any, Any]]:
-    """Yield arrays (a, b), a < b, of links whose boxes, seen along the third axis, come within reach of each other."""
+    """Yield arrays (a, b), a < b, of links whose boxes, projected along the third axis, are within reach."""
     import shapely
 
     ends, slack = x[links, :2], 0.5 * reach * (1.0 + 1e-9)
@@ -150,7 +150,7 @@ def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
 
 
 def _common_exponent(q: FloatArray) -> int:
-    """Return an s >= 0, nearly the least, for which 2^s q are whole numbers."""
+    """Return an s >= 0, nearly the least, for which all entries of 2^s q are whole numbers."""
     values = np.abs(q[q != 0.0])
     return max(0, 53 - int(np.frexp(values.min())[1])) if values.size else 0
 

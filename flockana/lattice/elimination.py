@@ -151,7 +151,7 @@ def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
 
 
 def _agents_linked(matrix: Any, m: int) -> tuple[Indices, Indices]:
-    """Return the pairs i < j of agents that a matrix couples."""
+    """Return the pairs i < j of agents coupled by a matrix."""
     from scipy.sparse import coo_array
 
     entries, n = matrix.tocoo(), matrix.shape[0] // m

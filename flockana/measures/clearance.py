@@ -93,7 +93,7 @@ def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
 
 
 class _CurveMinimum(NamedTuple):
-    """Minimum over curves: a lower bound, the least value found, its parameter and curve."""
+    """Minimum over curves: a lower bound, the least known value, its parameter and curve."""
 
     lower: float
     value: float
@@ -110,7 +110,7 @@ class _Minimum:
         self.lower = self.reached = float(at_samples[k, self.agent])
 
     def update(self, bound: _CurveMinimum, t: FloatArray, interval: Any, agent: Any) -> None:
-        """Lower the least clearance so far where some agents' intervals between samples may go below it."""
+        """Lower the least clearance where some agents may come closer between samples."""
         self.lower = min(self.lower, bound.lower)
         if bound.value < self.reached:
             k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])

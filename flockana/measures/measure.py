@@ -1,4 +1,4 @@
-"""Table of measures of runs, over time and as one number.
+"""Table of measures of runs, as time series and as single numbers.
 
 A file of this package that defines ``MEASURES`` adds to it: `Trajectory.metrics`, ensembles and plots then know them.
 What only the runs of one law have is in that law's `measures`.
@@ -32,7 +32,7 @@ class Flock:
 
 
 class Series(NamedTuple):
-    """Measure that a law takes of its own runs: values, or a function that computes them."""
+    """Measure of a law's own runs: values, or a function that computes them."""
 
     text: str
     values: FloatArray | Callable[[], FloatArray]
@@ -81,7 +81,7 @@ class Measure:
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:
-        """Return the number that an ensemble keeps of a run; NaN where it is not defined for the law."""
+        """Return the number that summarises a run in an ensemble; NaN if undefined for the law."""
         if not self.defined(run.law):
             return nan
         if self.of_run is not None:

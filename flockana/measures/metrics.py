@@ -149,7 +149,7 @@ def diameter(x: Any) -> float:
 
 
 def order(p: Any) -> float:
-    """Return the polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
+    """Return the polar order ‖Σ p_i/‖p_i‖‖/n: 1 for a common direction; agents at rest count as 0.
 
     Examples
     --------

@@ -69,7 +69,7 @@ def closest_approach(
 
 
 def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray, noises: FloatArray) -> Iterator[Any]:
-    """Yield (interval, lower bound, distance reached, share, i, j) where a pair may come nearer than at both ends."""
+    """Yield (interval, lower bound, distance, share, i, j) where a pair may come nearer than at both ends."""
     q, p, u = (np.ascontiguousarray(x) for x in states)
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
@@ -109,7 +109,7 @@ def cohesion_bound(
 
 @dataclass(frozen=True)
 class Contact:
-    """Pair of agents within the contact tolerance of each other, and when."""
+    """Pair of agents within the contact tolerance, with the time of contact."""
 
     i: int  # i, j: the agents, i < j
     j: int

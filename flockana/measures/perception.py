@@ -26,13 +26,13 @@ def ensure_net(name: str, links: Any) -> Edges:
 
 
 def ensure_in_flock(name: str, pairs: Edges, n: int) -> None:
-    """Raise if pairs name an agent that n agents are without."""
+    """Raise if pairs name an agent outside a flock of n agents."""
     if (last := max(map(max, pairs), default=0)) >= n:
         raise ArgumentError(f"{name} name agent {last} but there are {n} agents: expected numbers 0 to {n - 1}")
 
 
 def _pairs(name: str, given: Any, once: str, *, directed: bool = True) -> Edges:
-    """Return pairs of different agents in the order given, the lesser first unless they are directed."""
+    """Return pairs of different agents in the given order, smaller index first unless directed."""
     unique: dict[tuple[int, int], None] = {}
     if not isinstance(given, Iterable):
         raise ArgumentError(f"{name} = {given!r}: expected pairs of agents such as ((0, 1), (1, 2))")
@@ -81,7 +81,7 @@ def incidence(n: int, edges: Edges) -> FloatArray:
 
 
 def receivers(n: int, edges: Edges) -> FloatArray:
-    """Return D_in, shape (n, M): D with the entries of receivers only. The loop holds D_in Dᵀ, not D Dᵀ."""
+    """Return D_in, shape (n, M): the incidence matrix with receivers' entries only."""
     return np.maximum(incidence(n, edges), 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Measures defined for any flock: of its net, its extent and its velocities."""
+"""Measures defined for any flock: net, extent and velocities."""
 
 from functools import partial
 from typing import Any

@@ -1,4 +1,4 @@
-"""Joint connectivity: time windows over which the nets, taken together, connect all agents."""
+"""Joint connectivity: time windows in which the union of the nets connects all agents."""
 
 from collections.abc import Iterable
 from itertools import pairwise
@@ -49,7 +49,7 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
-    """Return windows of a run's samples over which its nets are jointly connected."""
+    """Return the windows of a run's samples with a jointly connected net."""
     # A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{run.law.title} has no net: expected a run of a law with a range")
