@@ -1,4 +1,4 @@
-"""Rigorous verdicts on a scenario, from a tube and the certified basin that it ends in."""
+"""Rigorous verdicts on a scenario, from a tube and the certified basin at its end."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

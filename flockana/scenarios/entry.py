@@ -1,4 +1,4 @@
-"""Entries of the catalogue: builders of scenarios, and expected statuses: ``verified("os-3:i") | refuted("E11")``."""
+"""Catalogue entries: scenario builders and expected statuses: ``verified("os-3:i") | refuted("E11")``."""
 
 from collections.abc import Callable
 from typing import Any
@@ -24,7 +24,7 @@ def entry(
     reports: tuple[Report, ...] = (),
     **fields: Any,
 ) -> Builder:
-    """Return the builder of a scenario from time 0 on of which the start alone depends on the seed."""
+    """Return the builder of a scenario from time 0 whose start alone depends on the seed."""
 
     def build(seed: int = 0) -> Scenario:
         return Scenario(name, title, source, law, *draw(seed), (0.0, end), seed, expected, reports, **fields)

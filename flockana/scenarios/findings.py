@@ -28,7 +28,7 @@ PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "norm
 
 
 def report(name: str, text: str) -> Callable[[Check], Report]:
-    """Return a decorator that turns a check of a run into a report; the claim takes the report's name."""
+    """Return a decorator that turns a check of a run into a report with the report's name as claim."""
 
     def made(check: Check) -> Report:
         return Report(name, text, lambda run, tolerances: replace(check(run, tolerances), name=name))

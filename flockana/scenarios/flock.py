@@ -94,7 +94,7 @@ class Flock(NotEvidence, WithStart):
         return self.scenario(seed).run(progress=progress)
 
     def theorems(self, seed: int = 0) -> tuple[str, ...]:
-        """Return the ids of the theorems that are about this law."""
+        """Return the ids of the theorems about this law."""
         return theorems_about(self.law, *self.start(seed), self.t_span[0])
 
     def verify(
@@ -119,7 +119,7 @@ class Flock(NotEvidence, WithStart):
 
 
 def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = None, t_span: Any = None) -> Any:
-    """Return the scenario that was given, or the flock made of a law and a start."""
+    """Return the given scenario, or a flock from a law and a start."""
     parts = {key: v for key, v in {"law": law, "q0": q0, "p0": p0, "t_span": t_span}.items() if v is not None}
     if scenario is not None and parts:
         raise ArgumentError(f"a scenario and {', '.join(parts)}: expected the one or the other")
@@ -129,7 +129,7 @@ def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = N
 
 
 def as_scenario(given: Any, seed: int = 0) -> Scenario:
-    """Return a scenario from its name, a flock, or itself."""
+    """Return a scenario from a name, a flock or a scenario."""
     if isinstance(given, str):
         return named_scenario(given, seed)
     if isinstance(given, Flock):
@@ -140,6 +140,6 @@ def as_scenario(given: Any, seed: int = 0) -> Scenario:
 
 
 def run_of(given: Any = None, *, seed: int = 0, **parts: Any) -> Trajectory:
-    """Return a run as it is, or simulate a scenario, its name, a flock, or the parts of a flock."""
+    """Return a given run, or simulate a scenario, its name, a flock, or the parts of a flock."""
     item = chosen(given, **parts)
     return as_scenario(item, seed).run() if isinstance(item, str | Flock | Scenario) else ensure_run(item)

@@ -1,4 +1,4 @@
-"""One common start under many laws, with the theorem on each law and the outcome.
+"""Common start under many laws, with the theorem of each law and the outcome.
 
 A further law is one more `LawEntry` in the `ONE_START` of a source's scenarios: its name, how it is built for this
 start, the theorem that speaks of its runs, and what that promises in a few words.
@@ -52,22 +52,22 @@ class Outcome:
 
     @property
     def velocity_share(self) -> float:
-        """Greatest difference of two velocities at the end over that at the start."""
+        """Return the ratio of the final to the initial greatest velocity difference."""
         return diameter(self.run.p[-1]) / diameter(self.run.p[0])
 
     @property
     def position_share(self) -> float:
-        """Greatest distance of two agents at the end over that at the start."""
+        """Return the ratio of the final to the initial greatest distance of two agents."""
         return diameter(self.run.q[-1]) / diameter(self.run.q[0])
 
     @property
     def groups(self) -> int:
-        """Number of components of the net within the common range at the end."""
+        """Return the number of net components within the common range at the end."""
         return int(components(self.run.n, links(self.run.q[-1], RANGE)).max()) + 1
 
     @property
     def least_distance(self) -> float:
-        """Least distance of two agents at the samples."""
+        """Return the least distance of two agents at the samples."""
         return float(self.run.metric("min_distance").min())
 
 

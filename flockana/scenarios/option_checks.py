@@ -1,4 +1,4 @@
-"""Checks of a scenario's parts and options before anything is run."""
+"""Checks of a scenario's parts and options before any run."""
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
@@ -24,7 +24,7 @@ _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
 
 
 def ensure_parts(parts: Mapping[str, Any]) -> None:
-    """Raise unless a scenario's fields have the right kinds; no start is drawn."""
+    """Raise unless a scenario's fields have the right types, without drawing a start."""
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
     ensure_any_law(parts["law"])
@@ -73,7 +73,7 @@ def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, A
 
 
 def _ensure_like(default: Any, key: str, value: Any) -> None:
-    """Raise unless an option is of the kind of its default."""
+    """Raise unless an option has the type of its default."""
     if isinstance(default, bool):
         if not isinstance(value, bool):
             raise ArgumentError(f"{key} = {value!r}: expected True or False")

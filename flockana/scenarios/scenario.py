@@ -26,7 +26,7 @@ OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own a
 
 @dataclass(frozen=True)
 class Report:
-    """Statement that a source makes about its run, with a function that judges it."""
+    """Source's statement about its run, with a function that judges it."""
 
     name: str  # short name
     text: str  # what the source reports, in our words
@@ -163,7 +163,7 @@ class Scenario(WithStart):
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:
-        """Return how a verdict differs from the expected one, one line each.
+        """Return differences of a verdict from the expected one, one line each.
 
         Parameters
         ----------
@@ -178,7 +178,7 @@ for _name in ("q0", "p0"):
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
-    """Return where a verdict differs from expected statuses or contradicts a proof, one line each."""
+    """Return differences of a verdict from expected statuses or proofs, one line each."""
     # Statuses are keyed by theorem id and by ``"id:claim"``.
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
     differ = (

@@ -1,1 +1,1 @@
-"""Solvers: one frozen class a file, with coefficients, order, and which laws it can step."""
+"""Solvers: one frozen class per file, with coefficients, order, and applicable laws."""

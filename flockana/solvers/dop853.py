@@ -1,4 +1,4 @@
-"""The coefficients of DOP853, of order 8 with error estimates of orders 5 and 3 and a dense output of order 7.
+"""Coefficients of DOP853, of order 8 with error estimates of orders 5 and 3 and a dense output of order 7.
 
 Prince and Dormand's method as Hairer, Nørsett and Wanner give it (Solving Ordinary Differential Equations I, second
 edition, section II.5 and the program DOP853): by stage, what is not 0. The same numbers as scipy's, without all that
@@ -91,7 +91,7 @@ class DOP853(AdaptivePair):
 
     @cached_property
     def tableau(self) -> Tableau:
-        """Coefficients; the interpolant in powers of θ, where as published it goes by θ and 1 − θ in turns."""
+        """Return the tableau, with the published interpolant converted to powers of θ."""
         count = len(C)
         a, estimates = _dense_rows(A, count), _dense_rows((E5, E3), STAGES + 1)
         whole, first, last = a[STAGES], np.eye(count)[0], np.eye(count)[STAGES]

@@ -4,12 +4,12 @@ from flockana.solvers.taylor_step import TaylorStep
 
 
 class EulerMaruyama(TaylorStep):
-    """Taylor steps with white noise: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held."""
+    """Taylor steps with white noise: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact for constant input."""
 
     takes_noise = True
     order_of_wrapped = 1
 
     @property
     def name(self) -> str:
-        """Name by which `simulate(..., method=)` knows it."""
+        """Name of the solver for `simulate(..., method=)`."""
         return "Euler-Maruyama"

@@ -4,7 +4,7 @@ from flockana.solvers.fixed_steps import FixedStep
 
 
 class ExplicitEuler(FixedStep):
-    """q' = q + dt p, p' = p + dt u(t, q, p): of order 1, and unstable wherever a swing is not damped.
+    """Explicit Euler steps q' = q + dt p, p' = p + dt u(t, q, p), of order 1; unstable for undamped oscillations.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Methods of fixed steps, and laws in their steps: maps."""
+"""Fixed-step methods, and maps that apply them to laws."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
 
 @dataclass(frozen=True)
 class _Stepwise(Solver):
-    """Solver with a step; apart from what makes a map of it, so that types follow `FixedStep.__new__`."""
+    """Typing base of solvers with a step, separate from `FixedStep.__new__`."""
 
     dt: float  # type: ignore[misc]  # of an instance here
 
@@ -72,7 +72,7 @@ class FixedStep(_Stepwise):
     order_of_wrapped: ClassVar[int] = 0  # by which files name it where it steps a wrapped law
 
     def __new__(cls, *given: Any, **named: Any) -> Any:
-        """Return the solver; given a law too, the law in its steps."""
+        """Return the solver, or with a law the map of its steps."""
         law, *rest = (named.pop("law"), *given) if "law" in named else given or (None,)
         stepped: Any = law
         if not isinstance(law, LawOfMotion):
@@ -97,7 +97,7 @@ class FixedStep(_Stepwise):
 
 @dataclass(frozen=True)
 class FixedSteps(DiscreteLaw):
-    """Map that steps a law by a solver: steps of exactly `dt`, none of them checked or made again.
+    """Map that integrates a law with steps of exactly `dt`, without checks or repetition.
 
     What it claims is about the map. ``simulate(law, ..., method=RK4(0.01))`` is evidence about the law instead: there
     steps are checked, shortened and land on the times asked for. ``RK4(law, 0.01)`` is short for
@@ -164,7 +164,7 @@ class FixedSteps(DiscreteLaw):
 
     @property
     def spelling(self) -> tuple[Any, Mapping[str, Any]] | None:
-        """Class and arguments by which files hold it: the solver's class, called with a law; None of a subclass."""
+        """Return class and arguments for files: the solver's class, called with a law; None for a subclass."""
         if type(self) is not FixedSteps:
             return None
         arguments = {"law": self.law, "dt": self.dt}
@@ -184,12 +184,12 @@ class FixedSteps(DiscreteLaw):
 
     @property
     def position_factor(self) -> float | None:  # type: ignore[override]  # the solver's
-        """f of q' = q + h p + f h² u; None of a solver with more stages, and of a law with a memory."""
+        """Factor f of q' = q + h p + f h² u; None for solvers with more stages and laws with memory."""
         return None if needs_steps(self.law) else self.solver.position_factor
 
     @property
     def stability_function(self) -> tuple[float, ...] | None:  # type: ignore[override]  # the solver's
-        """Coefficients r of R: a step of a linear law with the matrix A is Σ r_k (h A)^k; None with a memory."""
+        """Coefficients r of R: a step of a linear law with matrix A is Σ r_k (h A)^k; None with memory."""
         return None if needs_steps(self.law) else self.solver.stability_function
 
     @property
@@ -223,16 +223,16 @@ class FixedSteps(DiscreteLaw):
 
     @cached_property
     def _memory(self) -> float:
-        """Longest time that the law looks back: delays within each other add up."""
+        """Return the longest memory of the law; nested delays add up."""
         return sum(one.memory for one in self._wrappers)
 
     @cached_property
     def past_steps(self) -> int:
-        """Steps of the past that are kept, the present one among them."""
+        """Number of stored past steps, including the present one."""
         return 2 + ceil(self._memory / self.dt - _WHOLE) if self._memory > 0.0 else 0
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the memory of a law that needs one; its past is the history of a delayed law, else uniform motion."""
+        """Return the memory at the start: a delayed law's history, else uniform motion."""
         if not needs_steps(self.law):
             return {}
         rows = (self.past_steps, *q.shape)
@@ -265,7 +265,7 @@ class FixedSteps(DiscreteLaw):
         return road(times, q, p, memory, wanted)
 
     def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
-        """Return (q, p, u, memory) after the steps wanted: by the law's own block, by a compiled one, or in Python."""
+        """Return (q, p, u, memory) after the requested steps: from the law's block, compiled code, or Python."""
         if self._first_order:  # positions are stepped as velocities of other laws are, by the rate that these give
             rate, q, p, after = self._interpreted(times, np.zeros_like(q), q, memory, wanted)
             return q, p, rate, after
@@ -278,7 +278,7 @@ class FixedSteps(DiscreteLaw):
     def _compiled(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States | None:
-        """Return the steps from one compiled call; None if the law is not compiled, or has too many pairs."""
+        """Return the steps from one compiled call; None without a compiled law or with too many pairs."""
         (n, m), steps = q.shape, int(wanted[-1])
         if (form := self.law.compiled_push(m)) is None:
             return None
@@ -359,7 +359,7 @@ class FixedSteps(DiscreteLaw):
 
 
 def _combination(weights: FloatArray, parts: Sequence[FloatArray]) -> FloatArray:
-    """Σ weights_j parts_j over the weights that are not 0."""
+    """Return Σ weights_j parts_j over the nonzero weights."""
     total: Any = 0.0
     for weight, part in zip(weights.tolist(), parts, strict=False):
         if weight:

@@ -1,4 +1,4 @@
-"""The past of a law in fixed steps: states at its steps, and between two a Hermite cubic."""
+"""Past of a law in fixed steps: stored states, with Hermite interpolation between them."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _WHOLE = 1e-9  # of a step: so near a step it is that step
 
 @dataclass
 class Past:
-    """States at the last steps of length h, the present one last."""
+    """States of the last steps of length h, the present one last."""
 
     rows: deque[Any]
     h: float
 
     def begin(self, u: FloatArray, *, first: bool) -> None:
-        """Store the input that departs from the present state; at the first step it jumps there."""
+        """Store the input after the present state; the input jumps at the first step."""
         q, p, arrives, _ = self.rows.pop()
         self.rows.append((q, p, arrives if first else u, u))
 
     def seen_at(self, t: float) -> Callable[[float], tuple[FloatArray, FloatArray]]:
-        """Return the function that gives (q, p) at an earlier time, the present one being t."""
+        """Return the function that gives (q, p) at an earlier time, with present time t."""
         return partial(self._state, t)
 
     def _state(self, t: float, s: float) -> tuple[FloatArray, FloatArray]:

@@ -4,6 +4,6 @@ from flockana.solvers.scipy_solver import ScipyPair
 
 
 class RK23(ScipyPair):
-    """Bogacki and Shampine's method of order 3: compiled where the law is."""
+    """Bogacki and Shampine's method of order 3, compiled for compiled laws."""
 
     order = 3

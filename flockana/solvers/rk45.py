@@ -4,6 +4,6 @@ from flockana.solvers.scipy_solver import ScipyPair
 
 
 class RK45(ScipyPair):
-    """Dormand and Prince's method of order 5: compiled where the law is."""
+    """Dormand and Prince's method of order 5, compiled for compiled laws."""
 
     order = 5

@@ -1,4 +1,4 @@
-"""Adapter of scipy's solvers: each of them for every law, and the coefficients of its Runge-Kutta pairs."""
+"""Adapter of scipy's solvers for all laws, with the coefficients of its Runge-Kutta pairs."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class Scipy(Solver):
 
     @property
     def name(self) -> str:
-        """Scipy's name, with a prefix where flockana compiles a method of that name."""
+        """Scipy's name of the method, with a prefix if flockana compiles a method of that name."""
         return self.kind if self.kind in ("Radau", "BDF", "LSODA") else f"scipy-{self.kind}"
 
     @property
     def one_step(self) -> bool:  # type: ignore[override]  # by kind
-        """Whether the next step hangs on the state alone."""
+        """Whether the next step depends on the present state alone."""
         return self.kind not in _WITH_A_PAST
 
     def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102
@@ -53,7 +53,7 @@ class Scipy(Solver):
 
 
 class ScipyPair(AdaptivePair):
-    """Pair with the coefficients of scipy's class of the same name."""
+    """Runge-Kutta pair with the coefficients of scipy's class of the same name."""
 
     in_scipy = True
 

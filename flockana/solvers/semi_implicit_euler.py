@@ -4,7 +4,7 @@ from flockana.solvers.fixed_steps import FixedStep
 
 
 class SemiImplicitEuler(FixedStep):
-    """p' = p + dt u(t, q, p), q' = q + dt p', for sources that give a step and no integrator.
+    """Semi-implicit Euler steps p' = p + dt u(t, q, p), q' = q + dt p', for sources that print a step only.
 
     Of order 1. As a map, where the law jumps it neither sees the jump nor resolves it, and where the law holds a pair
     at a jump it chatters about it (erratum L7).

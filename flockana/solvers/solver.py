@@ -1,4 +1,4 @@
-"""What a solver is: a frozen object that `simulate(..., method=)` takes."""
+"""Interface of solvers: frozen objects for `simulate(..., method=)`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Rows = Sequence[Sequence[float]]
 
 
 class Limits(NamedTuple):
-    """Limits of an interpreted run: the time to end at, tolerances, the longest step, and the first if it is known."""
+    """Limits of an interpreted run: end time, tolerances, longest step, and optional first step."""
 
     until: float
     rtol: float
@@ -51,12 +51,12 @@ class Solver(ABC):
 
     @property
     def name(self) -> str:
-        """Name by which `simulate(..., method=)` knows it."""
+        """Name of the solver for `simulate(..., method=)`."""
         return type(self).__name__
 
     @property
     def tableau(self) -> Tableau | None:
-        """Coefficients for compiled steps; None if it steps in Python only."""
+        """Coefficients for compiled steps; None for solvers in Python only."""
         return None
 
     @abstractmethod
@@ -75,7 +75,7 @@ class Solver(ABC):
 
 
 class AdaptivePair(Solver):
-    """Explicit Runge-Kutta pair: steps as long as its error estimate allows.
+    """Explicit Runge-Kutta pair with step length controlled by its error estimate.
 
     A subclass gives coefficients. Stage s is the rate at y + h Σ_j a_sj K_j and t + h Σ_j a_sj, the step ends at
     y + h Σ_j b_j K_j, and h Σ_j error_j K_j estimates its error, the last K being the rate at the end.
@@ -108,7 +108,7 @@ class AdaptivePair(Solver):
 
     @property
     def scipy_class(self) -> Any:
-        """Class of scipy's that makes the same steps in Python."""
+        """Class of scipy with the same steps in Python."""
         import scipy.integrate
 
         if self.in_scipy:
@@ -124,7 +124,7 @@ class AdaptivePair(Solver):
 
 
 def open_scipy(kind: Any, rate: Rate, t: float, y: FloatArray, limits: Limits, *, one_step: bool) -> Any:
-    """Return one of scipy's steppers; the first step is passed on to methods without a past."""
+    """Return one of scipy's steppers, with a given first step for one-step methods."""
     options: dict[str, Any] = {"rtol": limits.rtol, "atol": limits.atol, "max_step": limits.longest}
     if limits.first is not None and one_step:
         options["first_step"] = min(limits.first, limits.until - t, limits.longest)

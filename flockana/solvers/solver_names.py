@@ -18,7 +18,7 @@ _EXAMPLE = 'a solver such as RK4(0.01), or its name, such as "DOP853"'
 
 @cache
 def solvers() -> dict[str, Callable[..., Solver]]:
-    """Return what makes each solver, by its name: those of fixed steps take `dt`."""
+    """Return solver constructors by name; fixed-step ones take `dt`."""
     classes = [k for module in modules("flockana.solvers") for k in vars(module).values() if isinstance(k, type)]
     named = {k.__name__: k for k in classes if issubclass(k, Solver) and hasattr(k, "order") and k is not Scipy}
     named["Euler-Maruyama"] = named.pop("EulerMaruyama")
@@ -27,7 +27,7 @@ def solvers() -> dict[str, Callable[..., Solver]]:
 
 
 def solver_of(method: Any, dt: float | None) -> Solver:
-    """Return the solver that a method names; an object is itself, and has its own step.
+    """Return the solver of a method name; a solver object is returned as it is.
 
     Raises
     ------

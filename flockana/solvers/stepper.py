@@ -10,7 +10,7 @@ from flockana.solvers.tableau import Tableau
 
 
 class FixedStepper:
-    """Method of fixed steps, stepped towards a time in Python as scipy's solvers are."""
+    """Fixed-step method, stepped towards a time in Python like scipy's solvers."""
 
     def __init__(self, tableau: Tableau, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> None:
         self.tableau, self.rate, self.t, self.y, self.f, self.t_bound = tableau, rate, t, y, f, limits.until

@@ -1,4 +1,4 @@
-"""Coefficients of explicit Runge-Kutta methods, as `flockana.kernels.runge_kutta` reads them."""
+"""Coefficients of explicit Runge-Kutta methods, in the layout of `flockana.kernels.runge_kutta`."""
 
 from __future__ import annotations
 
@@ -67,12 +67,12 @@ def _square(a: Sequence[Sequence[float]], b: Sequence[float]) -> FloatArray:
 
 
 def _times(whole: FloatArray) -> FloatArray:
-    """Return the times of the stages as shares of the step, that of its end exactly 1."""
+    """Return the times of the stages as shares of the step, exactly 1 at its end."""
     return np.append(whole[:-1].sum(axis=1), 1.0)
 
 
 def _hermite(weights: FloatArray) -> FloatArray:
-    """Return the cubic through both ends of a step and their rates, in powers of θ."""
+    """Return the cubic from the states and rates at both ends of a step, in powers of θ."""
     powers = np.outer(weights, (0.0, 3.0, -2.0))
     powers[0] += (1.0, -2.0, 1.0)
     powers[-1] += (0.0, -1.0, 1.0)
@@ -80,7 +80,7 @@ def _hermite(weights: FloatArray) -> FloatArray:
 
 
 def shared_rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:
-    """Return a place for each stage's rate, reusing that of a rate which no later stage reads."""
+    """Return a storage row for each stage's rate, reusing rows of rates no longer needed."""
     count, stages = len(a), estimates.shape[1] - 1
     last = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
     for s in range(stages + 1):

@@ -1,10 +1,10 @@
-"""Taylor steps: q + p dt + ½ u dt², p + u dt, with u at the step's beginning."""
+"""Taylor steps: q + p dt + ½ u dt², p + u dt, with u at the beginning of the step."""
 
 from flockana.solvers.fixed_steps import FixedStep
 
 
 class TaylorStep(FixedStep):
-    """q' = q + dt p + ½ dt² u(t, q, p), p' = p + dt u: what a constant input does, all agents at once.
+    """Taylor steps q' = q + dt p + ½ dt² u(t, q, p), p' = p + dt u, exact for constant input.
 
     The R² notebook's iteration, and the plainest reading of a source that prints a step and no method. It is of order
     1: the input is not looked at again within the step, so that fast vibrations are fed with energy.

@@ -1,4 +1,4 @@
-"""Wrapped laws in fixed steps, as files hold them."""
+"""Wrapped laws in fixed steps, in the form stored in files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SOLVERS = {1: EulerMaruyama, 2: Heun, 4: RK4}
 
 @dataclass(frozen=True)
 class Stepped:
-    """Spelling of `FixedSteps` of a wrapped law by order: 1 Euler-Maruyama, 2 Heun, 4 classical Runge-Kutta.
+    """File form of `FixedSteps` of a wrapped law by order: 1 Euler-Maruyama, 2 Heun, 4 classical Runge-Kutta.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Stepped:
     order: int = 2
 
     def __new__(cls, law: Any, dt: float = 0.01, order: int = 2) -> Any:
-        """Return the law in steps, a `FixedSteps`."""
+        """Return the fixed-step map of a law, a `FixedSteps`."""
         ensure_kind("law", law, Wrapper, "a law that wraps one, such as Disturbed(law, ...)")
         if order not in _SOLVERS:
             raise ArgumentError(f"order = {order!r}: expected one of 1, 2, 4")
