@@ -1,4 +1,4 @@
-"""Obstacles of zone-based flocking beside balls and polygons: the walls of a box."""
+"""Walls of a box as obstacles of zone-based flocking."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -135,7 +135,7 @@ class ZoneWorld(ShortRepr):
         )
 
     def clearance(self, q: FloatArray) -> FloatArray:
-        """Return signed distances from all obstacles at samples, and a lower bound between some of them."""
+        """Return signed distances from all obstacles at samples, and lower bounds between consecutive ones."""
         return np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
@@ -178,5 +178,5 @@ class ZoneWorld(ShortRepr):
 
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
-    """Return the rows of all parts concatenated, and the indices at which the parts begin and end."""
+    """Return the concatenated rows of all parts, and the start index of each part."""
     return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

@@ -1,4 +1,4 @@
-"""Figures of a run of the minimal model: the common ones, and the profiles of Jond's Fig. 10."""
+"""Figures of a run of the minimal model: standard figures, and the profiles of Jond's Fig. 10."""
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.charts import Chart, panels

@@ -60,7 +60,7 @@ def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
 
 
 def _middle(run: Trajectory) -> int:
-    """Return the sample where a connected flock is most split, or nearest to an obstacle, or the middle."""
+    """Return the most split sample of a connected flock, or the nearest to an obstacle, or the middle one."""
     counts = component_counts(run)
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())

@@ -85,7 +85,7 @@ class ZoneRadii(ShortRepr):
 
 @dataclass(frozen=True)
 class ZoneWeights(ShortRepr):
-    """Weights of the six behaviours, and gains of the two that are means.
+    """Weights of the six behaviours, and gains of cohesion and alignment.
 
     The weights of cohesion and of alignment are divided by their sum, so equal ones cancel: 0.75 and 0.25 in the
     paper do nothing (A9). What sets the strength is `cohesion_gain` and `alignment_gain`, 1 as printed; the defaults
@@ -161,7 +161,7 @@ class ZoneWeights(ShortRepr):
 
 
 def per_pair(name: str, value: Any, *, square: bool = True) -> Table:
-    """Return one number >= 0, or a table of them: the weight of j for i."""
+    """Return one number >= 0, or a table of weights of j for i."""
     if np.ndim(value) == 0:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)

@@ -1,4 +1,4 @@
-"""Candidates near an agent, in the order of indices, so that sums over them equal sums over all agents exactly."""
+"""Candidate neighbours of an agent in index order, so that sums equal sums over all agents exactly."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ _SLACK = 1.0 + 1e-9  # for who is near by the rounding of a root
 
 
 class Cells(NamedTuple):
-    """Agents by cell, first agent of each cell, where the later adjacent rows of cells are, and each agent's cell."""
+    """Agents by cell, first agent of each cell, offsets of later adjacent cell rows, and each agent's cell."""
 
     order: IndexArray
     start: IndexArray
@@ -26,7 +26,7 @@ class Cells(NamedTuple):
 
 @kernel
 def sort_into_cells(q, reach):
-    """Return the cells of a flock; four empty arrays where looking at all agents is as fast."""
+    """Return the cells of a flock; four empty arrays for small flocks, which test all agents."""
     n, m = q.shape
     none = np.empty(0, np.int64)
     if n <= _FEW:
@@ -43,7 +43,7 @@ def sort_into_cells(q, reach):
 
 @kernel
 def gather(i, q, reach, cells, near):
-    """Write the indices of agents that may be within reach of agent i, itself included, to `near`; return the count."""
+    """Write the indices of agents possibly within reach of agent i (included) to `near`; return the count."""
     n, m = q.shape
     if cells.start.size == 0:
         for k in range(n):  # an instant before this one may have had cells
@@ -64,7 +64,7 @@ def gather(i, q, reach, cells, near):
 
 @kernel
 def _sort(near, count):
-    """Sort `count` indices in place by Shell's method; few ones by insertion, as their rows are sorted already."""
+    """Sort `count` indices in place by Shell's method, few ones by insertion."""
     gap = 1
     while count > _FEW and gap < count // 9:
         gap = 3 * gap + 1

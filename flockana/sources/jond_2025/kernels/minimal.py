@@ -17,7 +17,7 @@ _SLACK = 1.0 + 1e-12  # the search is strict and the radius closed: a few roundi
 
 
 class EqualEdges(NamedTuple):
-    """Numbers of a law whose edges differ by the perceiving agent's radius and spacing alone.
+    """Parameters of a law whose edges depend only on the perceiving agent's radius and spacing.
 
     `shared`: the spacing is β_i r_i |N_i|; `normalised`: the alignment weights of an agent sum to 1.
     """
@@ -32,7 +32,7 @@ class EqualEdges(NamedTuple):
 
 @kernel
 def _directed(q, first, second, square):
-    """(head, tail) of the edges among some pairs; a pair gives two, one or none: ‖x‖ ≤ R_i, closed."""
+    """Return (head, tail) of the directed edges among given pairs: an agent sees within its closed radius R_i."""
     head, tail = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64)
     count = 0
     for k in range(first.size):
@@ -48,7 +48,7 @@ def _directed(q, first, second, square):
 
 
 def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """(head, tail) of every directed edge: agent head[e] perceives agent tail[e], not farther than its own radius."""
+    """Return (head, tail) of every directed edge: agent head[e] perceives agent tail[e] within its own radius."""
     reach, square = float(radius.max()) * _SLACK, radius * radius
     parts = [_directed(q, i, j, square) for i, j in pair_blocks(q, reach)]
     if len(parts) == 1:
@@ -79,7 +79,7 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
 
 @kernel
 def _count(q, first, second, square, count):
-    """Add to the number of agents that each perceives, among some pairs."""
+    """Count the agents perceived by each agent, among some pairs."""
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
         s2 = square_between(q, i, j)
@@ -89,7 +89,7 @@ def _count(q, first, second, square, count):
 
 @kernel
 def _pull(q, p, first, second, square, mu, rho, align, u):
-    """`edge_forces` of the edges among some pairs, whose weights and lengths are the perceiving agent's."""
+    """Add edge forces among given pairs, with weights and lengths of the perceiving agent."""
     m = q.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
@@ -120,7 +120,7 @@ def perceived_forces(q: FloatArray, p: FloatArray, edges: EqualEdges, u: FloatAr
 
 @kernel
 def _squares(x, j, s2):
-    """Squared distances of all from agent j; coordinates (m, n)."""
+    """Return squared distances of all agents from agent j; coordinates (m, n)."""
     s2[:] = 0.0
     for c in range(x.shape[0]):
         here, there = x[c], x[c, j]
@@ -130,7 +130,7 @@ def _squares(x, j, s2):
 
 @kernel
 def _numbers(x, square, s2, count):
-    """How many agents each perceives."""
+    """Return the number of agents perceived by each agent."""
     count[:] = -1.0  # not oneself
     for j in range(s2.size):
         _squares(x, j, s2)
@@ -140,7 +140,7 @@ def _numbers(x, square, s2, count):
 
 @kernel
 def _springs(s2, mu, rho, w):
-    """Factor of x = q_j − q_i in the force on each."""
+    """Return the spring factor of x = q_j − q_i for each agent."""
     for i in range(s2.size):
         stretch = mu * (1.0 - rho[i] / np.sqrt(s2[i]))
         w[i] = stretch if s2[i] > 0.0 else 0.0
@@ -148,7 +148,7 @@ def _springs(s2, mu, rho, w):
 
 @kernel
 def _pull_along(here, there, now, then, s2, square, w, align, u):
-    """Add one component of the force of one agent on all; on those that do not perceive it a zero."""
+    """Add one force component of one agent on all agents; zero for agents that do not perceive it."""
     for i in range(u.size):
         force = w[i] * (there - here[i]) + align[i] * (then - now[i])
         u[i] += force if s2[i] <= square[i] else 0.0
@@ -156,7 +156,7 @@ def _pull_along(here, there, now, then, s2, square, w, align, u):
 
 @kernel
 def _pull_all(x, v, square, mu, rho, align, s2, w, u):
-    """`_pull` of all pairs: by those that are perceived, one after the other, on all others.
+    """Add edge forces of all pairs (`_pull`), perceived agent by perceived agent.
 
     So each agent's sum is in the order in which `_pull` adds to it, and loops over agents are compiled to SIMD.
     """
@@ -196,7 +196,7 @@ def _many_steps(x, v, square, edges, dt, steps):
 def semi_implicit_steps(
     q: FloatArray, p: FloatArray, edges: EqualEdges, dt: float, steps: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Semi-implicit Euler steps by `perceived_forces` of few agents: q, p after each and u before, (steps, n, m).
+    """Return semi-implicit Euler steps of few agents: q, p after each and u before, (steps, n, m).
 
     All pairs are looked at in each step. Up to `AT_ONCE` agents it is what steps one by one are, to the bit.
     """

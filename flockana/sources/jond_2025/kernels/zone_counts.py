@@ -1,4 +1,4 @@
-"""Numbers of agents in each other's zones, and of components of the flock, at each instant of a run."""
+"""Counts of agents in zones and of flock components, at each instant of a run."""
 
 import numpy as np
 import numpy.typing as npt
@@ -10,13 +10,13 @@ _SLACK = 1.0 + 1e-12  # the search is strict, and the zones are closed
 
 
 def _pairs(q: FloatArray, reach: float) -> tuple[IndexArray, IndexArray, FloatArray]:
-    """(i, j, distance) of all pairs within reach."""
+    """Return (i, j, distance) of all pairs within reach."""
     i, j = pair_list(q, reach * _SLACK)
     return i, j, np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
 
 
 def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> FloatArray:
-    """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
+    """Return the mean numbers of agents in an agent's zones of repulsion, conflict, attraction, (T, n, m) -> (T, 3)."""
     counts = np.zeros((len(q), 3))
     for at, count in zip(q, counts, strict=True):
         i, j, d = _pairs(at, float(a.max()))
@@ -27,7 +27,7 @@ def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> F
 
 
 def fragments(q: FloatArray, a: FloatArray) -> npt.NDArray[np.int64]:
-    """(components, agents in the largest) over time, (T, 2); two agents are linked if one attracts the other."""
+    """Return (components, agents in the largest) over time, (T, 2), with links by the attraction zone."""
     counts = np.zeros((len(q), 2), np.int64)
     for at, count in zip(q, counts, strict=True):
         (i, j, d), parent = _pairs(at, float(a.max())), np.arange(q.shape[1], dtype=np.int32)

@@ -1,4 +1,4 @@
-"""Obstacles that an agent's zone meets, and their push: polygons, balls and the walls of a box.
+"""Obstacles in contact with an agent's zone, and their push: polygons, balls and the walls of a box.
 
 The zone is a triangle in the plane and a cone in space: an altitude `depth` along the heading, and a half base `half`
 across it. It is a body of revolution about the heading, so that against balls and walls both are one formula in the
@@ -22,7 +22,7 @@ def _between(ax, ay, bx, by, x, y):
 
 @kernel
 def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
-    """Whether two closed segments of the plane share a point; touching counts."""
+    """Return whether two closed segments of the plane share a point, touching included."""
     o1, o2 = _cross(ax, ay, bx, by, cx, cy), _cross(ax, ay, bx, by, dx, dy)
     o3, o4 = _cross(cx, cy, dx, dy, ax, ay), _cross(cx, cy, dx, dy, bx, by)
     if ((o1 > 0.0) != (o2 > 0.0)) and ((o3 > 0.0) != (o4 > 0.0)) and o1 * o2 != 0.0 and o3 * o4 != 0.0:
@@ -38,7 +38,7 @@ def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
 
 @kernel
 def to_segment(x, y, ax, ay, bx, by):
-    """Vector from a point to the closest point of a segment, which may be a point."""
+    """Return the vector from a point to the closest point of a segment, possibly degenerate."""
     sx, sy = bx - ax, by - ay
     length2 = sx * sx + sy * sy
     share = 0.0
@@ -49,7 +49,7 @@ def to_segment(x, y, ax, ay, bx, by):
 
 @kernel
 def to_boundary(x, y, edges, first, last):
-    """(vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
+    """Return (vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
     best, gx, gy, inside = inf, 0.0, 0.0, False
     for k in range(first, last):
         ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
@@ -64,13 +64,13 @@ def to_boundary(x, y, edges, first, last):
 
 @kernel
 def _in_zone(along, across, depth, half):
-    """Whether a zone holds a point of these coordinates along and across (>= 0) the heading."""
+    """Return whether a zone contains a point with coordinates along and across (>= 0) the heading."""
     return along >= 0.0 and along / depth + across / half <= 1.0
 
 
 @kernel
 def _crosses(zone, edge, literal):
-    """Whether a side of a triangular zone meets a segment; literal: one of those from the agent to the corners.
+    """Return whether a side of a triangular zone meets a segment; `literal` tests the sides at the agent only.
 
     The zone is (x, y, hx, hy, depth, half): its agent's place and unit heading, its altitude and half base.
     """
@@ -86,7 +86,7 @@ def _crosses(zone, edge, literal):
 
 @kernel
 def _holds(zone, px, py):
-    """Whether a triangular zone holds a point."""
+    """Return whether a triangular zone contains a point."""
     x, y, hx, hy, depth, half = zone
     return _in_zone((px - x) * hx + (py - y) * hy, abs((px - x) * hy - (py - y) * hx), depth, half)
 
@@ -114,7 +114,7 @@ def _edge_terms(zone, c, world, first, last, inside, choices, out):
 
 @kernel
 def zone_meets_polygon(zone, edges, first, last, literal):
-    """Whether a triangular zone, as in `_crosses`, meets the polygon edges[first:last].
+    """Return whether a triangular zone, as in `_crosses`, meets the polygon edges[first:last].
 
     Literal: one of the segments from the agent to the three corners meets an edge, which misses a corner of the
     polygon that comes in between them. Else exact: edges cross, or one of the two holds the other.
@@ -129,7 +129,7 @@ def zone_meets_polygon(zone, edges, first, last, literal):
 
 @kernel
 def zone_meets_ball(along, across, depth, half, radius, literal):
-    """As `zone_meets_polygon` for a ball whose centre has these coordinates along and across (>= 0) the heading."""
+    """Return whether a triangular zone meets a ball, by its centre along and across (>= 0) the heading."""
     bx, by = to_segment(along, across, 0.0, 0.0, 0.0, half)
     ux, uy = to_segment(along, across, 0.0, 0.0, depth, 0.0)
     vx, vy = to_segment(along, across, depth, 0.0, 0.0, half)
@@ -141,7 +141,7 @@ def zone_meets_ball(along, across, depth, half, radius, literal):
 
 @kernel
 def push(distance, c, inside, choices):
-    """Factor of the unit vector b from the agent to the closest boundary point, for one obstacle or wall."""
+    """Return the push factor along the unit vector b to the closest boundary point, for one obstacle or wall."""
     if inside and choices.inside == 0:
         return distance + c
     return min(0.0, distance - c) if choices.obstacle_force != 2 else distance - c
@@ -188,7 +188,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
 
 @kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
-    """Add one term for each wall that the zone reaches, or for the nearest of them."""
+    """Add one push term for each wall within the zone, or for the nearest wall."""
     buffer, nearest, close = choices.obstacle_zone == 1, choices.walls == 1, inf
     axis, force = -1, 0.0
     for k in range(x.size):

@@ -41,7 +41,7 @@ class Zones(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """Numbers of the law."""
+    """Numeric settings of zone-based flocking."""
 
     dt: float
     desired_speed: float
@@ -57,7 +57,7 @@ class Settings(NamedTuple):
 
 
 class Choices(NamedTuple):
-    """Readings of the paper: 0 is the recommended one, the others as in `laws.zone_flocking`."""
+    """Choices of reading the paper: 0 is the recommended reading, others as in `laws.zone_flocking`."""
 
     form: int
     order: int
@@ -87,7 +87,7 @@ class World(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """All of the law's numbers."""
+    """Rules of zone-based flocking: all parameters together."""
 
     zones: Zones
     settings: Settings
@@ -108,7 +108,7 @@ class Flock(NamedTuple):
 
 @kernel
 def saturation(norm, bound):
-    """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
+    """Return the factor by which (9) and (10) shorten a vector: tanh(x)/x at x = norm/bound, 1 at 0."""
     x = norm / bound
     return 1.0 - x * x / 3.0 if x < _NEAR_ZERO else tanh(x) / x
 
@@ -123,7 +123,7 @@ def _length(x):
 
 @kernel
 def _weight(table, i, j):
-    """Return the weight of a pair from a table, which is one number if all are equal."""
+    """Return the weight of a pair from a table of weights, or the single weight."""
     return table[0, 0] if table.size == 1 else table[i, j]
 
 
@@ -137,7 +137,7 @@ def _noise_factor(settings, step, i, j, behaviour):
 
 @register_jitable  # a call would hand over a hundred numbers
 def _neighbours(i, near, flock, step, rules, out):
-    """Cohesion, alignment and separation of agent i; only agents in `near` can be within its zones.
+    """Return cohesion, alignment and separation of agent i from the candidates in `near`.
 
     Returns the least distance of those who attract it, infinite without any.
     """
@@ -190,7 +190,7 @@ def _neighbours(i, near, flock, step, rules, out):
 
 @kernel
 def _aliens(i, flock, step, rules, out):
-    """Strategic separation (7) of agent i from the aliens that it watches."""
+    """Return the strategic separation (7) of agent i from watched aliens."""
     q, alien, zones, settings, annulus = flock.q, flock.alien, rules.zones, rules.settings, rules.choices.surveillance
     m = q.shape[1]
     for e in range(alien.shape[0]):
@@ -206,7 +206,7 @@ def _aliens(i, flock, step, rules, out):
 
 @kernel
 def altitude(speed, r, c, a, settings, choices):
-    """Length of the obstacle zone along the heading: c, a, or from r at rest to a at the greatest speed."""
+    """Return the length of the obstacle zone along the heading: c, a, or between r at rest and a at full speed."""
     if choices.zone_length == 2:
         return r + (a - r) * min(1.0, speed / settings.v_max)
     return a if choices.zone_length == 1 else c
@@ -214,7 +214,7 @@ def altitude(speed, r, c, a, settings, choices):
 
 @kernel
 def _grown(reach, a, nearest, settings):
-    """Return the next radius of attraction: a if an agent is within a, `reach` if one is within it, else larger."""
+    """Return the next radius of attraction: a with a neighbour within a, `reach` with one within it, else larger."""
     if nearest <= a:
         return a
     return reach if nearest <= reach else reach + settings.dt * settings.growth
@@ -263,7 +263,7 @@ def behave(i, near, flock, step, rules, out):
 
 @kernel
 def behaviours(flock, step, rules):
-    """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
+    """Return the six behaviours of all agents at one instant, shape (6, n, m); headings and estimates change."""
     q, reach = flock.q, flock.reach
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
@@ -277,7 +277,7 @@ def behaviours(flock, step, rules):
 
 @kernel
 def _move(i, q, p, u, step, settings, literal):
-    """Steps (j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
+    """Move agent i by its input and a gust, with bounded speed (steps (j), (k))."""
     m = q.shape[1]
     for k in range(m):
         p[i, k] += settings.dt * u[i, k]
@@ -292,7 +292,7 @@ def _move(i, q, p, u, step, settings, literal):
 
 @kernel
 def _move_aliens(alien, q, dt, world):
-    """Move every alien towards the nearest agent that it detects, within its territory."""
+    """Move every alien towards the nearest detected agent, within its territory."""
     m = q.shape[1]
     for e in range(alien.shape[0]):
         best, prey = world.detection[e] ** 2, -1
@@ -317,7 +317,7 @@ def _move_aliens(alien, q, dt, world):
 
 @kernel
 def _take_step(flock, u, step, cells, near, rules, out, total):
-    """Advance all agents by one step, then the aliens; the cells serve for the whole step."""
+    """Advance all agents by one step, then the aliens, with one cell list for the step."""
     (q, p, _, _, reach, alien), (zones, settings, choices, world) = flock, rules
     (n, m), in_turn, literal = q.shape, choices.order == 1, choices.speed_bound == 1
     for i in range(n):
@@ -342,7 +342,7 @@ def _take_step(flock, u, step, cells, near, rules, out, total):
 
 @kernel
 def run(flock, first, rules, steps):
-    """Take `steps` steps from the one of this number; the flock's arrays are changed.
+    """Run `steps` steps from a given step number; the flock's arrays are changed.
 
     Returns (q, p, u, heading, estimate, reach, alien) over time, each (steps, ...).
     """

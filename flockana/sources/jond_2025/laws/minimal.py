@@ -1,4 +1,4 @@
-"""The minimal flocking model of the bearing-distance paper: alignment with the mean, and springs of length α_i r_i."""
+"""Minimal flocking model of the bearing-distance paper: alignment with the mean, and springs of length α_i r_i."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class MinimalFlocking(Law):
 
     @property
     def scales(self) -> Scales:
-        """The longest desired spacing, or perception radius, and the time of the stiffest spring or of alignment."""
+        """Length and time scales: longest spacing or perception radius, time of the stiffest spring or of alignment."""
         length = float(np.max(self.radius if self.spacing is None else self.spacing))
         heard = float(np.max(self.sigma))
         rate = max(float(np.sqrt(np.max(self.mu))), float(heard > 0.0) if self.normalised else heard)
@@ -113,13 +113,13 @@ class MinimalFlocking(Law):
     functions = ()  # neighbours are chosen by radii of agents
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the smallest perception radius; the spring to a neighbour is linear in the distance."""
+        """Return the smallest perception radius as feature; springs are linear in the distance."""
         radius = float(np.min(self.radius)) if self.edges is None else inf
         return (Feature("the perception radii", "pairs", radius),)
 
     @property
     def surfaces(self) -> tuple[PerAgent, ...]:
-        """The perception radius of every agent; none on a frozen graph."""
+        """Perception radius of every agent; none on a frozen graph."""
         return (self.radius,) if self.edges is None else ()
 
     def in_units(self, length: float, time: float) -> MinimalFlocking:
@@ -149,7 +149,7 @@ class MinimalFlocking(Law):
 
     @cached_property
     def _named(self) -> int:
-        """Number of agents that the edges name, at least."""
+        """Return the least number of agents named by the edges."""
         return 1 + max((max(edge) for edge in self.edges or ()), default=-1)
 
     def _check_sizes(self) -> None:
@@ -160,7 +160,7 @@ class MinimalFlocking(Law):
             raise ArgumentError(f"edges name agent {self._named - 1}: expected agents below {smallest}, as in {sizes}")
 
     def _check_means(self) -> None:
-        """Raise where the weights of a mean over agents are all zero."""
+        """Raise if all weights of a mean over agents are zero."""
         if not isinstance(self.sigma, tuple) or not self.normalised:
             return
         sigma = np.array(self.sigma)
@@ -177,7 +177,7 @@ class MinimalFlocking(Law):
 
     @property
     def agents(self) -> int | None:
-        """Number of agents that the tables fix; None if all parameters are single numbers."""
+        """Number of agents fixed by parameter tables; None for single numbers."""
         return next(iter(self._sizes.values()), None)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
@@ -212,7 +212,7 @@ class MinimalFlocking(Law):
 
     @cached_property
     def reciprocal(self) -> bool:
-        """Whether the graph is frozen and every edge has its reverse, of equal μ, spacing and alignment weight.
+        """Whether the graph is frozen and every edge has an equal reverse edge.
 
         Equal but for rounding: a spacing β_i r_i |N_i| is a product, and so is all that is given in other units.
         """
@@ -228,7 +228,7 @@ class MinimalFlocking(Law):
         return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
 
     def _alike(self, n: int) -> kernel.EqualEdges:
-        """Return the numbers of a law whose weights are all equal."""
+        """Return the parameters of a law with equal weights."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
         lengths = np.full(n, 1.0 if spacing is None else spacing)
@@ -236,7 +236,7 @@ class MinimalFlocking(Law):
         return kernel.EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
 
     def block(self, solver: Any) -> Block | None:
-        """Return the loop of `semi_implicit` for semi-implicit Euler steps; it gives None where `flow` serves.
+        """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used.
 
         Parameters
         ----------
@@ -254,7 +254,7 @@ class MinimalFlocking(Law):
         return steps
 
     def steps_many(self, n: int) -> bool:
-        """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`."""
+        """Return whether `semi_implicit` is used for a flock of this size, rather than `flow`."""
         return (
             self._one_weight and n <= kernel.AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
         )
@@ -262,7 +262,7 @@ class MinimalFlocking(Law):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q, p after each step kept and u before, by semi-implicit Euler in one compiled loop.
+        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop.
 
         Only where `steps_many` says so.
 

@@ -1,4 +1,4 @@
-"""Zone-based flocking from bearings and distances (Jond): a map from step to step, and every reading of its text.
+"""Zone-based flocking from bearings and distances (Jond): a discrete map with all readings of the paper.
 
 Where the paper is silent, or its letter misbehaves, the law has a choice by name: the first of `CHOICES` is the
 recommended one and the default, the last is the letter of the paper (`ZoneFlocking.printed`). Of walls and
@@ -153,7 +153,7 @@ class ZoneFlocking(DiscreteLaw):
 
     @property
     def scales(self) -> Scales:
-        """The radius of attraction, and the time to cross it at the greatest speed."""
+        """Length and time scales: the radius of attraction, and the time to cross it at the greatest speed."""
         length = self.radii.reach[2]
         return Scales(length, length / self.v_max)
 
@@ -226,7 +226,7 @@ class ZoneFlocking(DiscreteLaw):
         return memory | self._needed_memory(radii, np.array(0.0), self.world.alien_starts)
 
     def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
-        """Return the memory without parts that are not needed."""
+        """Return the memory without unneeded parts."""
         needs = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needs[name]}
 

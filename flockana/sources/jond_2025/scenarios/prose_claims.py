@@ -1,4 +1,4 @@
-"""Prose statements of Jond's bearing-distance paper, each on a run.
+"""Prose statements of Jond's bearing-distance paper, each tested on a run.
 
 None of these is simulated in the paper. Starts and settings are those of its section 5.1 or ours; each text says so.
 """

@@ -44,7 +44,7 @@ GAP = ZoneWorld((_SLAB,), BOX)
 
 
 def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
-    """Return the values of a series after a time; NaN for a run that ended before."""
+    """Return the values of a series after a time; NaN for a run with an earlier end."""
     is_late = values[run.t > since - 0.5 * run.law.dt]
     return is_late if is_late.size else np.array([np.nan])
 
@@ -165,12 +165,12 @@ THROUGH = (_passes, bounds, contained)
 
 
 def apart(seed: int) -> Start:
-    """Return the printed start, redrawn until all agents are over 2 m apart and the net within a is connected."""
+    """Return the printed start, redrawn until all distances exceed 2 m and the net within a is connected."""
     return lazy_state((N, 2), lambda: _drawn_apart(seed))
 
 
 def _drawn_apart(seed: int, least: float = 2.0) -> Start:
-    """Return the printed start, redrawn until agents are over `least` apart and the net is connected."""
+    """Return the printed start, redrawn until distances exceed `least` and the net is connected."""
     rng = np.random.default_rng(seed)
     while True:
         q = rng.uniform(0.0, AREA, (1, 2))
@@ -227,7 +227,7 @@ def zone_entry(
     seeds: int = 25,
     **fields: Any,
 ) -> Builder:
-    """Return the builder of a scenario of the paper with its reports, those judged in the run's units first."""
+    """Return the builder of a scenario of the paper with its reports, first those in the run's units."""
     title, source = f"Bearing-distance flocking: {title}", f"Jond, bearing-distance flocking: {source}"
     judged = as_it_is + in_source_units(lambda: law.scales, reports)
     fields |= {"references": ("jond-2025",), "settings": settings, "seeds": seeds if settings else 0}
@@ -235,7 +235,7 @@ def zone_entry(
 
 
 def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Builder:
-    """Return the run of a section in a reading, both by its name."""
+    """Return the run of a paper section in a given reading, both by name."""
     where, place, end, reports, instants = _SECTIONS[name[5:7]]
     how, text, draw, seeds, settings = _READINGS[name[7:]]
     title, source = f"{where}, {how}", f"{PRINTED}{parameters}. {text}{place}"

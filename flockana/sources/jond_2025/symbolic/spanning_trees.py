@@ -38,7 +38,7 @@ def _column(name: str, size: int) -> sp.Matrix:
 
 
 def stacked_form(edges: Edges) -> Derivation:
-    """Derive (35), u = -D_in W^s D^T p - D_in W^a D^T v, from the sums over neighbours, and L = D D^T beside it."""
+    """Derive (35), u = -D_in W^s D^T p - D_in W^a D^T v, from sums over neighbours, and L = D D^T."""
     D, D_in, w, a = incidence_matrix(edges), receiver_matrix(edges), _weights("w", edges), _weights("a", edges)
     p, v = _column("p", D.rows), _column("v", D.rows)
     u = sp.zeros(D.rows, 1)

@@ -107,7 +107,7 @@ def altitude(speed: sp.Expr | None = None) -> sp.Expr:
 
 
 def informed_pair() -> tuple[sp.Matrix, sp.Expr]:
-    """Return (M, its characteristic polynomial) of x' = M x, the speeds of a pair less v^d, of which one is informed.
+    """Return (M, characteristic polynomial) of x' = M x, a pair's speeds less v^d with one informed agent.
 
     g is the gain of alignment, w that of the desired speed. All coefficients are positive: both take over v^d (J14).
     """

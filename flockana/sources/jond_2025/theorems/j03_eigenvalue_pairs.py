@@ -14,7 +14,7 @@ _PATH_LENGTHS, _PATH_SPACING = (2.05, 2.7, 2.05), (1.0, 2.0, 2.0, 1.0)  # α_i r
 
 
 def path_matrices(mu: float) -> tuple[FloatArray, FloatArray]:
-    """(A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four: edges of 2.05, 2.7, 2.05, αr = |N_i|."""
+    """Return (A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four with edges 2.05, 2.7, 2.05."""
     links = ((0, 1), (1, 2), (2, 3))
     law = MinimalFlocking(edges=both_ways(links), spacing=_PATH_SPACING, mu=mu)
     head, tail, weight, rho, align = law.edge_data(np.empty((4, 1)))
@@ -32,7 +32,7 @@ def path_matrices(mu: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _pairing(mu: float) -> tuple[float, float]:
-    """(error of the best index-by-index pairing of the eigenvalues, true largest real part) on the path."""
+    """Return (error of the best index-by-index eigenvalue pairing, largest real part) on the path."""
     from scipy.optimize import linear_sum_assignment
 
     stiffness, damping = path_matrices(mu)

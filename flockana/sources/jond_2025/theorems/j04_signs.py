@@ -12,7 +12,7 @@ _SAME, _ROUNDING = 1e-9, 1e-13  # relative: forces that differ by less are the s
 
 
 def _identity(name: str, stated: str, detail: str, **backed: str) -> Claim:
-    """An identity of the separation forces on a directed tree of five, by algebra."""
+    """Return an identity of separation forces on a directed tree of five, by algebra."""
     from flockana.sources.jond_2025.symbolic.spanning_trees import separation_forms
 
     residuals = separation_forms(_TREE)[name].residuals
@@ -20,7 +20,7 @@ def _identity(name: str, stated: str, detail: str, **backed: str) -> Claim:
 
 
 def _loop() -> Claim:
-    """The closed loop (35) agrees with the law if it holds D_in Dᵀ, and does not with the Laplacian D Dᵀ."""
+    """Return the claim that the closed loop (35) agrees with the law for D_in Dᵀ, and not for D Dᵀ."""
     rng = np.random.default_rng(0)
     q, p = rng.uniform(-3.0, 3.0, (5, 2)), rng.uniform(-1.0, 1.0, (5, 2))
     law = MinimalFlocking(edges=_TREE, spacing=1.3, mu=0.7)

@@ -13,14 +13,14 @@ _PROOF = "bearing-distance-printed"
 
 
 def _desired_lengths(law: MinimalFlocking) -> FloatArray:
-    """Return the desired lengths of the edge between an end and the middle, as each of the two has it."""
+    """Return the desired lengths of the edge between an end and the middle, for each of the two agents."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
     spacing = {(int(j), int(i)): float(length) for i, j, length in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
 
 
 def _error(law: MinimalFlocking, seed: int) -> Enclosure:
-    """Return how far a run from a random start ends from the predicted equilibrium: edges 5/3 long, |u| = 2/3."""
+    """Return the distance of a run's end from the predicted equilibrium: edges of length 5/3, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
     seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END), rtol=1e-11)
@@ -30,7 +30,7 @@ def _error(law: MinimalFlocking, seed: int) -> Enclosure:
 
 
 def _rate(law: MinimalFlocking) -> float:
-    """Return the slowest decay rate of the linearised runaway, its free direction left out."""
+    """Return the slowest decay rate of the linearised runaway, without its free direction."""
     q = np.array([[-5.0 / 3.0, 0.0], [0.0, 0.0], [-5.0 / 3.0, 0.0]])
     T = np.kron(np.eye(2), np.kron(-incidence(3, ((0, 1), (1, 2))).T, np.eye(2)))  # (q, p) to edges and their rates
     modes = np.linalg.eigvals(T @ np.asarray(law.jacobian(0.0, q, 0.0 * q)) @ np.linalg.pinv(T))

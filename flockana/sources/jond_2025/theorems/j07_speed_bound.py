@@ -12,14 +12,14 @@ _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the 
 
 
 def dragged_speed(dt: float) -> float:
-    """The largest speed that full thrust holds against (10), a fixed point of v^max tanh((v + dt u^max)/v^max)."""
+    """Return the largest speed under full thrust and (10), a fixed point of v^max tanh((v + dt u^max)/v^max)."""
     from scipy.optimize import brentq
 
     return float(brentq(lambda v: 4.0 * tanh((v + dt * 2.0) / 4.0) - v, 1e-6, 4.0, xtol=1e-14))
 
 
 def _late_speeds(law: ZoneFlocking) -> list[float]:
-    """Mean speed of all agents over the second half of a run, by seed."""
+    """Return the mean speed of all agents over the second half of a run, by seed."""
     return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs_from_random_starts(law)]
 
 

@@ -11,7 +11,7 @@ _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the s
 
 
 def _forms(tolerances: Tolerances) -> Claim:
-    """With the true velocity, the position and the bearing form of each of the six behaviours are equal."""
+    """Return the claim that position and bearing form of each behaviour are equal for the true velocity."""
     worst = 0.0
     for seed in range(SEEDS):
         q, p = zone_start(seed)

@@ -15,7 +15,7 @@ _STRONG = ZoneWeights(separation=20.0, cohesion_gain=0.5, alignment_gain=4.0)  #
 
 
 def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
-    """(least signed gap of an agent that runs head on at an alien at rest, least distance of ten agents, by seed)."""
+    """Return (least signed gap of an agent head on at a resting alien, least distance of ten agents by seed)."""
     resting = ZoneWorld((), None, (Alien((20.0, 0.0), detection=1e-3),))
     lone = ZoneFlocking(_WATCHFUL, ZoneWeights(), resting, surveillance=surveillance, u_max=_UNBOUNDED)
     head_on = observed(lone, [[0.0, 0.0]], [[3.0, 0.0]], (0.0, DURATION)).run

@@ -1,4 +1,4 @@
-"""Erratum J10: the distances and the order that section 5.1 reports do not come out of random starts."""
+"""Erratum J10: random starts do not reproduce the distances and the order of section 5.1."""
 
 import numpy as np
 
@@ -19,12 +19,12 @@ _SAFE, _IN_ORDER, _FROM = 1.5, 0.99, 2.0  # m; what counts as C = 1; s
 
 
 def _least_coordination(run: Trajectory) -> float:
-    """The least C of a run from 2 s on."""
+    """Return the least C of a run from 2 s on."""
     return min(coordination(p) for p in run.p[run.t >= _FROM - 1e-9])
 
 
 def _weights_cancel() -> Claim:
-    """Uniform weights of cohesion and alignment cancel, as the means (3) and (4) divide by their sums."""
+    """Return the claim that uniform weights of cohesion and alignment cancel in the means (3) and (4)."""
     worst = 0.0
     printed, other = (
         ZoneFlocking.printed(weights=ZoneWeights(cohesion=c, alignment=a, cohesion_gain=1.0, alignment_gain=1.0))

@@ -1,4 +1,4 @@
-"""Erratum J11: the minimal model's two runs of 60 agents are said to align and to hold together."""
+"""Erratum J11: the minimal model's two runs of 60 agents neither align nor hold together as stated."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ _SEEDS, _SEEDS_RECOMMENDED = 20, 12  # of 12 two may fail, and more than half of
 
 
 def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
-    """The paper's random start: positions uniform in a box of 30 m, velocities up to 1 m/s in each component."""
+    """Return the paper's random start: positions uniform in a 30 m box, velocity components up to 1 m/s."""
     rng = np.random.default_rng(seed)
     return rng.uniform(0.0, SIDE, (N, m)), rng.uniform(-1.0, 1.0, (N, m))
 
@@ -29,7 +29,7 @@ def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
 
 
 def _ends(law: MinimalFlocking, m: int, duration: float, seeds: int) -> FloatArray:
-    """Coordination, number of components and least distance at the end of a run, one row for each seed."""
+    """Return coordination, number of components and least distance at the end of a run, one row per seed."""
     rows = []
     for seed in range(seeds):
         run = observed(law.discrete(DT), *minimal_start(m, seed), (0.0, duration), t_eval=(0.0, duration)).run
@@ -38,7 +38,7 @@ def _ends(law: MinimalFlocking, m: int, duration: float, seeds: int) -> FloatArr
 
 
 def _aligned(m: int, C: FloatArray) -> Claim:
-    """The claim that all are aligned at the end of the printed runs, by the coordination C of each seed."""
+    """Return the claim that all printed runs end aligned, by the coordination C of each seed."""
     return always(
         f"aligned-{m}d",
         C >= ALIGNED,
@@ -48,7 +48,7 @@ def _aligned(m: int, C: FloatArray) -> Claim:
 
 
 def _recommended(m: int) -> Claim:
-    """The claim that most starts align and stay together with the recommended settings."""
+    """Return the claim that most starts align and stay together with the recommended settings."""
     ends = _ends(MinimalFlocking(**RECOMMENDED), m, LONGER, _SEEDS_RECOMMENDED)
     return mostly(
         f"recommended-{m}d",

@@ -20,13 +20,13 @@ _AT_AGENTS = ((10.0, 12.0), (12.0, 15.0))
 
 
 def _outward(law: ZoneFlocking, point: tuple[float, float], outward: tuple[float, float]) -> float:
-    """The obstacle term of an agent at a point, along the direction that leads out of the obstacle."""
+    """Return the obstacle term of an agent at a point, along the outward direction."""
     force = law.behaviours([point], [[1e-3, 0.0]])["obstacle"][0]
     return float(np.dot(force, outward))
 
 
 def _inside(reading: str) -> tuple[float, float, float]:
-    """(outward force in an obstacle, inward force beyond a wall, how far beyond it the agent is after 3 s)."""
+    """Return (outward force in an obstacle, inward force beyond a wall, distance beyond the wall after 3 s)."""
     weights = ZoneWeights(speed=0.0)
     among = ZoneFlocking(_RADII, weights, ZoneWorld((_OBSTACLE,)), inside=reading, u_max=_UNBOUNDED)
     walled = ZoneFlocking(_RADII, weights, ZoneWorld(box=_BOX), inside=reading, u_max=_UNBOUNDED)
@@ -39,26 +39,26 @@ def _inside(reading: str) -> tuple[float, float, float]:
 
 
 def _head_on(law: ZoneFlocking) -> tuple[float, float]:
-    """(last, least) signed gap of two agents that run head on at each other."""
+    """Return (last, least) signed gap of two agents head on."""
     run = observed(law, [[0.0, 0.0], [20.0, 0.0]], [[3.0, 0.0], [-3.0, 0.0]], (0.0, 60.0)).run
     gap = run.q[:, 1, 0] - run.q[:, 0, 0]
     return float(gap[-1]), float(gap.min())
 
 
 def _at_wall(speed: float, weight: float) -> float:
-    """Distance from the wall at which an agent that runs head on at it comes to rest."""
+    """Return the distance from the wall at which an approaching agent comes to rest."""
     law = ZoneFlocking(_RADII, ZoneWeights(speed=speed, obstacle=weight), ZoneWorld(box=_BOX), u_max=_UNBOUNDED)
     return 50.0 - float(observed(law, [[25.0, 25.0]], [[3.0, 0.0]], (0.0, 60.0)).run.q[-1, 0, 0])
 
 
 def _separation_only(speed: float, weight: float) -> ZoneFlocking:
-    """The law with separation and the desired speed alone."""
+    """Return the law with separation and desired speed alone."""
     weights = ZoneWeights(speed=speed, separation=weight, cohesion_gain=0.0, alignment_gain=0.0)
     return ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED)
 
 
 def _stand_offs() -> tuple[float, dict[str, list[float]]]:
-    """Return (largest error, [predicted, measured] by case) of the distance kept from a wall and from another agent."""
+    """Return (largest error, [predicted, measured] by case) of the stand-off from a wall and from an agent."""
     rows = {f"wall, w^ga = {g:g}, w^oa = {w:g}": [3.0 - 3.0 * g / w, _at_wall(g, w)] for g, w in _AT_WALLS}
     rows |= {
         f"agents, w^ga = {g:g}, w^ls = {w:g}": [3.0 - 3.0 * g / w, _head_on(_separation_only(g, w))[0]]

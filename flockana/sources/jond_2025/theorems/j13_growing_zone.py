@@ -1,4 +1,4 @@
-"""Erratum J13: an obstacle zone that grows with speed makes no agent react earlier, as (8) measures from c_i."""
+"""Erratum J13: an obstacle zone growing with speed causes no earlier reaction, as (8) measures from c_i."""
 
 import numpy as np
 
@@ -32,13 +32,13 @@ def _law(zone_length: str, obstacle_force: str = "repulsive") -> ZoneFlocking:
 
 
 def _braking(law: ZoneFlocking, distance: float, speed: float) -> float:
-    """The obstacle term of an agent that heads for a wall, away from it, over w^oa c."""
+    """Return the obstacle term of an agent heading for a wall, relative to w^oa c."""
     force = law.behaviours([[_SIDE - distance, 0.5 * _SIDE]], [[speed, 0.0]])["obstacle"][0, 0]
     return -float(force) / (_WEIGHT * _C)
 
 
 def _head_on(law: ZoneFlocking) -> FloatArray:
-    """Distances from the wall over time of an agent that runs head on at it."""
+    """Return the distances over time of an agent heading for a wall."""
     q, p = np.array([_PLACE]), np.array([_HEADING])
     return _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
 
@@ -67,7 +67,7 @@ def _clamped() -> Claim:
 
 
 def _reaching() -> Claim:
-    """Just within its altitude an agent brakes and just beyond it does not, at every speed."""
+    """Return the claim that an agent brakes just within its altitude and not just beyond, at every speed."""
     law = _law("speed", "reaching")
     wrong, rows = [], {}
     for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
@@ -89,7 +89,7 @@ def _reaching() -> Claim:
 
 
 def _slow() -> Claim:
-    """An agent at rest before a wall has the short zone: it stands off at r − v^d w^ga/w^oa."""
+    """Return the claim that an agent at rest has the short zone and stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated = _R - _DESIRED * _DRIVE / _WEIGHT
     return of_map("stand-off", 1e-6 - abs(measured - stated) / _C, _ROUNDING).described(

@@ -1,4 +1,4 @@
-"""J14, confirmed: a new global speed emerges; it is the desired one as soon as somebody is informed of it."""
+"""J14, confirmed: a new global speed emerges; the desired one as soon as one agent is informed."""
 
 import numpy as np
 

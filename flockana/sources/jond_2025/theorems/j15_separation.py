@@ -19,7 +19,7 @@ _SLIDES = 5e-3  # relative distance from r at which the pair slides
 
 
 def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: float = 0.1) -> FloatArray:
-    """Distance over time of two agents without a desired speed, at rest at first."""
+    """Return the distance over time of two initially resting agents without a desired speed."""
     weights = ZoneWeights(separation=separation, speed=0.0, cohesion_gain=cohesion, alignment_gain=4.0)
     law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, dt=dt)
     q, p = np.array([[0.0, 0.0], [start, 0.0]]), np.zeros((2, 2))
@@ -32,7 +32,7 @@ def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
 
 
 def _sliding() -> Claim:
-    """Claim that a strong cohesion, off at r and nearer, holds a pair at r, about which it chatters."""
+    """Return the claim that strong cohesion, off below r, makes a pair chatter at the distance r."""
     late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
     off = float(np.abs(late / r - 1.0).max())
     return of_map("sliding", _SLIDES - off, _ROUNDING).described(

@@ -1,4 +1,4 @@
-"""Erratum J16: in a box fragments need not reunite, and growing radii find one flockmate, not the flock."""
+"""Erratum J16: fragments in a box need not reunite; growing radii find one flockmate, not the flock."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def _positions(law: ZoneFlocking, q: FloatArray, p: FloatArray, steps: int) -> F
 
 
 def _at_walls() -> Claim:
-    """Two agents head on at opposite walls: each slows down before its wall, and both stay there."""
+    """Return the claim that two agents head on at opposite walls slow down and stay there."""
     # With e = d - d*, the speed and e obey v' = (1 - gδ)v + wδe and e' = e - δv'. Of a matrix with two real eigenvalues
     # in (0, 1) all states with e/v above that of the faster mode stay so, with v > 0: e falls, and never to 0.
     law = ZoneFlocking(_RADII, _PRINTED, _WALLED, u_max=_UNBOUNDED)
@@ -52,7 +52,7 @@ def _at_walls() -> Claim:
 
 
 def _circling() -> Claim:
-    """Two lone agents in a box, charitable reading: many pairs end up running along the walls in line."""
+    """Return the claim that many pairs of lone agents in a box end up running along the walls in line."""
     law = ZoneFlocking(_RADII, _PRINTED, _WALLED)
     nearest = []
     for seed in range(_SEEDS):
@@ -71,7 +71,7 @@ def _circling() -> Claim:
 
 
 def _growing_radii() -> Claim:
-    """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
+    """Return the claim of Remark 2: growing radii of attraction reunite two separated agents."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
     margin = float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A]))
@@ -90,7 +90,7 @@ def _last_gap(growth: float, q: FloatArray, p: FloatArray) -> float:
 
 
 def _pairs() -> Claim:
-    """Two pairs at rest distance and desired speed: every agent has a flockmate, so no radius grows."""
+    """Return the claim that no radius grows in two pairs at rest distance, as every agent has a flockmate."""
     law = ZoneFlocking(_RADII, _PRINTED, growth=_GROWTH)
     q = np.array([[0.0, 0.0], [0.0, 2.5], [20.0, 0.0], [20.0, 2.5]])  # 2.5 = c w^ls/(w^ls + g_c): no force
     p = _SPEED * np.array([[-1.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [1.0, 0.0]])

@@ -1,4 +1,4 @@
-"""J17, confirmed: agents that see an alien later than it sees them react late and lose distance."""
+"""J17, confirmed: agents with shorter sight than the alien react late and lose distance."""
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ _ROUNDING = 1e-9  # relative: of a few hundred steps
 
 
 def _meeting(s: float) -> tuple[float, float, float]:
-    """Return (time of the alien's first move, time of the agent's first reaction, least distance), both head on."""
+    """Return (time of the alien's first move, time of the agent's first reaction, least distance), head on."""
     world = ZoneWorld(aliens=(Alien((_AT, 0.0), detection=_DETECTION, speed=_PURSUIT),))
     law = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0, s=s), ZoneWeights(), world, u_max=1e6)
     q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])

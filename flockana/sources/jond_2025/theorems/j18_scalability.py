@@ -18,7 +18,7 @@ _ROUNDING = 1e-9
 
 
 def _ends(n: int, *, any_direction: bool = False) -> FloatArray:
-    """Coordination, components, least distance and mean number of neighbours after 20 s, one row for each seed."""
+    """Return coordination, components, least distance, mean number of neighbours after 20 s, one row per seed."""
     rows = []
     for seed in range(_SEEDS[n]):
         start = crowd_start(seed, n, any_direction=any_direction)

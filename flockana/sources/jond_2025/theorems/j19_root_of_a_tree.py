@@ -1,4 +1,4 @@
-"""Erratum J19: as "globally reachable" is defined, a tree's root is reached from nowhere and a star not connected."""
+"""Erratum J19: by the printed definition a tree's root is globally reachable from nowhere, a star is disconnected."""
 
 from itertools import product
 from typing import Any

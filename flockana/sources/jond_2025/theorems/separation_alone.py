@@ -1,4 +1,4 @@
-"""Section 4 of the bearing-distance paper: separation alone oscillates, and alignment is said to settle it."""
+"""Section 4 of the bearing-distance paper: separation alone oscillates, alignment damps it."""
 
 from math import pi, sqrt
 from typing import Any
@@ -16,13 +16,13 @@ _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 
 
 def _crossings(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Times at which y rises through zero, by linear interpolation."""
+    """Return the times at which y rises through zero, by linear interpolation."""
     k = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
     return t[k] - y[k] * (t[k + 1] - t[k]) / (y[k + 1] - y[k])
 
 
 def _pair(tolerances: Tolerances) -> Claim:
-    """Two agents, without turning: y = ‖x‖ − ρ obeys y'' = −2μ y, a harmonic oscillation."""
+    """Return the claim that two agents without rotation are a harmonic oscillator: y'' = −2μ y, y = ‖x‖ − ρ."""
     law = MinimalFlocking(edges=both_ways([(0, 1)]), spacing=_RHO, mu=_MU, sigma=0.0)
     period = 2.0 * pi / sqrt(2.0 * _MU)
     times = np.linspace(0.0, _PERIODS * period, _PER_PERIOD * _PERIODS + 1)
@@ -50,7 +50,7 @@ def _path_energy(sigma: float) -> Enclosure:
 
 
 def _conserved(tolerances: Tolerances) -> Claim:
-    """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H is lost."""
+    """Return the claim on five agents on a path: H is conserved without alignment, and lost with it."""
     alone, aligned = map(_path_energy, (0.0, 1.0))
     drift, left = abs(alone / alone[0] - 1.0).max(), aligned[-1] / aligned[0]
     return judged("energy", tolerances.energy - stacked([drift, left])).described(
@@ -63,7 +63,7 @@ def _conserved(tolerances: Tolerances) -> Claim:
 
 
 def _resonance(tolerances: Tolerances) -> Claim:
-    """A directed chain: each edge drives the next at its own frequency, and the swing grows: y₂ = ½ a ω t sin ωt."""
+    """Return the claim of resonance in a directed chain: y₂ = ½ a ω t sin ωt grows."""
     law = MinimalFlocking(edges=((0, 1), (1, 2)), spacing=_RHO, mu=_MU, sigma=0.0)
     a, omega = 0.01, sqrt(_MU)
     start = np.array([[0.0], [_RHO + a], [2.0 * _RHO + a]])
@@ -84,7 +84,7 @@ def _resonance(tolerances: Tolerances) -> Claim:
 
 
 def _close_encounter() -> Claim:
-    """Alignment does not prevent collisions: y(t) = −v exp(−t) sin t with σ = μ = 1, and v > 3.1 ρ reaches −ρ."""
+    """Return the claim that alignment does not prevent collisions: y(t) = −v exp(−t) sin t reaches −ρ for v > 3.1 ρ."""
     law = MinimalFlocking(edges=both_ways([(0, 1)]), spacing=1.0)
     q, p = np.array([[0.0], [1.0]]), np.array([[2.0], [-2.0]])
     seen = observed(law, q, p, (0.0, 2.0), **_TIGHT)

@@ -1,4 +1,4 @@
-"""Theorem 1 of the bearing-distance paper as it can be corrected: edges of a tree take their desired lengths."""
+"""Corrected Theorem 1 of the bearing-distance paper: edges of a tree take their desired lengths."""
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from flockana.theorems.toolkit import Certificate, Observed, condition, evidence
 
 
 def _errors(case: TreeCase, seen: Observed) -> np.ndarray:
-    """Largest relative length error of an edge at each sample, shape (T,)."""
+    """Return the largest relative length error of an edge at each sample, shape (T,)."""
     return np.abs(case.lengths(seen.run.q) / case.rho - 1.0).max(axis=1)
 
 
 def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """The claim that every edge takes its desired length in the limit."""
+    """Return the claim that every edge takes its desired length in the limit."""
     errors = _errors(case, seen)
     return limit_claim(
         "lengths", needs, [settles(case, seen.end)], evidence=evidence(seen.t, errors, "the largest length error")
@@ -30,7 +30,7 @@ def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 
 def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hypothesis]) -> Claim:
-    """The claim about the spectrum at the equilibrium beside the end of the run: its factors and its zero modes."""
+    """Return the claim about the spectrum at the final equilibrium: factors and zero modes."""
     m, directed = seen.m, case.root is not None
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if directed:
@@ -50,7 +50,7 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
 
 
 def _exponential(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hypothesis]) -> Claim:
-    """The claim that length errors fall at half the slowest rate of the spectrum at least in the end."""
+    """Return the claim that length errors finally decay at least at half the slowest rate of the spectrum."""
     # A flock that certainly goes to the manifold, which is normally hyperbolic by that spectrum, comes to it at any
     # rate below the slowest. Near it is too late to measure: a chain of equal edges starts more slowly.
     hyperbolic = Certificate(spectrum.margin, "the spectrum is not as stated", spectrum.error)

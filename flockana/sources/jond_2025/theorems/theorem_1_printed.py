@@ -1,4 +1,4 @@
-"""Theorem 1 of the bearing-distance paper as printed: that the edges of a spanning tree vanish (false)."""
+"""Printed Theorem 1 of the bearing-distance paper: the edges of a spanning tree vanish (false)."""
 
 from math import inf, sqrt
 

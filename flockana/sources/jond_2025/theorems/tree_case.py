@@ -1,4 +1,4 @@
-"""A frozen tree of the minimal model, edge by edge: lengths, energies, equilibria, linearisation."""
+"""Frozen tree of the minimal model, edge by edge: lengths, energies, equilibria, linearisation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Hypothesis, Ob
 
 @dataclass(frozen=True)
 class TreeCase:
-    """A minimal law on a frozen tree, by its edges."""
+    """Minimal law on a frozen tree, by its edges."""
 
     law: MinimalFlocking
     n: int
@@ -28,12 +28,12 @@ class TreeCase:
 
     @property
     def barrier(self) -> FloatArray:
-        """½ μ ρ² of each edge: the energy that it takes to press it to length 0."""
+        """Energy ½ μ ρ² for compressing each edge to length 0."""
         return 0.5 * self.mu * self.rho**2
 
     @cached_property
     def walk(self) -> tuple[tuple[int, int, int], ...]:
-        """(edge, agent nearer to the root, agent farther from it) of all edges, from the root outwards."""
+        """Edges as (edge, agent nearer to the root, agent farther from it), from the root outwards."""
         visited, outwards = {self.links[0][0] if self.root is None else self.root}, []
         left = dict(enumerate(self.links))
         while left:
@@ -67,7 +67,7 @@ class TreeCase:
         return np.linalg.norm(edge_vectors(q, self.links), axis=-1)
 
     def edges_of(self, x: FloatArray, error: FloatArray) -> Enclosure:
-        """Enclose the length of x_j − x_i over each edge, of vectors that are known to an error each."""
+        """Return enclosures of the length of x_j − x_i over each edge, for vectors with given errors."""
         tails, heads = np.array(self.links, dtype=np.intp).T
         apart = np.linalg.norm(x[..., heads, :] - x[..., tails, :], axis=-1)
         return Enclosure.around(apart, error[..., tails] + error[..., heads] + 4.0 * EPS * apart).clip(0.0)
@@ -77,12 +77,12 @@ class TreeCase:
         return 0.5 * (rates.square() + self.mu * (lengths - self.rho).square())
 
     def shortest(self, seen: Observed) -> Enclosure:
-        """Enclose the least length of each edge over a run, between its samples too, shape (n − 1,)."""
+        """Return an enclosure of each edge's least length over a run, between samples too, shape (n − 1,)."""
         return stacked([least_distance(seen, [j], [i]) for j, i in self.links])
 
 
 def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
-    """Return the edges of a law on a frozen tree, directed or undirected; None if its graph is no tree."""
+    """Return the edges of a law on a frozen tree, directed or undirected; None for other graphs."""
     if law.edges is None:
         return None
     root = out_tree_root(n, law.edges)
@@ -109,7 +109,7 @@ def minimal_law(seen: Observed) -> Hypothesis:
 
 
 def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
-    """Return the hypotheses common to both forms of the theorem, and the tree if there is one."""
+    """Return the hypotheses common to both forms of the theorem, and the tree; None without a tree."""
     case, frozen = tree_case(seen.law, seen.n), seen.law.edges is not None
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:

@@ -1,4 +1,4 @@
-"""Claims that energies on a frozen tree fall along a run, and that edges keep the lengths which these guarantee.
+"""Claims that energies on a frozen tree fall along a run, with the guaranteed edge lengths.
 
 A bound that is attained, as ρ - √(2V/μ) is by an edge pressed and let go, leaves no margin. So it is compared with the
 bound of an energy larger by the tolerance on energies, which leaves half of that.
@@ -50,7 +50,7 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
 
 
 def _springs_rounding(case: TreeCase, seen: Observed) -> float:
-    """Return the rounding of ½ Σ μ (|x| − ρ)² far from the origin."""
+    """Return the rounding error of ½ Σ μ (|x| − ρ)² far from the origin."""
     off = 16.0 * EPS * float(np.abs(seen.run.q).max())
     stretch = np.abs(case.lengths(seen.run.q) - case.rho)
     return float((case.mu * (stretch + off) * off).sum(axis=1).max())

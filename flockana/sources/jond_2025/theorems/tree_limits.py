@@ -1,4 +1,4 @@
-"""Certificates, from one state, of the limit of a flock on a frozen tree (Theorem 1).
+"""Certificates from one state for the limit of a flock on a frozen tree (Theorem 1).
 
 *Undirected, reciprocal forces.* H never rises. While H < ½μρ² on every edge, no edge comes to length 0; then velocities
 match and every |x_e| goes to ρ_e, by LaSalle's principle, as on a tree nothing else is at rest.
@@ -36,7 +36,7 @@ def state(q: FloatArray, p: FloatArray) -> End:
 
 
 def edge_shares(case: TreeCase, end: End) -> FloatArray:
-    """Return V̂/(½μρ²) of each edge; below 1 its length never reaches 0; ∞ where unknown."""
+    """Return V̂/(½μρ²) of each edge (below 1 the length never reaches 0); ∞ where unknown."""
     lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
     if case.root is not None:
         return _directed(case, case.energies(lengths, rates).hi)
@@ -63,7 +63,7 @@ def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
 
 
 def settles(case: TreeCase, end: End) -> Certificate:
-    """Return a certificate that all edges reach their desired lengths and all velocity differences decay."""
+    """Return a certificate that all edges reach their desired lengths and velocity differences decay."""
     share = float(edge_shares(case, end).max())
     never = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
     text = f"{never}: edges have at most {share:.2g} of the energy needed"
@@ -78,6 +78,6 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
 
 
 def kept(case: TreeCase, end: End) -> float:
-    """Return the least |x|/ρ that the edge farthest from collision keeps at all times; <= 0 where unknown."""
+    """Return the least |x|/ρ kept at all times by the edge farthest from collision; <= 0 if unknown."""
     share = float(edge_shares(case, end).min())
     return 1.0 - sqrt(share) - 4.0 * EPS if share < 4.0 else -1.0

@@ -30,7 +30,7 @@ def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the polynomial of a directed tree, with roots of s² + a s + μ for each edge, and its kernel's dimension.
+    """Return the polynomial of a directed tree, with factors s² + a s + μ, and its kernel's dimension.
 
     Eigenvalues are not computed: those of a chain of equal edges are defective, and rounding would spread them.
     """
@@ -69,7 +69,7 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:
-    """Return (number of zeros, margin, rounding) among eigenvalues that should be zero or positive."""
+    """Return (number of zeros, margin, rounding) among eigenvalues expected to be zero or positive."""
     # The margin is the least of the others over the largest, negative if there are other zeros than expected, NaN if it
     # is not clear which are.
     largest = float(np.abs(values).max())
