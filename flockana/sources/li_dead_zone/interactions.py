@@ -1,4 +1,4 @@
-"""The dead-zone pair law: repulsion near, attraction far, no force between."""
+"""Dead-zone pair law: repulsion near, attraction far, no force between."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -116,12 +116,12 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     @property
     def d1(self) -> float:
-        """r_b − δ, where repulsion ends: the lattice constant."""
+        """Lattice constant r_b − δ, where repulsion ends."""
         return self.r_b - self.delta
 
     @property
     def d2(self) -> float:
-        """r_b + δ, where attraction begins."""
+        """Distance r_b + δ, where attraction begins."""
         return self.r_b + self.delta
 
     @property
@@ -146,18 +146,18 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """Distances at which the force changes its form: ends of the dead zone within range, and the range."""
+        """Distances at which the force changes its form: ends of the dead zone, and the range."""
         return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
 
     @property
     def seams(self) -> tuple[float, ...]:
-        """Ends of the dead zone and of the ramps beside it, and the range."""
+        """Ends of the dead zone and its ramps, and the range."""
         edges = {self.d1 - self.ramp, self.d1, self.d2, self.d2 + self.ramp}
         return tuple(sorted({self.r, *(s for s in edges if s < self.r)}))
 
     @property
     def feature(self) -> float:
-        """Length d₁ of repulsion; a run watches every end of a zone (`surfaces`)."""
+        """Length d₁ of repulsion; zone ends are watched as `surfaces`."""
         return self.d1
 
     @property
@@ -171,7 +171,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return float(_POTENTIAL(np.array([self.r]), self.par, self.panels)[0])
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
-        """Parameters for the kernels, and Chebyshev panels of ψ on the ramps within range."""
+        """Return kernel parameters, and Chebyshev panels of ψ on the ramps within range."""
         edges = self.d1, self.d2, self.r, self.r_d
         par = np.array([self.eta, self.k_r, self.k_delta, self.k1, *edges, self.ramp, 0.0, 0.0])
         panels = np.zeros((0, 0))
@@ -203,7 +203,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return evaluate(_ACTION, s, self.par)
 
     def jumps(self) -> tuple[Jump, ...]:
-        """Return discontinuities of the source's F = dψ/dρ > 0 that attracts: at r, without a ramp at d₁ and d₂ too."""
+        """Return the discontinuities of the source's F = dψ/dρ: at r, and without a ramp at d₁ and d₂."""
         jumps = []
         for name, where in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
             below, above = _FORCE(np.nextafter(where, [0.0, inf]), self.par).tolist()
@@ -212,7 +212,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return tuple(jumps)
 
     def least_distance(self, energy: float) -> float:
-        """Return a lower bound of the distance of any two agents of a flock of at most this energy.
+        """Return a lower bound of all distances of a flock with at most this energy.
 
         For η > 0 and no ramp 1/(√η sinh(H/2k_r + asinh(1/(√η d₁)))), for η = 0 d₁ exp(−H/2k_r): positive, but
         exponentially small. k_δ is left out, and the ramp is taken as if all of it were free of force.
@@ -237,7 +237,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
 
 def _fractions(ramp: float, d1: float) -> FloatArray:
-    """Return offsets from d₁ inwards, 0 to ramp, as ends of panels narrower than their distance from the pole at 0."""
+    """Return offsets from d₁ inwards, 0 to ramp, as panel ends refined towards the pole at 0."""
     marks, left = [0.0], d1
     while left - (d1 - ramp) > 0.5 * left:
         left *= 0.5

@@ -26,7 +26,7 @@ def attraction(rho: sp.Expr = RHO) -> sp.Expr:
 
 
 def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
-    """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector."""
+    """Return the length of n_ij, rho/sqrt(1 + eta rho^2), by eq. (8); not a unit vector."""
     return rho / sp.sqrt(1 + eta * rho**2)
 
 
@@ -35,7 +35,7 @@ def _pieces(rho: sp.Expr, beyond: sp.Expr, near: sp.Expr, between: sp.Expr, far:
 
 
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on."""
+    """Return f(rho): negative repels, 0 on [d_1, d_2] and from r on."""
     inner, outer = (sp.S.One,) * 2 if ramp == 0 else (sp.Min(1, (D_1 - rho) / ramp), sp.Min(1, (rho - D_2) / ramp))
     return _pieces(rho, sp.S.Zero, -inner * repulsion(rho), sp.S.Zero, outer * attraction(rho))
 

@@ -1,4 +1,4 @@
-"""The dead-zone pair law as scalar functions of the distance ρ, and its sums with every pair held in its zone.
+"""Dead-zone pair law as scalar functions of the distance ρ, and sums with every pair held in its zone.
 
 Parameters are a vector of float64 whose places have the names below: INNER is ψ where the inner ramp begins, OUTER
 where the outer one ends. Zones of a pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range. Without a ramp the
@@ -20,13 +20,13 @@ ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)
 
 @register_jitable
 def repulsion(s, par):
-    """2k_r/s² + k_δ, without ramp."""
+    """Return the repulsion 2k_r/s² + k_δ, without ramp."""
     return 2.0 * par[K_R] / (s * s) + par[K_DELTA] if s > 0.0 else inf
 
 
 @register_jitable
 def attraction(s, par):
-    """2k_r/(r_d − s)² + k_δ, without ramp."""
+    """Return the attraction 2k_r/(r_d − s)² + k_δ, without ramp."""
     return 2.0 * par[K_R] / (par[R_D] - s) ** 2 + par[K_DELTA]
 
 
@@ -42,7 +42,7 @@ def zone_of(s, par):
 
 @register_jitable
 def action(s, par):
-    """f(s): negative repels, positive attracts; ramped to 0 at both ends of the dead zone."""
+    """Return f(s): negative repels, positive attracts; ramped to 0 at both ends of the dead zone."""
     zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
         return -repulsion(s, par) * (min(1.0, (par[D_1] - s) / ramp) if ramp > 0.0 else 1.0)
@@ -53,7 +53,7 @@ def action(s, par):
 
 @register_jitable
 def action_slope(s, par):
-    """df/ds off the edges of the zones."""
+    """Return df/ds off the edges of the zones."""
     zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
         slope, share = 4.0 * par[K_R] / s**3, (par[D_1] - s) / ramp if ramp > 0.0 else 1.0
@@ -66,7 +66,7 @@ def action_slope(s, par):
 
 @register_jitable
 def force(s, par):
-    """F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond: negative repels."""
+    """Return F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond: negative repels."""
     if s >= par[R]:
         return 0.0
     return action(s, par) * s / sqrt(1.0 + par[ETA] * s * s) + par[K_1] * s
@@ -74,7 +74,7 @@ def force(s, par):
 
 @register_jitable
 def repulsive_part(s, b, par):
-    """∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, every difference rearranged: η = 0 is no special case."""
+    """Return ∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, stable also at η = 0."""
     at_s, at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
     gap = (b - s) * (b + s) / (at_s + at_b)
     near = b < 2.0 * s  # else nothing cancels, and 1 + x would round
@@ -85,7 +85,7 @@ def repulsive_part(s, b, par):
 
 @register_jitable
 def attractive_part(a, s, par):
-    """∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
+    """Return ∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
     eta, r_d = par[ETA], par[R_D]
     big = 1.0 + eta * r_d * r_d
     at_s, at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(big)
@@ -97,7 +97,7 @@ def attractive_part(a, s, par):
 
 @register_jitable
 def potential(s, par, panels):
-    """ψ(s) + ½ k₁ s²: closed form off the ramps, Chebyshev panels on them, constant from r on, ∞ at 0."""
+    """Return ψ(s) + ½ k₁ s²: closed form off the ramps, Chebyshev panels on them, constant from r on, ∞ at 0."""
     if s <= 0.0:
         return inf
     x, ramp = min(s, par[R]), par[RAMP]
@@ -114,7 +114,7 @@ def potential(s, par, panels):
 
 @register_jitable
 def pair_dead_zone(s2, par):
-    """(weight of q_j − q_i, a_ij) of a pair at squared distance s2 within the range: `action` without its branches."""
+    """Return (weight of q_j − q_i, a_ij) of a pair at squared distance s2 within range, without branches."""
     s, steep = sqrt(s2), 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300
     ramped = max(0.0, min(1.0, (s - par[D_2]) * steep)) - max(0.0, min(1.0, (par[D_1] - s) * steep))
     gap = s if s < par[D_1] else par[R_D] - s
@@ -125,26 +125,26 @@ def pair_dead_zone(s2, par):
 
 @register_jitable
 def pair_dead_zone_slope(s2, par):
-    """d(weight)/d(s2)."""
+    """Return d(weight)/d(s2)."""
     s, g = sqrt(s2), 1.0 + par[ETA] * s2
     return 0.5 * (action_slope(s, par) / s - par[ETA] * action(s, par) / g) / sqrt(g)
 
 
 @register_jitable
 def pair_dead_zone_potential(s2, par, panels):
-    """ψ + ½ k₁ s² of a pair at squared distance s2."""
+    """Return ψ + ½ k₁ s² of a pair at squared distance s2."""
     return potential(sqrt(s2), par, panels)
 
 
 @register_jitable
 def pair_dead_zone_adjacency_slope(s2, par):
-    """da/d(s2) = 0: a_ij is 1 within the range and 0 beyond."""
+    """Return da/d(s2) = 0, as a_ij is 1 within the range and 0 beyond."""
     return 0.0
 
 
 @kernel
 def zones(q, par):
-    """Zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
+    """Return the zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
     n = len(q)
     out, k = np.empty(n * (n - 1) // 2, np.int8), 0
     for i in range(n):
@@ -156,7 +156,7 @@ def zones(q, par):
 
 @kernel
 def zone_margins(q, zone, par):
-    """How far inside its zone each pair is (negative beyond it), and whether the nearer edge is the upper one."""
+    """Return the margin of each pair inside its zone (negative beyond), and whether the upper edge is nearer."""
     n = len(q)
     margins, upper, k = np.empty(zone.size), np.empty(zone.size, np.bool_), 0
     for i in range(n):
@@ -172,7 +172,7 @@ def zone_margins(q, zone, par):
 
 @kernel
 def zone_forces(q, p, zone, par, c2, u):
-    """Add every pair's force, continued beyond its zone and without ramps, to u; return Σ a_ij ‖p_j − p_i‖²."""
+    """Add every pair's force, continued beyond its zone, without ramps, to u; return Σ a_ij ‖p_j − p_i‖²."""
     n, m = q.shape
     total, k = 0.0, 0
     for i in range(n):

@@ -16,7 +16,7 @@ _AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
 # Two components are summed at a time: what is read of a pair serves both. An odd one goes with a row of zeros.
 @kernel
 def semi_implicit_steps(q, p, par, c2, dt, wanted):
-    """Return q, p after the wanted steps (by rising numbers), and the u applied, by semi-implicit Euler.
+    """Return q, p after the requested steps (rising numbers), and the applied u, by semi-implicit Euler.
 
     Neighbours pull by k₁ and c₂ alone where nothing else acts, which is a sum over a table of who is in range. Pairs
     that may act otherwise, or come into range, are listed with a skin: the list holds until somebody has moved by half
@@ -84,7 +84,7 @@ def _part(x, y, first, second, kept, d, s2):
 
 @register_jitable
 def _gather(near, degree, y, z, u, v):
-    """Σ_j near[i, j] (y_j − y_i), added to u, and the same of z to v."""
+    """Add Σ_j near[i, j] (y_j − y_i) to u, and the same sum of z to v."""
     for j in range(0, len(near), 4):
         a = near[j : j + 4]
         y_0, y_1, y_2, y_3 = y[j], y[j + 1], y[j + 2], y[j + 3]
@@ -100,7 +100,7 @@ def _gather(near, degree, y, z, u, v):
 
 @register_jitable
 def _scatter(w, d, second, ends, u, v, both):
-    """Forces w d of listed pairs on both their agents, added to u and v: side by side, the two are one vector."""
+    """Add forces w d of listed pairs to u and v on both their agents."""
     for i in range(len(ends)):
         both[i, 0], both[i, 1] = u[i], v[i]
     begin = 0
@@ -119,7 +119,7 @@ def _scatter(w, d, second, ends, u, v, both):
 
 @kernel
 def _square_of_range(r):
-    """The least number whose square root is not below r: `s2 < square` says that √s2 < r, to the bit."""
+    """Return the least number whose square root is not below r, so that `s2 < square` means √s2 < r exactly."""
     square = r * r
     while sqrt(square) >= r:
         square = np.nextafter(square, 0.0)
@@ -130,7 +130,7 @@ def _square_of_range(r):
 
 @kernel
 def _crossed(s2, square, kept, near, degree, first, second, inside):
-    """Note which pairs of the list have come into range or left it."""
+    """Record which listed pairs have entered or left the range."""
     for k in range(kept):
         now = s2[k] < square
         if now != (inside[k] == 1):
@@ -142,7 +142,7 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
 
 @register_jitable
 def _moved_beyond(x, then, drift, passed, square, squares):
-    """Whether an agent has moved, relative to the flock's drift, by more than the root of `square`, or by NaN.
+    """Return whether an agent's displacement relative to the drift exceeds √square, or is NaN.
 
     Where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none: new lists.
     """
@@ -173,7 +173,7 @@ def _spread(v, drift):
 
 @kernel
 def _listed(x, par, skin, near, degree, first, second, inside, ends):
-    """List pairs within a skin of where they act by more than k₁ or come into range.
+    """List pairs within a skin of the distances at which their force changes.
 
     Who is in range of whom goes to `near`, of how many to `degree`, and where each agent's pairs end to `ends`.
     """

@@ -1,4 +1,4 @@
-"""The dead-zone law of Li, Yuan and Liu: a flock held by forces that act only off a band of distances."""
+"""Dead-zone law of Li, Yuan and Liu: forces act only outside a band of distances."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -69,12 +69,12 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @property
     def scales(self) -> Scales:
-        """d₁, and the time in which the force of a contact moves an agent by it."""
+        """Length d₁, and the time in which the contact force moves an agent by d₁."""
         return contact_scales(self.interaction)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling by k₂ pᵀL̂p (see L5)."""
+        """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling at k₂ pᵀL̂p (see L5)."""
         return (PairTerm(self.interaction, 1.0, self.k2),)
 
     def literal_energy(self, q: Any, p: Any) -> float:
@@ -93,7 +93,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q, p after each step kept and u before, by semi-implicit Euler in one compiled loop.
+        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop.
 
         Parameters
         ----------
@@ -106,7 +106,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, rows)
 
     def block(self, solver: Any) -> Block | None:
-        """Return the loop of `semi_implicit` for semi-implicit Euler steps of this law itself, not of a subclass.
+        """Return `semi_implicit` for semi-implicit Euler steps of this law; None for subclasses.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @property
     def located(self) -> bool:
-        """Whether the force jumps at the dead zone (no ramp), so that switches are located."""
+        """Whether the force jumps at the dead zone (no ramp), so that switches must be located."""
         return self.interaction.ramp == 0.0
 
     def pieces(self, q: FloatArray) -> Pieces:
@@ -146,7 +146,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
 
 def contact_scales(interaction: DeadZoneInteraction) -> Scales:
-    """Return d₁, and the time in which the force of a contact moves an agent by d₁."""
+    """Return d₁, and the time in which the contact force moves an agent by d₁."""
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 

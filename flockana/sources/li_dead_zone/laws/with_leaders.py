@@ -1,4 +1,4 @@
-"""The dead-zone law with the leaders that the paper's text speaks of and its equation (9) lacks."""
+"""Dead-zone law with leaders, which the paper's text mentions and its equation (9) lacks."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ from flockana.sources.li_dead_zone.laws.dead_zone import contact_scales
 
 @dataclass(frozen=True)
 class LedDeadZoneFlocking(SumOfTerms):
-    """Eq. (9) with several leaders and pinned agents, as section IV and the conclusion have it (erratum L9).
+    """Dead-zone law (9) with several leaders and pinned agents, as in section IV of the paper (erratum L9).
 
     u_i = Σ_{j∈N_i} [f(ρ_ij) n_ij + k₁ (q_j − q_i)] + k₂ Σ_{j∈N_i, l(j)=l(i)} (p_j − p_i)
     + h_i [c₁ (q_l − q_i) + c₂ (p_l − p_i)] + dp_l/dt: all neighbours keep their distances, velocities match among the

@@ -81,7 +81,7 @@ _REPORTS = (_same, _different, _pinned, _parts, _within_r)
 
 
 def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
-    """Return two groups in one box, or in two boxes side by side."""
+    """Return two groups in one box, or in two adjacent boxes."""
     shift = max(0.0, _BOX + ensure_finite_scalar("gap", gap))
     generator, group = np.random.default_rng(seed), np.arange(_N) % 2
     q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))

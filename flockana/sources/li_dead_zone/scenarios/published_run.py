@@ -1,4 +1,4 @@
-"""Dead-zone paper's simulation with the missing parameters chosen, and runs at the limits of its claims."""
+"""Dead-zone paper's simulation with chosen missing parameters, and runs at the limits of its claims."""
 
 from collections.abc import Callable
 from typing import Any
@@ -70,7 +70,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("safe", "agents hold safe distances all the time")
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Claim that distances stay above half of the distance below which agents repel."""
+    """Return the claim that distances stay above half of the repulsion distance."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
     ever = at if run.law.is_map else run.closest_approach().lower
     is_seen = ever > 0.5 * d1 and not thinned(run)
@@ -123,7 +123,7 @@ def _case(
     settings: str = "",
     **parameters: float,
 ) -> Callable[..., Scenario]:
-    """Return the builder of a run in a box; `expected` holds at every seed of its own n, box and ramp."""
+    """Return the builder of a run in a box, with its `expected` statuses for every seed."""
 
     def build(seed: int = 0, n: int = own[0], box: float = own[1], ramp: float = own[2]) -> Scenario:
         generator, box = np.random.default_rng(seed), ensure_positive("box", box)

@@ -1,4 +1,4 @@
-"""The dead-zone law of a run, and hypotheses and claims that both forms of the dead-zone theorem have."""
+"""Dead-zone law of a run, with hypotheses and claims shared by both forms of the theorem."""
 
 from math import inf
 from typing import Any
@@ -20,7 +20,7 @@ _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in
 
 
 def dead_zone_law(run: Trajectory | Observed) -> DeadZoneFlocking | None:
-    """Return the dead-zone law of a run, also of its semi-implicit Euler map; None under any other law."""
+    """Return the dead-zone law of a run or of its semi-implicit Euler map; None for other laws."""
     law: Any = run.law.law if type(getattr(run.law, "solver", None)) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
     return law if exact else None
@@ -38,7 +38,7 @@ def hypotheses(seen: Observed) -> list[Hypothesis]:
 
 
 def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
-    """Return the components of the net in the last state of a run, and what is certain of them; kept with the run."""
+    """Return the components of the net at the end of a run, with certificates, cached with the run."""
     dt = seen.law.dt if seen.is_map else None
     q, p, q_error, p_error = seen.end
     late = seen.window(seen.t[-1] - seen.scales.time, seen.t[-1])
@@ -57,7 +57,7 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
 
 
 def settling(end: Components) -> Certificate:
-    """Return a certificate that each component settles, and no two of them meet."""
+    """Return a certificate that each component settles and no two of them meet."""
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
@@ -69,7 +69,7 @@ def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str
 
 
 def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
-    """Return the explicit distance that no pair comes closer than, from the saturated energy of the first sample."""
+    """Return the guaranteed lower bound of all distances, from the saturated energy of the first sample."""
 
     def distance(energy: npt.NDArray[np.float64]) -> float:
         return law.interaction.least_distance(float(energy)) if np.isfinite(energy) else 0.0

@@ -1,4 +1,4 @@
-"""Erratum L1: (7) and (9) multiply two vectors; by components that product depends on the axes."""
+"""Erratum L1: (7) and (9) multiply two vectors; a componentwise product depends on the axes."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
 
     def printed(x: FloatArray) -> FloatArray:
-        """u_i = Σ_j φ_zi ∘ n_ij with φ_zi = Σ_j f_ij n_ij, the only product of (7) and (9) that gives a vector."""
+        """Return u_i = Σ_j φ_zi ∘ n_ij with φ_zi = Σ_j f_ij n_ij, the only product of (7) and (9) that is a vector."""
         delta = x[None] - x[:, None]
         rho = lengths(delta)
         n = delta / np.sqrt(1.0 + pair.eta * rho**2)[:, :, None]

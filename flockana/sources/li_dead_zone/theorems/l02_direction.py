@@ -1,4 +1,4 @@
-"""Erratum L2: with n = q_i - q_j, as (8) has it, repulsion becomes attraction, and two agents meet in finite time."""
+"""Erratum L2: with n = q_i - q_j, as in (8), repulsion becomes attraction, and agents meet in finite time."""
 
 from math import sqrt
 

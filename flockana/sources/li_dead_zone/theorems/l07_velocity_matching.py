@@ -14,14 +14,14 @@ _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts the
 
 
 def _settled(law: DeadZoneFlocking, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities of 12 agents at t = 200, by semi-implicit Euler steps."""
+    """Return positions and velocities of 12 agents at t = 200, by semi-implicit Euler steps."""
     generator = np.random.default_rng(0)
     q, p = generator.uniform(0.0, 12.0, (12, 2)), generator.uniform(-1.0, 1.0, (12, 2))
     return advance(law, q, p, dt, 200.0)
 
 
 def _chatter(law: DeadZoneFlocking, dt: float) -> float:
-    """Mean of √K̃ from t = 200 to 220; at single instants it ranges from a third of that to more than twice."""
+    """Return the mean of √K̃ from t = 200 to 220, as single instants vary too much."""
     velocities = law.semi_implicit(*_settled(law, dt), dt, round(20.0 / dt))[1]
     return float(np.sqrt(spreads(velocities) / velocities.shape[1]).mean())
 

@@ -1,4 +1,4 @@
-"""Erratum L8: not all pairs of a flock can be at one distance, and contacts sit at r_b - δ, not at r_b."""
+"""Erratum L8: not all pairs of a flock can have one distance, and contacts sit at r_b - δ, not at r_b."""
 
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF

@@ -1,4 +1,4 @@
-"""Erratum L9: leaders and pinned agents, which the text has and (9) has not."""
+"""Erratum L9: leaders and pinned agents, present in the text and missing in (9)."""
 
 from functools import lru_cache
 from typing import Any
@@ -23,7 +23,7 @@ _ROUNDING = 1e-9  # of what steps of a fixed size come to, relative
 def led_run(
     leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, feedforward: bool = True
 ) -> Observed:
-    """Seven agents about each centre, the middle one pinned to the leader of that number; for 60 time units."""
+    """Return a run of seven agents around each centre, with the middle agent pinned to a leader, for 60 time units."""
     pair = DeadZoneInteraction()
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
@@ -34,7 +34,7 @@ def led_run(
 
 
 def _slip(run: Trajectory) -> FloatArray:
-    """‖p_i − p_l‖ at the last samples over the leader's speed, the largest of each sample."""
+    """Return the largest ‖p_i − p_l‖ at the last samples relative to the leader's speed."""
     law = run.law.continuous
     rows = []
     for t, p in zip(run.t[1:], run.p[1:], strict=True):
@@ -44,7 +44,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _printed() -> Claim:
-    """Return the claim that (9), which has no leaders, bonds two agents that should follow different ones."""
+    """Return the claim that (9), without leaders, bonds two agents meant to follow different leaders."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
     return limit_claim("printed", [], escape=bond).described(
@@ -66,7 +66,7 @@ def _runs() -> dict[str, Observed]:
 
 
 def _follow(name: str, seen: Observed, stated: str, what: str) -> Claim:
-    """The claim that all velocities are the leader's late in a run; what comes after it is not claimed."""
+    """Return the claim that all velocities equal the leader's late in a run."""
     slip = float(_slip(seen.run).max())
     times = " and ".join(f"{t:g}" for t in seen.t[1:])
     detail = f"{what} each velocity differs from the leader's by at most {slip:.2g} of its speed"
@@ -87,7 +87,7 @@ def _apart(seen: Observed) -> Claim:
 
 
 def _fraction() -> Claim:
-    """A pinned agent on its leader, and one that is not pinned out of its range: neither ever feels a force."""
+    """Return the claim that a pinned agent on its leader and an unpinned one out of range feel no force."""
     law = LedDeadZoneFlocking(leaders=(LinearTarget((0.0, 0.0), (-1.0, 0.0)),), group=(0, 0), pinned=(0,))
     q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
     force = float(np.abs(law.flow(0.0, q, p)[0]).max())

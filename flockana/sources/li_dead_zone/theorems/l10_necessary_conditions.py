@@ -1,4 +1,4 @@
-"""Erratum L10: the conclusion's necessary and sufficient conditions, of which the paper states none."""
+"""Erratum L10: necessary and sufficient conditions, announced in the conclusion and never stated."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ _TIMES = 2.0  # as much energy as can put the pair out of range
 
 
 def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
-    """Two agents in contact that leave each other with twice the energy that can put them out of range, much damped."""
+    """Return two agents in contact that separate with twice the escape energy under strong damping."""
     law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
     q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
     rest = law.hamiltonian(0.0, q, np.zeros_like(q))
@@ -24,12 +24,12 @@ def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
 
 
 def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
-    """Return H̄ over (n − 1) ψ̄(r); if it is below 1, a connected flock stays connected."""
+    """Return H̄ over (n − 1) ψ̄(r); below 1, a connected flock stays connected."""
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
 def _is_finite_apart() -> bool | None:
-    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0."""
+    """Return whether the pair potential is finite at every distance > 0, so that every start has a finite energy."""
     # None if sympy cannot tell.
     import sympy as sp
 
@@ -42,7 +42,7 @@ def _is_finite_apart() -> bool | None:
 
 
 def _necessary() -> Claim:
-    """The claim that the condition leaves some start out, by algebra."""
+    """Return the claim that the condition excludes some start, by algebra."""
     nothing, stated = _is_finite_apart(), "the condition leaves some start out"
     if nothing is None:
         return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)

@@ -1,4 +1,4 @@
-"""Basin of the strict minimum beside a dead-zone flock: a certificate of its limit.
+"""Basin of the strict minimum near a dead-zone flock: a certificate of its limit.
 
 The argument is that of `flockana.theorems.basin`, with U = Σψ̄, whose Hessian has a finite Lipschitz constant only where
 no pair comes to a kink of its force: the ends of the ramps, of the dead zone, and the range. So the windows in which it
@@ -37,7 +37,7 @@ def hold(
     off: float = 0.0,
     p_off: float = 0.0,
 ) -> basins.Basin:
-    """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given."""
+    """Return the basin of the minimum near an isolated flock, for the flow or for the map of steps dt."""
     if len(q) == 1:
         return basins.ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:
@@ -59,7 +59,7 @@ def hold(
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
-    """Return ‖∇U‖ over all coordinates, with its rounding added."""
+    """Return ‖∇U‖ over all coordinates, plus a bound of its rounding."""
     pair, pairs = law.interaction, links(q, law.interaction.r)
     pulls = np.abs(pair.force(link_lengths(q, pairs)))
     most = float(np.bincount(pairs.ravel(), weights=np.repeat(pulls, 2), minlength=1).max())

@@ -1,4 +1,4 @@
-"""Components of a dead-zone flock's net, and which of them provably stay together or separate.
+"""Components of a dead-zone flock's net, with proofs of which stay together or separate.
 
 While no two components meet, each has a centre of constant velocity and an energy H̄ of its own that does not rise. Two
 things keep a component together:
@@ -35,7 +35,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A component of the net at one instant, with certificates that hold while it meets no other."""
+    """Component of the net at one instant, with certificates valid while it meets no other component."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -47,29 +47,29 @@ class Component:
 
     @property
     def size(self) -> int:
-        """Number of the component's agents."""
+        """Number of agents in the component."""
         return len(self.q)
 
     @cached_property
     def mismatch(self) -> float:
-        """K̃ = ½ Σ‖p_i − p̄‖²/n."""
+        """Velocity mismatch K̃ = ½ Σ‖p_i − p̄‖²/n of the component."""
         return 0.5 * float(np.sum((self.p - self.p.mean(axis=0)) ** 2)) / self.size
 
     @cached_property
     def basin(self) -> Basin:
-        """Basin of the potential's minimum beside the component."""
+        """Basin of the potential's minimum near the component."""
         return hold(self.law, self.q, self.p, self.dt, off=self.off, p_off=self.p_off)
 
     @cached_property
     def _out_of_range(self) -> float:
-        """H̄/ψ̄(r), an upper bound of the number of pairs that the energy can put out of range."""
+        """Upper bound H̄/ψ̄(r) of the number of pairs that the energy can drive out of range."""
         far = self.law.interaction.far_potential
         energy: float = self.law.hamiltonian(0.0, self.q, self.p) + self.energy_off
         return energy / far if far > 0.0 else inf
 
     @property
     def bond(self) -> Certificate:
-        """Certificate that a component cannot break up and its velocities match, by its energy; for flows only."""
+        """Certificate by energy that a component stays together and its velocities match; for flows only."""
         if self.size == 1:
             return Certificate(1.0, "one agent has one velocity")
         if self.dt is not None or self.law.k2 == 0.0:
@@ -81,12 +81,12 @@ class Component:
 
     @property
     def settles(self) -> Certificate:
-        """Certificate that the component's velocities will match, the better of two."""
+        """Certificate that the component's velocities match in the limit, the better of two."""
         return self.bond if self.bond.certain else self.basin.certificate
 
     @cached_property
     def radius(self) -> float:
-        """Upper bound of any agent's distance from the component's centre at all times; ∞ if it might break up."""
+        """Upper bound of any agent's distance from the component's centre at all times; ∞ if it might split."""
         if self.size == 1:
             return 0.0
         if self.basin.certificate.certain:
@@ -98,7 +98,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """The components of a flock at one instant."""
+    """Components of a flock at one instant."""
 
     members: tuple[Component, ...]
     r: float
@@ -129,7 +129,7 @@ class Components:
 
     @cached_property
     def _clearance(self) -> tuple[float, float]:
-        """Least clearance of two paths of centres over r, and its rounding: of lengths, and of mean velocities."""
+        """Return the least clearance of two centres' paths beyond r, and its rounding error."""
         if self.count == 1:
             return inf, EPS
         centre, velocity = (np.array([getattr(c, x).mean(axis=0) for c in self.members]) for x in "qp")
@@ -163,7 +163,7 @@ class Components:
 
     @cached_property
     def _velocity_error(self) -> FloatArray:
-        """Rounding of the velocity of each component's centre: of a mean, so none of a single agent."""
+        """Return the rounding error of the velocity of each component's centre."""
         rounding = [(c.size + 2) * EPS * float(np.abs(c.p).max()) if c.size > 1 else 0.0 for c in self.members]
         return np.array([c.p_off + own_rounding for c, own_rounding in zip(self.members, rounding, strict=True)])
 

@@ -1,4 +1,4 @@
-"""Decision whether two agents of a run come into range of each other, also between the samples."""
+"""Decision whether two agents of a run come into range, also between samples."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ _NEXT = 1.5  # steps: samples of a map that are farther apart have states betwee
 
 @dataclass(frozen=True)
 class RangeEntry:
-    """The first pair that comes into range, and whether there may be others."""
+    """First pair that comes into range, and whether others may."""
 
     pair: tuple[int, int] | None
     time: float | None
@@ -20,7 +20,7 @@ class RangeEntry:
 
 
 def thinned(run: Trajectory) -> bool:
-    """Return whether a map took steps between the stored samples."""
+    """Return whether a map made steps between the stored samples."""
     return run.law.is_map and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 

@@ -1,4 +1,4 @@
-"""Theorem 1 of the dead-zone paper, repaired: saturated energy, one velocity per component, an explicit distance."""
+"""Corrected Theorem 1 of the dead-zone paper: saturated energy, one velocity per component, an explicit distance."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tole
 
 
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
-    """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
+    """Return the claim that −k₂ pᵀL̂p never is positive; as a sum of squares its sign has no rounding."""
     worst, rising, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
     return by_count("rate", rising, needs, proof=None if seen.is_map else case.PROOF).described(
         computed=float(rate[worst]),
@@ -27,7 +27,7 @@ def _balance(seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) ->
 
 
 def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
-    """Within each component velocities match in the end; a finite run cannot refute the limit."""
+    """Return the claim that velocities match within each component in the limit."""
     return limit_claim("components", needs, [case.settling(end)]).described(
         computed=end.mismatch,
         stated="velocities match within each component: K̃ of each -> 0",

@@ -1,4 +1,4 @@
-"""Theorem 1 of the dead-zone paper as printed: one flock within r, an energy that falls, one velocity, no collision."""
+"""Printed Theorem 1 of the dead-zone paper: one flock within r, a falling energy, one velocity, no collision."""
 
 from flockana.measures.metrics import cohesion_radius
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
@@ -11,7 +11,7 @@ from flockana.theorems.toolkit import EPS, Certificate, Enclosure, Observed, cou
 
 
 def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:
-    """Return 1 − R/r of the limit, and its evidence; None where unknown."""
+    """Return 1 − R/r of the limit and its certificate; None where unknown."""
     if end.count > 1:
         apart = end.separation
         return Enclosure.around(-apart.margin, apart.error) if apart.certain else None, apart.text
@@ -42,7 +42,7 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
 
 
 def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that the energy of neighbours never rises, which an entering pair refutes."""
+    """Return the claim that the energy of neighbours never rises, refuted by a pair entering the range."""
     # Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
     jump, entry = law.interaction.far_potential, first_entry(seen, law.interaction.r)
     enters = entry.pair is not None and jump > 0.0
