@@ -1,4 +1,4 @@
-"""Figures of a run of the MSN project's map: the common ones, and its connectivity curve."""
+"""Figures of a run of the MSN project's map: standard figures, and the connectivity curve."""
 
 import numpy as np
 

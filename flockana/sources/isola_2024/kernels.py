@@ -1,4 +1,4 @@
-"""One step of a map that moves the agents one after the other, each seeing those before it already moved."""
+"""One step of the sequential map of agents, each using the already moved positions."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from flockana.kernels.alpha import pair_alpha
 
 @kernel
 def neighbour_lists(n, first, second):
-    """(start, neighbour): the neighbours of i are neighbour[start[i]:start[i + 1]], in the order of the pairs."""
+    """Return (start, neighbour): the neighbours of i are neighbour[start[i]:start[i + 1]], in pair order."""
     start = np.zeros(n + 1, np.int64)
     for k in range(first.size):
         start[first[k] + 1] += 1
@@ -29,7 +29,7 @@ def neighbour_lists(n, first, second):
 
 @kernel
 def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
-    """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i.
+    """Overwrite q, p, u agent by agent: u_i from the current state, then q_i and p_i.
 
     `near` are `neighbour_lists`, `gains` (c1α, c2α) and `goal` (c1γ, c2γ, q_r, p_r).
     """

@@ -1,4 +1,4 @@
-"""The MSN project's discretisation of Algorithms 1 and 2, which is a map of its own rather than an integrator."""
+"""MSN project's discretisation of Algorithms 1 and 2, a map rather than an integrator."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

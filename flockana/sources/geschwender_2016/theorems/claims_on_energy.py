@@ -12,7 +12,7 @@ PROOF = "energy-identities"
 
 
 def state_claim(state: Any) -> Claim:
-    """Return the claim that the printed energy does not rise, at a rational state where its exact rate is known."""
+    """Return the claim that the printed energy does not rise, at a rational state with a known exact rate."""
     rate, true_rate = float(state.rate), float(state.true_rate)
     return exact("printed-state", not state.rate.is_positive, margin=-rate, error=0.0, disproof=PROOF).described(
         computed=rate,
@@ -23,12 +23,12 @@ def state_claim(state: Any) -> Claim:
 
 
 def rises(energy: Enclosure) -> Enclosure:
-    """Return by how much an energy is above its least value so far, at each sample."""
+    """Return the excess of an energy over its least value so far, at each sample."""
     return energy + (-energy).largest_so_far()
 
 
 def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -> Enclosure:
-    """Return an energy that is the true one and an excess, at each sample."""
+    """Return the true energy plus a given excess, at each sample."""
 
     def rounding(run: Trajectory) -> FloatArray:
         return energy_error(run.law, run.q, run.p, np.abs(run.energy()) + np.abs(excess(run)))
@@ -38,7 +38,7 @@ def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -
 
 
 def run_claim(seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Needs = ()) -> Claim:
-    """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run."""
+    """Return the claim that the printed energy (true plus excess) never rises; `where` names the run."""
     # A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
     above = rises(printed_energy(seen, excess))
     peak, true = int(np.argmax(above.lo)), seen.energy

@@ -1,4 +1,4 @@
-"""Directed nets, which the slides allow but do not treat: properties of Algorithms 1 to 3 that hold, and that fail."""
+"""Directed nets, allowed but not treated in the slides: properties of Algorithms 1 to 3 that hold or fail."""
 
 from functools import partial
 
@@ -19,7 +19,7 @@ _ENDS = 1e-3  # relative: as near as the end of the run is to the limit
 
 
 def _undirected() -> Claim:
-    """Forces with all ranges alike against those of the laws, in the plane, from one fixed random state."""
+    """Return the claim that equal ranges give the laws' forces, in the plane, from one random state."""
     generator, target = np.random.default_rng(0), LinearTarget((0.0, 0.0), (1.0, 0.0))
     q, p = generator.uniform(-20.0, 20.0, (40, 2)), generator.normal(0.0, 1.0, (40, 2))
     laws = Algorithm1(), Algorithm2(target=target), Algorithm3(target=target, obstacles=(Sphere((40.0, 0.0), 5.0),))
@@ -37,7 +37,7 @@ def _undirected() -> Claim:
 
 
 def _pair() -> DirectedNet:
-    """Agent 0 sees agent 1, which is short-sighted and does not see agent 0 at the distance d."""
+    """Return a pair in which agent 0 sees the short-sighted agent 1 at the distance d."""
     return DirectedNet(Algorithm1(), ranges=(8.4, 3.0))
 
 
@@ -55,13 +55,13 @@ def _momentum() -> Claim:
 
 
 def _own_energy(run: Trajectory) -> FloatArray:
-    """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
+    """Return c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
     apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
     return run.law.law.gains.c1_alpha * run.law.alpha.energy(np.abs(apart)) + 0.5 * slip**2
 
 
 def _following() -> list[Claim]:
-    """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
+    """Return agent 0 at rest at the distance d behind agent 1, which moves away at constant velocity."""
     return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [1.0]], (0.0, 30.0), rtol=1e-10), 1.0)
 
 

@@ -32,7 +32,7 @@ def random_disc(n: int, seed: int, *, d: float) -> FloatArray:
 
 
 def rhombus_with_double_agent(d: float) -> FloatArray:
-    """Five agents: two triangles on a common side, and a second agent on one of that side's ends."""
+    """Return five agents: two triangles with a common side, and a double agent at one of its ends."""
     height = 0.5 * sqrt(3.0)
     return d * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, height], [0.5, -height], [0.0, 0.0]])
 
@@ -53,14 +53,14 @@ def _limit(law: Algorithm1, n: int, seed: int) -> _Limit:
 
 
 def _certain_strain(law: Algorithm1 | Algorithm2, q: FloatArray) -> Enclosure:
-    """Largest |link − d|/d at the strict minimum beside a state; unbounded where none is certified."""
+    """Return the largest |link − d|/d at the strict minimum near a state; infinite without a certificate."""
     basin, strain = attraction(law, q, 0.0 * q), terminal_state(law, q, 0.0 * q).strain
     is_certain = basin.certificate.certain
     return Enclosure.around(strain, sqrt(2.0) * basin.distance / law.alpha.length if is_certain else inf)
 
 
 def _is_lattice(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> bool | None:
-    """Return whether a limit is an α-lattice; None where the flow has not ended, or strain is not certain to stay."""
+    """Return whether a limit is an α-lattice; None if undecided."""
     if not limit.converged:
         return None
     strained = [q for q, end in limit.parts if end.strain > tolerances.lattice]
@@ -70,7 +70,7 @@ def _is_lattice(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> bool 
 
 
 def _shares(law: Algorithm1, limits: dict[int, list[_Limit]], tolerances: Tolerances) -> Claim:
-    """Return the claim that almost every random start ends as a lattice: refuted by one number of agents."""
+    """Return the claim that almost every random start ends as a lattice, refuted by one flock size."""
     claims = {
         n: always("share", [_is_lattice(law, limit, tolerances) for limit in of_n], f"n = {n}: a lattice", "share 1")
         for n, of_n in limits.items()
@@ -86,7 +86,7 @@ def _shares(law: Algorithm1, limits: dict[int, list[_Limit]], tolerances: Tolera
 
 
 def _double_agent(law: Algorithm1) -> Claim:
-    """The smallest known strict minimum that is no lattice: a coincident pair, kept by its three common neighbours."""
+    """Return the claim on the smallest known strict minimum off the lattices: a pair held by three neighbours."""
     q = rhombus_with_double_agent(law.alpha.length)
     end, caught = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
     return of_state("double-agent", -caught.margin, caught.error, about="all", disproof="double-agent").described(
@@ -99,7 +99,7 @@ def _double_agent(law: Algorithm1) -> Claim:
 
 
 def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
-    """Return a random start's limit of distinct agents whose links differ from d, in a strict minimum of V."""
+    """Return a random start's limit of distinct agents with link lengths other than d, at a strict minimum of V."""
     q, end = max(limit.parts, key=lambda part: part[1].strain)
     certain = end.coincident == 0
     margin = tolerances.lattice - _certain_strain(law, q) if certain else Enclosure.around(0.0, inf)
@@ -113,7 +113,7 @@ def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
 
 
 def _smallest(tolerances: Tolerances) -> Claim:
-    """The smallest known strained minimum of distinct agents, verified anew from its file."""
+    """Return the claim on the smallest known strained minimum of distinct agents, recomputed from its file."""
     strain = smallest_strained()
     end = terminal_state(strain.law, strain.q, 0.0 * strain.q)
     margin = tolerances.lattice - _certain_strain(strain.law, strain.q)
@@ -128,7 +128,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
 
 
 def _compressed(tolerances: Tolerances) -> Claim:
-    """The hexagon under Algorithm 2, whose λJ presses on every link."""
+    """Return the claim on a hexagon under Algorithm 2, whose pull λJ compresses every link."""
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)

@@ -1,4 +1,4 @@
-"""E4: H < c* excludes collisions, but for large flocks no state is below c*; a barrier without this defect."""
+"""Erratum E4: H < c* excludes collisions, but no large flock has such a state; an alternative barrier."""
 
 from math import sqrt
 
@@ -37,13 +37,13 @@ _LATTICES = {  # of links of length 1: the largest below (n − 1) ψ_α(r_α), 
 
 
 def _error(alpha: AlphaInteraction, n: int) -> float:
-    """Rounding of V of n agents: each of its pairs is known to 1e-13 c*, and they are summed."""
+    """Return the rounding error of V of n agents, with each pair known to 1e-13 c*."""
     pairs = n * (n - 1) // 2
     return pairs * (1e-13 + pairs * EPS) * alpha.c_star
 
 
 def _implication(alpha: AlphaInteraction) -> Claim:
-    """The claim as printed, which is true: every other pair adds at least 0 to the c* of a coincident pair."""
+    """Return the printed claim, which is true: all pairs add at least 0 to the c* of a coincident pair."""
     # ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
     z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
@@ -59,7 +59,7 @@ def _implication(alpha: AlphaInteraction) -> Claim:
 
 
 def _reached(alpha: AlphaInteraction) -> Claim:
-    """The largest α-lattice below c*, its energy computed from the configuration and not from the count."""
+    """Return the claim on the largest α-lattice below c*, with the energy computed from the configuration."""
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
     margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)
@@ -73,7 +73,7 @@ def _reached(alpha: AlphaInteraction) -> Claim:
 
 
 def _none(alpha: AlphaInteraction) -> Claim:
-    """The claim that no state of 23 agents has V < c*: two distances of four points differ by a factor √2."""
+    """Return the claim that no state of 23 agents has V < c*."""
     n = least_infeasible_size(alpha)
     shortest, longest = bound_range(alpha)
     table = {
@@ -95,7 +95,7 @@ def _none(alpha: AlphaInteraction) -> Claim:
 
 
 def _together(alpha: AlphaInteraction) -> Claim:
-    """The claim that Theorem 1's own hypothesis, on all solutions, is met by the energy of small lattices alone."""
+    """Return the claim that only small lattices meet Theorem 1's energy hypothesis."""
     rooms, table = [], {}
     for m, q in _LATTICES.items():
         n, far = len(q), alpha.far_potential
@@ -118,7 +118,7 @@ def _together(alpha: AlphaInteraction) -> Claim:
 
 
 def _barrier(alpha: AlphaInteraction) -> Claim:
-    """Return the claim that min{V : two agents coincide} is above c*, by a lower bound; a search shows by how much."""
+    """Return the claim that min{V : two agents coincide} is above c*, by a lower bound and a search."""
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
     room = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())

@@ -23,7 +23,7 @@ _PROOF = "nonplanar-fcc"
 
 
 def fcc_eight(d: float) -> FloatArray:
-    """Eight sites of the face-centred cubic lattice with 17 links and no drawing in the plane."""
+    """Return eight sites of the face-centred cubic lattice with 17 links and a non-planar graph."""
     return d / sqrt(2.0) * np.array(EIGHT, dtype=float)
 
 
@@ -32,7 +32,7 @@ def _add(site: Site, step: Site) -> Site:
 
 
 def fragments(size: int) -> Iterator[tuple[Site, ...]]:
-    """Every connected set of `size` face-centred cubic sites, once up to translation (Redelmeier 1981)."""
+    """Yield every connected set of `size` face-centred cubic sites, up to translation (Redelmeier 1981)."""
     origin: Site = (0, 0, 0)
 
     def grow(chosen: list[Site], untried: list[Site], seen: set[Site]) -> Iterator[tuple[Site, ...]]:
@@ -48,7 +48,7 @@ def fragments(size: int) -> Iterator[tuple[Site, ...]]:
 
 
 def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
-    """Pairs of sites that are nearest neighbours, by their whole-number coordinates."""
+    """Return the pairs of nearest-neighbour sites, by whole-number coordinates."""
     steps = set(_STEPS)
     return tuple(
         (i, j)
@@ -58,7 +58,7 @@ def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
-    """Return the number of fragments of a size, and of those that are not planar; exact, in whole numbers."""
+    """Return the numbers of fragments and of non-planar fragments of a size, exactly."""
     answers: dict[tuple[tuple[int, int], ...], bool] = {}
     total = bad = 0
     for sites in fragments(size):

@@ -9,7 +9,7 @@ _PROOF = "theorem5-counts"
 
 
 def link_counts() -> dict[int, tuple[int, int, int]]:
-    """Links of the hexagonal spiral of n agents, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60."""
+    """Return link counts of the hexagonal spiral, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60."""
     counts = {n: len(links(hexagonal_spiral(n, _D), _R)) for n in range(1, _MOST + 1)}
     return {n: (count, 3 * n - 6, harborth(n)) for n, count in counts.items()}
 

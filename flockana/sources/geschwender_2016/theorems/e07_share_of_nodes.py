@@ -13,7 +13,7 @@ _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and th
 
 
 def _components(*sizes: int) -> FloatArray:
-    """Rows of agents, each within range of the next, the rows out of range of each other."""
+    """Return rows of agents, connected within each row and out of range between rows."""
     rows = [_SPACE * k + np.arange(float(size)) for k, size in enumerate(sizes)]
     return np.concatenate(rows)[:, None]
 

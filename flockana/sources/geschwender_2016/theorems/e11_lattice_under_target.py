@@ -26,7 +26,7 @@ _HALVINGS = 3
 
 
 def resting_place(alpha: AlphaInteraction, ratio: float, q: FloatArray) -> FloatArray:
-    """Return where a start rests downhill at this c1γ/c1α."""
+    """Return the resting state reached downhill from a start at this ratio c1γ/c1α."""
     limit = gradient_flow(pulled_law(alpha, ratio), q)
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
@@ -34,13 +34,13 @@ def resting_place(alpha: AlphaInteraction, ratio: float, q: FloatArray) -> Float
 
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
-    """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
+    """Return whether a slightly disturbed hexagonal patch collapses at this ratio c1γ/c1α."""
     start = perturbed(hexagonal_patch(rings, law.alpha.length), law.alpha.length)
     return coincident_pairs(resting_place(paper_pair(law), ratio, start), CONTACT * law.alpha.length) > 0
 
 
 def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
-    """(largest ratio c1γ/c1α at which the gradient flow of a hexagonal patch was seen safe, least seen to collapse)."""
+    """Return (largest safe ratio c1γ/c1α of a hexagonal patch under the gradient flow, least collapsing ratio)."""
     lowest = _SAFE * natural_ratio(paper_pair(law)) / rings**2  # what presses on the middle adds up over the radius
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
 
@@ -54,7 +54,7 @@ def _gains(run: Observed) -> Hypothesis:
 
 
 def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Return the claim as printed: decided by the strain of the strict minimum that the flock is certain to stay at."""
+    """Return the printed claim, decided by the strain of the certified final minimum."""
     caught = final_basin(seen)
     room, is_certain = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
     ratio = seen.law.gains.c1_gamma / seen.law.gains.c1_alpha
@@ -83,7 +83,7 @@ def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Cla
 
 @lru_cache(maxsize=32)
 def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
-    """Brackets of the ratio by number of agents; or why there are none."""
+    """Return brackets of the ratio by number of agents, or a reason for none."""
     law = pulled_law(alpha, natural_ratio(alpha))
     try:
         return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
@@ -92,7 +92,7 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    """Return the claim that the ratio falls: the brackets, as logarithms, lie below each other."""
+    """Return the claim that the ratio falls with size: logarithmic brackets lie below each other."""
     brackets = _brackets(law.alpha)
     about: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",

@@ -1,4 +1,4 @@
-"""The energy of Algorithm 3 as the slides print it, along a run: erratum E2 says that it can rise."""
+"""Printed energy of Algorithm 3 along a run, which can rise (erratum E2)."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ def _pair_forces(run: Trajectory) -> FloatArray:
 
 
 def _printed_rate(run: Trajectory) -> FloatArray:
-    """Return the rate of the printed energy, with the surplus c1α ⟨∇V, p⟩ that has no sign."""
+    """Return the rate of the printed energy, including the indefinite surplus c1α ⟨∇V, p⟩."""
     return run.energy_rate() - np.sum(_pair_forces(run) * run.p, axis=(1, 2))
 
 

@@ -1,4 +1,4 @@
-"""The slides' summaries of Theorems 1 and 3 on a run: it converges to an α-lattice (false, erratum E3)."""
+"""Printed summaries of Theorems 1 and 3 on a run: convergence to an α-lattice (false, erratum E3)."""
 
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit

@@ -1,4 +1,4 @@
-"""Scenarios of the MSN project's four cases, as the continuous systems meant and as the maps run.
+"""Scenarios of the MSN project's four cases: the intended continuous systems and the published maps.
 
 Its γ-agent moves by iteration i at t = 0.009 i, and the p_r that it hands over is per iteration: 0.009 of the true
 rate (erratum E12). What the project reports (`msn_reports`) is judged on one random start.
@@ -62,7 +62,7 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
-    """Return the expected statuses of a case; the theorems are about flows, so maps have reports only."""
+    """Return the expected statuses of a case; maps have reports only, as the theorems are about flows."""
     none = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
     if printed and case >= 3:  # the map's orbits part after some 300 steps
         return none | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
@@ -88,7 +88,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 
 
 def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: float = 0.0) -> Scenario:
-    """Build a case; for case 4 with scaled speed of the γ-agent and offset of the flock."""
+    """Return a case, with optional scaled speed of the γ-agent and offset of the flock."""
     side, end = 50.0 if case <= 2 else 150.0, UPDATES * DT * max(1.0, 1.0 / ensure_positive("speed", speed))
     continuous = _law(case, speed)
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
@@ -131,7 +131,7 @@ def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
 
 
 def _static(seed: int = 0) -> Scenario:
-    """Build erratum E16 on the project's flock: α gains above those of γ, and a target at rest."""
+    """Return the scenario of erratum E16: the project's flock with large α gains and a resting target."""
     law = Algorithm2(_ALPHA, _STRONG, StaticTarget((75.0, 75.0)))
     q = np.random.default_rng(seed).uniform(0.0, 150.0, (_N, 2))
     title = "MSN project's gains, 100 : 70, target at rest: pairs of agents coincide"

@@ -74,7 +74,7 @@ def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _last_apart(run: Trajectory) -> float:
-    """Return the iteration of the last sample with a disconnected net; -1 if there is none."""
+    """Return the iteration of the last disconnected sample; -1 without one."""
     apart = run.t[run.metric("connectivity") < 1.0]
     return float(apart[-1]) / DT if apart.size else -1.0
 
@@ -151,7 +151,7 @@ def _anticlockwise(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @lru_cache(maxsize=1)
 def _ranks_at_start(r: float) -> dict[float, float]:
-    """rank(A)/n of 100 agents in a square, in the mean over seeds, by the square's side."""
+    """Return rank(A)/n of 100 agents in a square, averaged over seeds, by side length."""
     ranks = {}
     for side in (50.0, 150.0):
         starts = (np.random.default_rng(seed).uniform(0.0, side, (_N, 2)) for seed in range(_SEEDS))

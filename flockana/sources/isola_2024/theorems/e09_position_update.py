@@ -15,7 +15,7 @@ _PROOF = "constant-acceleration"
 
 
 def _step(factor: float) -> tuple[float, float]:
-    """(displacement of one agent in one step beyond q + p dt + ½ u dt², u dt²)."""
+    """Return (displacement beyond q + p dt + ½ u dt² in one step, u dt²) of one agent."""
     law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((_Q_R,)))
     q, p = np.array([[_Q]]), np.array([[_P]])
     after, _, u, _ = MSNDiscretisation(law, dt=_DT, position_factor=factor).step(0.0, q, p, {})
@@ -24,7 +24,7 @@ def _step(factor: float) -> tuple[float, float]:
 
 
 def _symbolic_excess(v: str) -> tuple[str, bool]:
-    """(q + v dt + ½ u dt² minus what a constant u does, as text; whether it is zero), v of the step's start or end."""
+    """Return (excess of q + v dt + ½ u dt² over exact motion, as text; whether zero), for old or new v."""
     import sympy as sp
 
     q, p, u, dt, s = sp.symbols("q p u dt s")
@@ -35,7 +35,7 @@ def _symbolic_excess(v: str) -> tuple[str, bool]:
 
 
 def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
-    """The claim that a step goes as far as a constant u does, with the velocity of its start or of its end."""
+    """Return the claim that a step equals exact motion under constant u, with old or new velocity."""
     text, zero = _symbolic_excess(v)
     measured, swept = _step(factor)
     return exact(name, zero, **proof).described(

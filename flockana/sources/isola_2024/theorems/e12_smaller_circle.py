@@ -1,4 +1,4 @@
-"""Erratum E12: why the MSN project's flock describes a smaller circle and sine than its γ-agent."""
+"""Erratum E12: cause of the smaller circle and sine of the MSN project's flock."""
 
 from dataclasses import replace
 from math import pi
@@ -17,7 +17,7 @@ from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, cond
 
 
 def measured_ratio(seen: Observed) -> Enclosure:
-    """Return the ratio that a run shows; its error is the fit's residual and the difference of two runs."""
+    """Return the measured ratio of a run, with the fit residual and the second run as error."""
     (ratio, left), (other, _) = response_ratio(seen.run), response_ratio(seen.other)
     target: Any = seen.law.target
     floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))
@@ -40,7 +40,7 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
 
 
 def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: Tolerances, detail: str) -> Claim:
-    """Return the claim that a measured ratio agrees with a predicted gain, relative to that unless it is 0."""
+    """Return the claim that a measured ratio agrees with a predicted gain, relative to a nonzero gain."""
     return judged(name, tolerances.agreement - abs(ratio - gain) / (gain or 1.0), needs).described(
         computed=float(ratio.mid),
         stated=gain,

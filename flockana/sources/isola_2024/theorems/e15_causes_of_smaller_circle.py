@@ -1,4 +1,4 @@
-"""Erratum E15: two causes that the MSN project gives for the smaller circle of its case 4, start and speed."""
+"""Erratum E15: two stated causes of the smaller circle in the MSN project's case 4, start and speed."""
 
 from itertools import pairwise, product
 from math import pi, sqrt
@@ -34,7 +34,7 @@ def circle_law(speed: float, factor: float) -> Algorithm2:
 
 
 def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclosure:
-    """Return the ratio of the circles for 19 agents that start a number of radii from the circle's centre."""
+    """Return the circle ratio of 19 agents that start at a number of radii from the circle's centre."""
     path: Any = law.target
     start: FloatArray = hexagonal_patch(2, _ALPHA.d) + np.array(_CENTRE) + (away * _RADIUS, 0.0)
     end = max(_PERIODS / path.target.frequency, _LASTING)
@@ -44,7 +44,7 @@ def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclo
 
 
 def _condition() -> Any:
-    """Numerator of d|G|²/dω² less what it is said to be, for every c1γ, c2γ, ω and factor of p_r."""
+    """Return the difference between the numerator of d|G|²/dω² and its stated form, for all parameters."""
     import sympy as sp
 
     from flockana.symbolic.parameters import GAINS
@@ -57,7 +57,7 @@ def _condition() -> Any:
 
 
 def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
-    """Return the claim that each ratio is below the one before."""
+    """Return the claim that the ratios decrease."""
     values, listed = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listed}"
     drops = stacked([a - b for a, b in pairwise(ratios)])
@@ -65,7 +65,7 @@ def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: 
 
 
 def _first_grows(ratios: list[Enclosure]) -> Claim:
-    """Return the claim that not each ratio is below the one before."""
+    """Return the claim that the ratios do not all decrease."""
     listed = ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     return judged("first-grows", stacked([b - a for a, b in pairwise(ratios)]).max(), proof=_PROOF).described(
         computed=_values(ratios),
@@ -89,7 +89,7 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
 
 
 def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> list[Claim]:
-    """Return the project's claim that a start outside the circle, or another speed, makes the circle not smaller."""
+    """Return the project's claim that an outside start, or another speed, keeps the circle from shrinking."""
     largest = stacked(others).max()
     return [
         judged("printed-start", outside - 1.0, about="all", disproof=_PROOF).described(

@@ -21,7 +21,7 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 
 @lru_cache(maxsize=1)
 def _compressed_rest() -> FloatArray:
-    """Return where a hexagonal patch of 61 agents rests at the project's coefficients."""
+    """Return the resting state of a hexagonal patch of 61 agents with the project's coefficients."""
     return resting_place(_ALPHA, _RATIO, perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d))
 
 
@@ -30,7 +30,7 @@ def _measured(q: FloatArray, ratio: float, contact: float) -> TerminalState:
 
 
 def _least_strain(n: int, contact: float) -> Enclosure:
-    """The least strain of n agents that rest at c1γ = c1α."""
+    """Return the least strain of n resting agents at c1γ = c1α."""
     rng = np.random.default_rng(0)
     starts = [perturbed(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
     starts += [rng.uniform(-_ALPHA.d, _ALPHA.d, (n, 2)) for _ in range(_STARTS - 1)]
@@ -40,7 +40,7 @@ def _least_strain(n: int, contact: float) -> Enclosure:
 
 
 def _pair_ratio(strain: float) -> float:
-    """The ratio c1γ/c1α at which a pair rests with that strain: 2 |φ_α| |n_ij| against the pull on their distance."""
+    """Return the ratio c1γ/c1α at which a pair rests with a given strain, from the force balance."""
     s = (1.0 - strain) * _ALPHA.d
     return float(-2.0 * _ALPHA.phi_alpha(_ALPHA.sigma_norm(s)) / sqrt(1.0 + _ALPHA.eps * s**2))
 

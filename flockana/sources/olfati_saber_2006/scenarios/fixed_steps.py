@@ -19,7 +19,7 @@ _one_flock = report("connected", "the net ends connected")(connected)
 
 @report("settles", "velocities match")
 def _settles(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Claim that K̃ falls as much as that of the continuous flow from the same start."""
+    """Return the claim that K̃ falls as much as under the continuous flow from the same start."""
     start, end = (velocity_mismatch(run.p[k]) / run.n for k in (0, -1))
     law = run.law.continuous
     assert law is not None

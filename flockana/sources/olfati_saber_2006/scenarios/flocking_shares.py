@@ -1,4 +1,4 @@
-"""Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
+"""Shares of seeds for which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
 from typing import Any
 
@@ -28,7 +28,7 @@ def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("fragments", "it rarely flocks: the run does not end as one flock")
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Return whether the run ends in several components, or with velocities that differ: not as one flock."""
+    """Return whether the run ends in several components, or with different velocities."""
     flock = _flocks.check(run, tolerances)
     assert flock.margin is not None
     stated = f"several components, or K̃ > {tolerances.mismatch:g}"

@@ -89,7 +89,7 @@ def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
-    """Return which agents have an obstacle on the straight path to the γ-agent, shape (n,)."""
+    """Return whether each agent has an obstacle on its straight path to the γ-agent, shape (n,)."""
     share = np.linspace(0.0, 1.0, _SEGMENT)[:, None, None]
     way = (q + share * (target - q)).reshape(-1, q.shape[1])
     hit = np.any([obstacle.contains(way) for obstacle in obstacles], axis=0)
@@ -136,7 +136,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
-    """Return the relative distance of the end from a constrained α-lattice, and its description."""
+    """Return the relative distance of the end state from a constrained α-lattice, and its description."""
     law = run.law
     end = constrained_lattice(run.q[-1], law.obstacles, alpha=law.alpha, beta=law.beta)
     strain = max(end.alpha_error / law.alpha.d, end.beta_error / law.beta.d)

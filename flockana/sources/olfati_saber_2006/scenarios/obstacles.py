@@ -52,7 +52,7 @@ _BALLS = [Sphere((60.0, 0.0, 0.0), 15.0), Sphere((70.0, 30.0, 10.0), 10.0), Sphe
 def free_start(
     seed: int, n: int, centre: Sequence[float], spread: float, obstacles: Sequence[Obstacle], *, room: float
 ) -> Start:
-    """Return the paper's random start, with agents too near an obstacle drawn again."""
+    """Return the paper's random start, with agents near an obstacle drawn again."""
     generator = np.random.default_rng(seed)
     m = len(centre)
     q, p = generator.normal(centre, spread, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
@@ -67,7 +67,7 @@ _MOVING = verified("energy") | vacuous("energy:rate", "os-6")
 
 
 def _reported(*names: str) -> dict[str, Status]:
-    """Return reports of the source that a run confirms."""
+    """Return the source's reports confirmed by a run."""
     return verified(*(f"{SOURCE}:{name}" for name in names))
 
 
@@ -89,7 +89,7 @@ def _entry(
     reports: tuple[Report, ...],
     shipped: Mapping[str, Status] = MappingProxyType({}),
 ) -> tuple[str, Builder]:
-    """Return the name and builder of a run with obstacles; the flock is n, its centre and its spread."""
+    """Return the name and builder of a run with obstacles; the flock is given as n, centre and spread."""
     law, (n, centre, spread) = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles)), flock
     room, text = BetaInteraction().d, f"{source} {_OURS}"
     in_units = in_source_units(lambda: law.scales, (stays_clear, *reports))

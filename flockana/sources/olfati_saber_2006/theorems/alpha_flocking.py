@@ -18,7 +18,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 @dataclass(frozen=True)
 class _Window:
-    """Part of a run, with the sample before it so that bounds between samples cover its beginning."""
+    """Part of a run, with the sample before it for bounds at its beginning."""
 
     seen: Observed  # Its samples, and that one
     first: int  # The first sample within
@@ -26,7 +26,7 @@ class _Window:
 
 
 def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window]:
-    """Return the part of a run that is judged, as flocking is defined over a time."""
+    """Return the final part of a run, on which flocking is judged."""
     t = seen.t
     start = float(t[0] + tolerances.settle * (t[-1] - t[0]))
     before = int(np.searchsorted(t, start, side="right")) - 1
@@ -77,14 +77,14 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
 
 
 def _connected(part: _Window) -> Claim:
-    """Return the claim that the net is connected throughout, by links that are certain."""
+    """Return the claim that the net is connected throughout, based on certain links."""
     between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
     counts = at.components_least, at.components, float(between.components.max(initial=0.0))
     return _at_most("flock", part, counts, 1, "components")
 
 
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
-    """Return the claim that a component keeps more than a share of the agents, by links that are certain."""
+    """Return the claim that a component keeps more than a share of the agents, based on certain links."""
     n = part.seen.n
     between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share

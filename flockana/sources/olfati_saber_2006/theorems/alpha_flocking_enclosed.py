@@ -1,4 +1,4 @@
-"""Definition 5 of Olfati-Saber (2006), α-flocking, decided by a tube, between its steps too."""
+"""Definition 5 of Olfati-Saber (2006), α-flocking, decided by a tube, also between its steps."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 
 def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
-    """Return the steps that are judged, those that end within the last part of the tube."""
+    """Return the judged steps: those that end within the last part of the tube."""
     start = tube.t[0] + tolerances.settle * (tube.t[-1] - tube.t[0])
     steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
     broken = tube.status != "complete"
@@ -44,7 +44,7 @@ def _distances(tube: Tube, k: int) -> dict[Pair, arb]:
 
 
 def _components(tube: Tube, window: range, name: str, most: int, missing: Callable[[list[Pair]], int]) -> Claim:
-    """Return the claim that a number that falls with each link never exceeds a bound."""
+    """Return the claim that a number falling with each link never exceeds a bound."""
     reach = arb(exact(tube.law.alpha.r))
 
     def count(k: int) -> arb:

@@ -1,4 +1,4 @@
-"""Theorems 1 and 3 for every pair potential with the properties that their proofs use.
+"""Theorems 1 and 3 for every pair potential with the properties used in their proofs.
 
 They ask for a potential that is C¹ up to its range and at least L, and an adjacency that is nowhere negative. All is
 said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
@@ -28,30 +28,30 @@ _PARTS = 4  # of the range, on which slopes are bounded
 
 
 def is_paper(seen: Observed) -> bool:
-    """Return whether the pair law is that of the paper, of which everything is proved."""
+    """Return whether the pair law is the paper's, with all properties proved."""
     return isinstance(seen.law.alpha, AlphaInteraction)
 
 
 def attribute_claims(seen: Observed, claims: list[Claim]) -> list[Claim]:
-    """Return claims as the paper's; under another pair law than the paper's, as flockana's extensions."""
+    """Return claims attributed to the paper, or to flockana for other pair laws."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
 
 def potential_needs(seen: Observed) -> list[Hypothesis]:
-    """Return the theorems' hypotheses on the pair potential and its adjacency, without those that are proved."""
+    """Return the theorems' unproved hypotheses on the pair potential and its adjacency."""
     low = meeting(seen).floor > -inf
     needs = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
     return [need for need in [*needs, *least_is_known(seen)] if need.status != "met"]
 
 
 def weight_inside(seen: Observed) -> list[Hypothesis]:
-    """Return the hypothesis that all pairs in range match velocities, unless it is proved."""
+    """Return the hypothesis that all pairs in range match velocities; empty if proved."""
     inside = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
     return [inside] if inside.status != "met" else []
 
 
 def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
-    """Return the hypothesis that forces and weights are bounded where pairs come, unless it is known to hold."""
+    """Return the hypothesis that forces and weights are bounded at reachable distances; empty if known."""
     if apart.status == "met" or is_paper(seen):
         return []
     slopes = seen.law.alpha.slopes(_PARTS)
@@ -62,7 +62,7 @@ def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
 
 
 def continuous_force(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
-    """Return the hypothesis that forces are continuous where pairs come, unless it is known to hold."""
+    """Return the hypothesis that forces are continuous at reachable distances; empty if known."""
     if apart.status == "met" or seen.law.alpha.coincidence:
         return []
     return [Hypothesis("no two agents meet", "assumed", detail="their force has no limit where they do")]
@@ -75,7 +75,7 @@ def never_meets(seen: Observed) -> Hypothesis:
 
 
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
-    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away."""
+    """Return the energy of a resting split state: the best lattice of n − 1 agents, and one agent far away."""
     # ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
     pairs, far = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
     if n > 1 and not isinstance(law.alpha, AlphaInteraction):
@@ -86,7 +86,7 @@ def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
 
 
 def parting_energy(seen: Observed) -> float:
-    """Least E of a disconnected state that is known: each of n − 1 pairs out of range has ψ(r) − L."""
+    """Return the least known E of a split state: each of n − 1 pairs out of range has ψ(r) − L."""
     pair = seen.law.alpha
     energy = 0.0 if is_paper(seen) else pair.facts.least[0]
     room = pair.far_potential - energy
@@ -96,7 +96,7 @@ def parting_energy(seen: Observed) -> float:
 
 
 def stays_together(seen: Observed) -> Hypothesis:
-    """The hypothesis on all solutions from Ω_c: too little energy to part meets it, a disconnected state breaks it."""
+    """Return the hypothesis on all solutions from Ω_c: too little energy to split, or a known split state."""
     parts = nets_at(seen).components_least
     worst = int(np.argmax(parts))
     name = "every solution from Ω_c is a cohesive dynamic flock"
@@ -120,7 +120,7 @@ def stays_together(seen: Observed) -> Hypothesis:
 
 
 def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
-    """Claim R below an explicit bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0), between samples too."""
+    """Return the claim R below a bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0)."""
     c1_gamma, above = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
     bound = (2.0 * above / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
     text = "sqrt(2 H_λ(0)/c1γ)" if is_paper(seen) else "sqrt(2 E(0)/c1γ)"
@@ -128,7 +128,7 @@ def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str =
 
 
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
-    """Claim that R stays below a bound."""
+    """Return the claim that R stays below a bound."""
     worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
     return judged(name, bound - radius_over(seen).max(), needs, proof=proof).described(
         computed=largest,
@@ -139,7 +139,7 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
 
 
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
-    """Claim that forces tend to 0: the flock tends to the critical points of its potential."""
+    """Return the claim that forces tend to 0: the flock tends to critical points of its potential."""
     forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
     stated = "the largest force on an agent at rest -> 0"
     return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated, proof=LIMITS)

@@ -1,4 +1,4 @@
-"""Energy of a collision: below c* none is possible, below 2 c* one may happen."""
+"""Energy of a collision: below c* none is possible, below 2 c* one pair may collide."""
 
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition

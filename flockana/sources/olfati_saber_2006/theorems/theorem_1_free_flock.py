@@ -15,13 +15,13 @@ from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tole
 
 
 def _barrier_proof(seen: Observed) -> str | None:
-    """The id of the proof of the barrier's bound, which counts up to 60 agents of the default law in the plane."""
+    """Return the id of the proof of the barrier's bound, for up to 60 agents of the default law in the plane."""
     counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
     return proved(seen, "barrier") if counted else None
 
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
-    """Return claim (ii), velocities match: by the proof if all its hypotheses are met, else by a basin."""
+    """Return claim (ii), matching velocities: by the proof if all its hypotheses are met, else by a basin."""
     caught = [final_basin(seen).certificate]
     if needs[-1].status == "assumed" and caught[0].certain:
         return velocities_match(seen, needs[:-1], name="ii", caught=caught)

@@ -19,7 +19,7 @@ _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
 def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolerances: Tolerances) -> Claim:
-    """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
+    """Return claim (ii), that the limit is a local minimum of U_λ, strict up to rotations."""
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
     return limit_claim("ii", needs, [final_basin(seen).certificate]).described(

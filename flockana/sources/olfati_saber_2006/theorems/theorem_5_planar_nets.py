@@ -1,4 +1,4 @@
-"""Theorem 5 of Olfati-Saber (2006): the nets of α-lattices are planar and not complete; and what holds of every net.
+"""Theorem 5 of Olfati-Saber (2006): nets of α-lattices are planar and not complete; extension to every net.
 
 Checked on a configuration (``"os-5"``) or on the last state of a run (``"os-5-terminal"``).
 """
@@ -31,7 +31,7 @@ _CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floatin
 
 
 class Net:
-    """A configuration with its links, their lengths and their crossings.
+    """Configuration with its links, their lengths and their crossings.
 
     Positions may be off by `off`: then pairs that may be linked count as links, and no crossing is certain.
     """
@@ -47,18 +47,18 @@ class Net:
         self.crossings = crossings(q, self.links, limit=LISTED)
 
     def agents(self, pair: Any) -> list[list[int]]:
-        """The agents of two links."""
+        """Return the agents of two links."""
         return [[int(v) for v in self.links[k]] for k in pair]
 
     @property
     def crossing_count(self) -> int | str:
-        """Number of pairs of links that cross, or a text if there are more than are listed."""
+        """Number of crossing pairs of links, or a text if too many."""
         count = len(self.crossings)
         return f"at least {count}" if count >= LISTED else count
 
     @property
     def crossing_text(self) -> str:
-        """Number of crossings in words."""
+        """Number of crossings, in words."""
         if not self.crossing_count:
             return f"no two of {len(self.links)} links cross"
         return f"{self.crossing_count} pairs of {len(self.links)} links cross"
@@ -92,7 +92,7 @@ def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
 
 
 def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
-    """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
+    """Return the claim that no two links cross: exact in the plane; in space a clearance beyond rounding."""
     count = net.crossing_count
     if (missed := unmet(needs)) is not None:
         return vacuous(name, missed, computed=count, stated="no two links cross", proof=_CROSSINGS)
@@ -112,7 +112,7 @@ def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
 
 
 def _graph(net: Net, needs: Needs) -> Claim:
-    """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
+    """Return the printed claim that the graph is planar, met if the net is drawn without crossings."""
     is_drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
     planar = is_drawn or is_planar(net.n, net.links)
     witness = kuratowski(net.n, net.links) if not planar and len(net.links) <= _WITNESS_LIMIT else None
@@ -146,7 +146,7 @@ def _incomplete(net: Net, needs: Needs) -> Claim:
 
 
 def _unlinked(net: Net) -> list[int]:
-    """Some pair that is not linked: an agent with the fewest neighbours, and an agent that is not among them."""
+    """Return an unlinked pair: an agent with the fewest neighbours, and one outside its neighbours."""
     count = np.bincount(net.links.ravel(), minlength=net.n)
     i = int(np.argmin(count))
     near = net.links[(net.links == i).any(axis=1)].ravel()
@@ -154,7 +154,7 @@ def _unlinked(net: Net) -> list[int]:
 
 
 def _quantitative(net: Net) -> Claim:
-    """The claim that of two links that cross, of lengths at most ℓ, two agents are within ℓ/√2 of each other."""
+    """Return the claim that two crossing links of length at most ℓ have two agents within ℓ/√2."""
     name, stated = "extension-quantitative", "of two crossing links of lengths at most ℓ, two agents are within ℓ/√2"
     if not len(net.crossings):
         return vacuous(name, "no links cross", computed=0, stated=stated, proof=_CROSSINGS)
@@ -177,7 +177,7 @@ def _quantitative(net: Net) -> Claim:
 
 
 def crossing_lengths(net: Net) -> tuple[FloatArray, FloatArray]:
-    """Squared length of the longer of two links that cross, and least squared distance of two of their agents."""
+    """Return the squared length of the longer of two crossing links, and the least squared distance of their agents."""
     agents = net.links[net.crossings].reshape(-1, 4)
     squared = [
         np.where(agents[:, i] == agents[:, j], np.inf, ((net.q[agents[:, i]] - net.q[agents[:, j]]) ** 2).sum(axis=1))
@@ -187,7 +187,7 @@ def crossing_lengths(net: Net) -> tuple[FloatArray, FloatArray]:
 
 
 def holds_exactly(net: Net, two: LinkArray) -> bool:
-    """Whether two agents of two links are within ℓ/√2, in exact arithmetic."""
+    """Return whether two agents of two links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:
         return sum(((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(net.q[i], net.q[j], strict=True)), Fraction(0))
@@ -197,14 +197,14 @@ def holds_exactly(net: Net, two: LinkArray) -> bool:
 
 
 def _unless_open(net: Net, claim: Claim) -> Claim:
-    """Return the claim, inconclusive instead of refuted where inexact positions leave the links uncertain."""
+    """Return the claim, inconclusive instead of refuted if inexact positions leave links uncertain."""
     if not net.off or claim.status != "refuted":
         return claim
     return replace(claim, status="inconclusive", detail=f"{claim.detail}; positions are known to {net.off:.3g}")
 
 
 def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: float = 0.0) -> Checked:
-    """Hypotheses and claims of Theorem 5, and of its extension, for one configuration, known to `off`."""
+    """Return hypotheses and claims of Theorem 5 and its extension for a configuration with position error `off`."""
     net = Net(q, d, r, off)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)

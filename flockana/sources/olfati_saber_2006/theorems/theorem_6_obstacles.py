@@ -73,7 +73,7 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
 
 
 def start_of_condition(seen: Observed) -> int:
-    """Return the first sample from which condition (76) holds to the end, at most the last but one."""
+    """Return the first sample from which condition (76) holds to the end, at most the second-last sample."""
     return min(_condition(seen)[1], len(seen.t) - 2)
 
 

@@ -1,4 +1,4 @@
-"""Theorems 1 and 3 of Olfati-Saber (2006), and the energy that a collision takes, decided by a tube and its basin."""
+"""Theorems 1 and 3 of Olfati-Saber (2006) and the collision energy, decided by a tube and its basin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
 def _coincident_energy(tube: Tube) -> arb:
-    """Return c* with its gain, c1α ψ_α(0)."""
+    """Return c1α ψ_α(0), which is c* times its gain."""
     return gain(tube.law) * PairNumbers.of_alpha(tube.law.alpha).c_star
 
 
@@ -99,7 +99,7 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
 
 
 def _lattice(case: from_tube.TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
+    """Return claim (i): the limit is an equilibrium with all links of length d, within the tolerance."""
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
         return from_tube.in_the_limit(case, needs, name="i", stated=stated)
@@ -141,7 +141,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
 
 
 def _cohesive(case: from_tube.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
-    """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
+    """Return claim (i): R stays below the bound √(2 H(0)/c1γ) from the initial energy."""
     tube = case.tube
     if not tube.taken:
         return undecided("i", tube.message, needs, stated="R <= sqrt(2 H_λ(0)/c1γ)")
@@ -159,7 +159,7 @@ def _cohesive(case: from_tube.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
 
 
 def _few_pairs(case: from_tube.TubeAndBasin, repels: Hypothesis) -> Claim:
-    """Claim (iv) as printed, that with H(0) < (k+1) c* at most k pairs collide: certain where none does."""
+    """Return printed claim (iv): at most k pairs collide if H(0) < (k+1) c*; certain without a collision."""
     tube = case.tube
     with ctx.workprec(BITS):
         pairs = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
