@@ -1,4 +1,4 @@
-"""The law of Cucker and Smale with a weight that is singular where two agents meet."""
+"""Law of Cucker and Smale with a weight that is singular at distance 0."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -41,10 +41,10 @@ class SingularAlignment(SumOfTerms):
 
     @property
     def scales(self) -> Scales:
-        """ℓ, and the time 1/K in which two agents at that distance match."""
+        """Length ℓ, and the time 1/K in which two agents at this distance align."""
         return Scales(self.weight.length, 1.0 / self.weight.strength)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """The alignment, with the energy ½ Σ‖p_i − p̄‖²."""
+        """Alignment term, with the energy ½ Σ‖p_i − p̄‖²."""
         return (AlignmentTerm(self.weight),)

@@ -1,4 +1,4 @@
-"""Scenarios of a singular alignment weight: pairs at and beside the speed of contact, and flocks that never meet."""
+"""Scenarios of a singular alignment weight: pairs at and near the contact speed, and flocks without contact."""
 
 import numpy as np
 

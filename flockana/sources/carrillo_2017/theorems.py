@@ -1,4 +1,4 @@
-"""Carrillo, Choi, Mucha and Peszek (2017): agents under a singular alignment weight that meet, and that never do."""
+"""Carrillo, Choi, Mucha and Peszek (2017): contact of agents under a singular alignment weight."""
 
 import numpy as np
 
@@ -41,7 +41,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
 
 
 def _duration(excess: float, factor: float, alpha: float, x: float) -> float:
-    """Return the time ∫ ds/(excess + factor s^(1−α)) over (0, x), in which two agents meet; y = s^(1−α)."""
+    """Return the contact time ∫ ds/(excess + factor s^(1−α)) over (0, x), with y = s^(1−α)."""
     from scipy.integrate import quad
 
     rest = 1.0 - alpha
@@ -49,7 +49,7 @@ def _duration(excess: float, factor: float, alpha: float, x: float) -> float:
 
 
 def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int | None:
-    """Return the sign of w + 2K ℓ^α x^(1−α)/(1−α) by algebra, of floats as the rationals they are; None if unknown."""
+    """Return the exact sign of w + 2K ℓ^α x^(1−α)/(1−α), floats taken as rationals; None if unknown."""
     import sympy as sp
 
     strength, length, alpha, start, speed = map(sp.Rational, (*factor, x, w))
@@ -58,7 +58,7 @@ def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int |
 
 
 def _sides(seen: Observed, x: float, w: float, integral: float) -> tuple[Hypothesis, Hypothesis]:
-    """Return the hypotheses that a pair is fast enough to meet, w <= -integral, and that it is slower."""
+    """Return the hypotheses that a pair reaches contact, w <= -integral, and that it is slower."""
     weight, error = seen.law.weight, 16.0 * EPS * (abs(w) + integral)
     room, text = Enclosure.around(w + integral, error), f"w(0) = {w:.6g}, the integral {integral:.6g}"
     name = "w(0) > -∫2a from 0 to x(0)"

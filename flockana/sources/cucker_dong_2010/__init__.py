@@ -1,4 +1,4 @@
-"""Cucker and Dong (2010): flocks that avoid collisions by a repulsion which ends with the differences of velocities."""
+"""Cucker and Dong (2010): collision avoidance by a repulsion that ends when velocities agree."""
 
 from flockana.base.lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""The law of Cucker and Smale with a repulsion that is as strong as velocities differ."""
+"""Law of Cucker and Smale with a repulsion proportional to the velocity spread."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -52,17 +52,17 @@ class CuckerDong(Law):
 
     @property
     def scales(self) -> Scales:
-        """δ, and the time 1/K in which two agents that are near match."""
+        """Length δ, and the time 1/K in which two near agents align."""
         return Scales(self.distance, 1.0 / self.weight.strength)
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The weight, and the repulsion, whose gain is V."""
+        """Weight function, and the repulsion with gain V."""
         return (LawFunction("the weight", self.weight, 0.0, 1.0), LawFunction("the repulsion", None, 1.0))
 
     @property
     def poles(self) -> tuple[float, ...]:
-        """δ, where the repulsion is infinite."""
+        """Distance δ, where the repulsion is infinite."""
         return (self.distance,) if self.repulsion > 0.0 else ()
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
@@ -85,7 +85,7 @@ class CuckerDong(Law):
         return u, float("nan")
 
     def functional(self, q: FloatArray, p: FloatArray) -> float:
-        """V + ½ Σ_{i<j} k δ³/(s_ij² − δ²), which never rises while all pairs are farther apart than δ.
+        """Return V + ½ Σ_{i<j} k δ³/(s_ij² − δ²), which never rises while all distances exceed δ.
 
         Parameters
         ----------

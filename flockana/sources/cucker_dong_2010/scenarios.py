@@ -1,4 +1,4 @@
-"""Scenarios of flocks that avoid collisions: agents that fly at each other, with a repulsion and without."""
+"""Scenarios of collision avoidance: approaching agents, with and without repulsion."""
 
 import numpy as np
 

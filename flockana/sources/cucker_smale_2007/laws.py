@@ -1,4 +1,4 @@
-"""The law of Cucker and Smale: velocity consensus of all agents, weighted by distance."""
+"""Law of Cucker and Smale: velocity consensus of all agents, weighted by distance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -50,7 +50,7 @@ class CuckerSmale(SumOfTerms):
 
     @property
     def scales(self) -> Scales:
-        """ℓ, and the time 1/K in which two agents that are near match."""
+        """Length ℓ, and the time 1/K in which two near agents align."""
         return Scales(self.weight.length, 1.0 / self.weight.strength)
 
     @cached_property

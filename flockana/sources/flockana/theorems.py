@@ -25,7 +25,7 @@ _TREE = ((0, 1), (1, 2), (1, 3))
 
 
 def _steps() -> tuple[tuple[str, str, DiscreteLaw, FloatArray], ...]:
-    """Return name, source, map, and equilibrium or where to look for one, of each of the sources' maps."""
+    """Return name, source, map, and equilibrium (or a start for finding one) of each source's map."""
     rest = StaticTarget((0.0, 0.0))
     msn = Algorithm2(_MSN, _MSN_GAINS, rest)
     at_once = MSNDiscretisation(msn, 0.009, in_place=False)
@@ -44,7 +44,7 @@ def _steps() -> tuple[tuple[str, str, DiscreteLaw, FloatArray], ...]:
 
 
 def _claim(name: str, words: str, step: DiscreteLaw, q: FloatArray) -> Claim:
-    """Compare the step with the margin; where the margin is only an upper bound, judge the multipliers at the step."""
+    """Compare the step with the margin; if the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.continuous
     rest = q if isinstance(law, MinimalFlocking) else find_equilibrium(law, q).q
     bound, dt = sampling_margin(step, rest), step.dt

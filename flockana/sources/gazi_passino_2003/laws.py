@@ -1,4 +1,4 @@
-"""The swarm of Gazi and Passino: agents without inertia that attract each other linearly and repel by a Gaussian."""
+"""Swarm of Gazi and Passino: first-order agents with linear attraction and Gaussian repulsion."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class GaussianRepulsion(DistanceFunction):
 
     @property
     def feature(self) -> float:
-        """Distance at which it is largest."""
+        """Distance of the largest repulsion."""
         return sqrt(0.5 * self.c)
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
@@ -84,17 +84,17 @@ class GaziPassino(VelocityLaw):
 
     @property
     def scales(self) -> Scales:
-        """√(c/2), and the time 1/a."""
+        """Length √(c/2), and the time 1/a."""
         return Scales(sqrt(0.5 * self.c), 1.0 / self.attraction)
 
     @property
     def radius(self) -> float:
-        """Bound (b/a) √(c/2) e^−½ of the distances from the centroid in the end."""
+        """Ultimate bound (b/a) √(c/2) e^−½ of the distances from the centroid."""
         return self.repulsion / self.attraction * sqrt(0.5 * self.c) * exp(-0.5)
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The repulsion; the attraction is linear."""
+        """Repulsion function; the attraction is linear."""
         return (LawFunction("the repulsion", GaussianRepulsion(self.repulsion, self.c), 1.0),)
 
     def _pulls(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

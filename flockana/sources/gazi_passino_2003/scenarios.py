@@ -1,4 +1,4 @@
-"""Scenarios of swarms without inertia: repulsion below, at and above the attraction, and the pair that is sharp."""
+"""Scenarios of first-order swarms: repulsion below, at and above the attraction, and the extremal pair."""
 
 from math import exp
 

@@ -64,7 +64,7 @@ class DistanceFormation(VelocityLaw):
 
     @property
     def scales(self) -> Scales:
-        """The largest length d, and the time 1/(k d²)."""
+        """Length and time scales: the largest length d, and the time 1/(k d²)."""
         d = float(np.max(self.lengths))
         return Scales(d, 1.0 / (self.gain * d * d))
 
@@ -77,7 +77,7 @@ class DistanceFormation(VelocityLaw):
         return i, j, q[j] - q[i]
 
     def errors(self, q: FloatArray) -> FloatArray:
-        """‖q_j − q_i‖² − d_ij² of each link.
+        """Return ‖q_j − q_i‖² − d_ij² of each link.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class DistanceFormation(VelocityLaw):
         return np.asarray(np.einsum("ek,ek->e", z, z) - np.square(self.lengths))
 
     def rows(self, q: FloatArray) -> FloatArray:
-        """R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors.
+        """Return R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors.
 
         Parameters
         ----------

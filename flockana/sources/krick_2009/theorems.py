@@ -1,4 +1,4 @@
-"""Krick, Broucke and Francis (2009): formations held by distances, from near enough, and what is never reached."""
+"""Krick, Broucke and Francis (2009): formations held by distances, reached from near starts."""
 
 from fractions import Fraction
 from math import sqrt
@@ -19,7 +19,7 @@ _PROOF = "distance-formation"
 
 
 def _near(law: DistanceFormation, q: FloatArray) -> tuple[Hypothesis, float, float]:
-    """Return the hypothesis σ² > 4 √Δ ‖e‖ of a start, its error ‖e‖ and its least singular value σ."""
+    """Return the hypothesis σ² > 4 √Δ ‖e‖ of a start, with error ‖e‖ and least singular value σ."""
     rows, e = law.rows(q), float(np.linalg.norm(law.errors(q)))
     values, size = np.linalg.svd(rows, compute_uv=False), float(np.linalg.norm(rows))
     smallest = float(values[-1]) if len(rows) <= rows.shape[1] else 0.0
@@ -33,7 +33,7 @@ def _near(law: DistanceFormation, q: FloatArray) -> tuple[Hypothesis, float, flo
 
 
 def _collinear(q: FloatArray) -> Hypothesis:
-    """Return the hypothesis that all agents start on one line, decided exactly; one dimension is no case of it."""
+    """Return the hypothesis that all agents start on one line, decided exactly; unmet in one dimension."""
     name = "all agents start on one line of a plane or of space"
     z = [[Fraction(x) - Fraction(y) for x, y in zip(row, q[0].tolist(), strict=True)] for row in q.tolist()]
     way = max(z, key=lambda row: sum(x * x for x in row))

@@ -1,1 +1,1 @@
-"""Montanari et al. (2025): gains of each agent that let a flock settle faster."""
+"""Montanari et al. (2025): per-agent gains that let a flock settle faster."""

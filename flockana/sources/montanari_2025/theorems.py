@@ -1,4 +1,4 @@
-"""How much faster a flock settles with gains for each agent."""
+"""Speed-up of a flock's settling by per-agent gains."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
 
 
 def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
-    """The gain in rate that a search finds, at a size that takes seconds; one that finds little refutes nothing."""
+    """Return the claim on the rate gained by a search over gains; a small gain refutes nothing."""
     alpha = AlphaInteraction()
     problem = gain_problem(hexagonal_spiral(n, alpha.d), alpha=alpha, gains=Gains(), **options)
     best = design_gains(problem, starts=1)
@@ -39,7 +39,7 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
 
 
 def _ratio_error(design: GainDesign) -> float:
-    """Error of the ratio of the two rates, from the rounding of the eigenvalues that certify them."""
+    """Return the error of the ratio of two rates, from the rounding of their eigenvalues."""
     # At the best gains roots coalesce, and a rate depends on them as a root: where they are found to 2e-9, it is to
     # 1e-4.
     slow = []

@@ -1,4 +1,4 @@
-"""Averaging over a net that changes by a schedule: each agent moves to a mean of what it hears."""
+"""Averaging over a scheduled net: each agent moves to a mean of heard positions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ def ensure_steps(name: str, value: Any, least: int, count: int) -> tuple[int, ..
 
 @dataclass(frozen=True)
 class NetAveraging(DiscreteLaw):
-    """q_i becomes Σ_j w_ij q_j: each agent moves to a mean of its own place and those that it hears, all at once.
+    """q_i becomes Σ_j w_ij q_j: each agent moves to a mean of its own and heard positions, simultaneously.
 
     Nets act in turn, each for its number of steps, round after round; with `growth` each round is longer than the one
     before. Agents have no velocities of their own: p is that of the last step, and 0 at the start.
@@ -95,7 +95,7 @@ class NetAveraging(DiscreteLaw):
             object.__setattr__(self, name, ensure_steps(name, steps, minimum, len(self.nets)))
 
     def net_at(self, step: int) -> int:
-        """Return which net acts in a step, counted from 0.
+        """Return the index of the net in a step, counted from 0.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class NetAveraging(DiscreteLaw):
             raise ArgumentError(f"agent {i} starts at {p[i].tolist()}: expected p0 = 0, as places alone have a law")
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the number of steps made, 0; nothing where one net acts for ever."""
+        """Return the step count 0 as memory; empty for a constant net."""
         return {"step": np.array(0.0)} if len(self.nets) > 1 else {}
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102

@@ -1,4 +1,4 @@
-"""Scenarios of averaging in turn: nets with a root together, without one, with a leader, and with windows that grow."""
+"""Scenarios of averaging over switching nets: with a common root, without one, with a leader, with growing windows."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _NEVER = _OPEN | verified("rooted-averaging:some-start")
 
 
 def _links(n: int, *heard: tuple[int, int]) -> np.ndarray:
-    """Return the net in which agent i of each pair (i, j) averages with j in halves."""
+    """Return the net in which agent i of each pair (i, j) averages with j at equal weights."""
     net = np.eye(n)
     for i, j in heard:
         net[i, [i, j]] = 0.5
@@ -20,7 +20,7 @@ def _links(n: int, *heard: tuple[int, int]) -> np.ndarray:
 
 
 def _net(name: str, title: str, law: NetAveraging, expected: dict[str, Status], steps: int) -> Builder:
-    """Return agents that start at random on a plane, or three on a line at 0, 0 and 1 where rounds grow."""
+    """Return agents at random in a plane, or three on a line at 0, 0 and 1 for growing rounds."""
     source = "Ours, on Moreau, and Ren and Beard: agents average in halves with those that they hear."
 
     def draw(seed: int) -> Start:

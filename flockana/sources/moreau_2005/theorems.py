@@ -1,4 +1,4 @@
-"""Moreau; Ren and Beard: agents that average agree if the nets of every bounded window of time have a root together."""
+"""Moreau; Ren and Beard: averaging agents agree if the nets of every bounded time window have a common root."""
 
 import numpy as np
 

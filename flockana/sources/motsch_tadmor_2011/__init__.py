@@ -1,4 +1,4 @@
-"""Motsch and Tadmor (2011): alignment with sums of each agent's own, where influence is relative."""
+"""Motsch and Tadmor (2011): alignment normalised by each agent's own sum of influences."""
 
 from flockana.base.lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""The law of Motsch and Tadmor: velocity consensus with influences that are divided by each agent's own sum."""
+"""Law of Motsch and Tadmor: velocity consensus normalised by each agent's own sum of influences."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -54,16 +54,16 @@ class MotschTadmor(Law):
 
     @property
     def scales(self) -> Scales:
-        """ℓ, and the time 1/α in which an agent matches those that it hears."""
+        """Length ℓ, and the time 1/α in which an agent aligns with heard neighbours."""
         return Scales(self.weight.length, 1.0 / self.gain)
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The influence."""
+        """Influence function of the distance."""
         return (LawFunction("the influence", self.weight, 0.0, self.gain, mean=True),)
 
     def influences(self, q: FloatArray) -> FloatArray:
-        """a_ij, shape (n, n): each row sums to 1, itself included.
+        """Return a_ij, shape (n, n): each row sums to 1, including a_ii.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Scenarios of own sums: pairs on both sides of three thresholds, and a small group beside a large one."""
+"""Scenarios of normalised influences: pairs on both sides of three thresholds, a small group near a large one."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ _REFERENCES = ("motsch-tadmor-2011", "flockana")
 
 
 def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
-    """Return two agents on a line, 1 apart, that part."""
+    """Return two agents on a line, 1 apart, that separate."""
     source = (
         "Ours: two agents on a line, 1 apart, under the law of Motsch and Tadmor, φ = 1/(1 + s²), α = 1, relative "
         f"speed {speed:g}. From 1 on ∫φ² = 0.1427, ∫φ = π/4, and ∫2φ/(1 + φ) = √2 (π/2 − atan(1/√2)) = 1.3510, beyond "

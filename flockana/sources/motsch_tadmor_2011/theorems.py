@@ -1,4 +1,4 @@
-"""Motsch and Tadmor (2011): flocks of the law with own sums, below an integral of the influence."""
+"""Motsch and Tadmor (2011): flocks of the normalised law, for velocity spreads below an integral of the influence."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ _NAMES = ("bounded", "rate", "flock")
 
 
 def _series(seen: Observed, of: str, error: np.ndarray) -> Enclosure:
-    """Return the diameter of positions or velocities at each sample, no wider than the errors of two agents."""
+    """Return the diameter of positions or velocities at each sample, widened by the errors of two agents."""
     values = [diameters(getattr(run, of)) for run in (seen.run, seen.other)]
     size = np.abs(getattr(seen.run, of)).max(axis=(1, 2))
     return Enclosure.around(values[0], 2.0 * error.max(axis=1) + 8.0 * EPS * size).clip(0.0)
 
 
 def _checked(seen: Observed, power: float, name: str) -> Checked:
-    """Return what follows from d_V(0) < α∫φ^k, as velocities contract at αφ(d_X) and φ <= 1."""
+    """Return the consequences of d_V(0) < α∫φ^k, as velocities contract at αφ(d_X) and φ <= 1."""
     law: MotschTadmor = seen.law
     rate = AlignmentRate(RationalWeight(1.0, power * law.weight.decay, law.weight.length), law.gain, 1.0)
     x, v = _series(seen, "q", seen.shape_error), _series(seen, "p", seen.speed_error)

@@ -1,4 +1,4 @@
-"""The R² notebook: Algorithms 1 and 2 with a tenfold push of pairs that are too close."""
+"""R² notebook: Algorithms 1 and 2 with a tenfold repulsion of close pairs."""
 
 from flockana.base.lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""The R² notebook's variant of Algorithms 1 and 2: pairs that are too close push each other tenfold.
+"""R² notebook's variant of Algorithms 1 and 2: close pairs repel each other tenfold.
 
 The notebook multiplies q_j − q_i by 10 where it is shorter than 0.05, after the σ-norm has been taken: φ_α and a_ij
 keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then jumps at that distance.
@@ -26,7 +26,7 @@ MIN_DISTANCE, FACTOR = 0.05, 10.0
 
 @dataclass(frozen=True)
 class Push(DistanceFunction):
-    """Part that the push adds to φ_α n_ij, within its own range."""
+    """Extra repulsion of close pairs, added to φ_α n_ij within its own range."""
 
     alpha: AlphaInteraction
     min_distance: float
@@ -34,12 +34,12 @@ class Push(DistanceFunction):
 
     @property
     def range(self) -> float:
-        """Distance below which the push acts."""
+        """Distance below which the extra repulsion acts."""
         return self.min_distance
 
     @property
     def feature(self) -> float:
-        """The range: below it the push falls to 0 with the distance."""
+        """Range of the extra repulsion, which falls linearly to 0 with the distance."""
         return self.min_distance
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
@@ -49,7 +49,7 @@ class Push(DistanceFunction):
 
 
 def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
-    """Return the push's part of Σ_j φ_α n_ij, shape (n, m), for each pair closer than min_distance; it sums to 0."""
+    """Return the extra repulsion of each pair closer than min_distance, shape (n, m); it sums to 0."""
     f, push = np.zeros_like(q), Push(alpha, min_distance, factor)
     for i, j in pair_blocks(q, min_distance):
         if not i.size:
@@ -63,7 +63,7 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 
 @dataclass(frozen=True)
 class PushTerm(Term):
-    """Term of the push near contact, which is not a gradient and has no energy."""
+    """Term of the extra repulsion, which has no potential and no energy."""
 
     alpha: AlphaInteraction
     stiffness: float
@@ -74,7 +74,7 @@ class PushTerm(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The push."""
+        """Function of the extra repulsion."""
         return (LawFunction("the push", Push(self.alpha, self.min_distance, self.factor), self.stiffness),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
@@ -83,7 +83,7 @@ class PushTerm(Term):
         return float(np.sum(f * p))  # the same in the moving frame, for the pushes cancel
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return zero where the push does not act; raise where it does."""
+        """Return zero outside the extra repulsion's range; raise inside."""
         if any(i.size for i, _ in pair_blocks(q, self.min_distance)):
             raise ArgumentError(
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
@@ -93,7 +93,7 @@ class PushTerm(Term):
 
 
 class _Pushed(GainedLaw):
-    """Mixin of the two pushed laws: the two parameters, their checks, and the push term."""
+    """Mixin of the two laws with extra repulsion: its two parameters, their checks, and its term."""
 
     min_distance: float
     factor: float
@@ -111,19 +111,19 @@ class _Pushed(GainedLaw):
 
     @property
     def surfaces(self) -> tuple[Any, ...]:
-        """Switching distances of the law without the push, and where the push begins."""
+        """Switching distances of the law, and the range of the extra repulsion."""
         return (self.min_distance, *super().surfaces)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Terms of the law without the push, and the push."""
+        """Terms of the law, and the extra repulsion."""
         push = PushTerm(self.alpha, self.gains.c1_alpha, self.min_distance, self.factor)
         return (*super().terms, push)  # type: ignore[safe-super]  # those of the law beside it
 
 
 @dataclass(frozen=True)
 class PushedAlgorithm1(_Pushed, Algorithm1):
-    """Algorithm 1 with the notebook's push; `energy` stays H, whose rate gains the power of the push.
+    """Algorithm 1 with the notebook's extra repulsion; `energy` stays H, whose rate gains the repulsion's power.
 
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
     wherever no pair is closer than `min_distance`.
@@ -135,7 +135,7 @@ class PushedAlgorithm1(_Pushed, Algorithm1):
 
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Pushed, Algorithm2):
-    """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push."""
+    """Algorithm 2 with the notebook's extra repulsion; `energy` stays H_λ, whose rate gains the repulsion's power."""
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR

@@ -44,7 +44,7 @@ def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
 
 
 def _other(run: Trajectory) -> Trajectory:
-    """Run the same start with the push switched over."""
+    """Run the same start with the extra repulsion switched on or off."""
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
@@ -196,7 +196,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
 
 
 def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
-    """Build the notebook's run as published: its own steps, with its push."""
+    """Return the notebook's run as published: its own steps, with extra repulsion."""
 
     def build(seed: int = 0) -> Scenario:
         item = flow(seed, push=True)

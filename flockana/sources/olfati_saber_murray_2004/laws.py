@@ -1,4 +1,4 @@
-"""Consensus of the first order: agents move towards those that they hear, over any digraph."""
+"""First-order consensus: agents move towards heard neighbours, over any digraph."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class AverageConsensus(VelocityLaw):
 
     @cached_property
     def laplacian(self) -> FloatArray:
-        """L = diag(Σ_j a_ij) − A, shape (n, n)."""
+        """Laplacian L = diag(Σ_j a_ij) − A, shape (n, n)."""
         return NetConsensus(self.weights).laplacian
 
     def check_agents(self, n: int) -> None:  # noqa: D102

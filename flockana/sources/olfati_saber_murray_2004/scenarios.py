@@ -1,4 +1,4 @@
-"""Scenarios of consensus of the first order: balanced nets, nets that are not, a leader, and two groups."""
+"""Scenarios of first-order consensus: balanced and unbalanced nets, a leader, and two groups."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ _OTHER = verified("average-consensus", *_NAMES) | vacuous(_NAMES[1], _NAMES[3])
 
 
 def _net(name: str, title: str, nets: list[np.ndarray], expected: dict[str, Status]) -> Builder:
-    """Return a net, or nets in turn, whose agents start at random on a plane."""
+    """Return a net, or switching nets, with agents at random in a plane."""
     each = [AverageConsensus(weights) for weights in nets]
     law = each[0] if len(nets) == 1 else VelocityInTurn(each, _LENGTHS)
 

@@ -1,4 +1,4 @@
-"""Linear cyclic pursuit: each agent moves towards the next one, turned by an offset angle."""
+"""Linear cyclic pursuit: each agent moves towards the next one, rotated by an offset angle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -74,7 +74,7 @@ class CyclicPursuit(VelocityLaw):
         return csr_array(kron(np.roll(np.eye(len(q)), 1, axis=1) - np.eye(len(q)), self._turn))
 
     def eigenvalues(self, n: int) -> ComplexArray:
-        """Return λ_j = k e^{iθ} (e^{2πij/n} − 1), j = 0 … n − 1: with their conjugates all 2n poles of n agents.
+        """Return λ_j = k e^{iθ} (e^{2πij/n} − 1), j = 0 … n − 1; with their conjugates all 2n poles.
 
         Parameters
         ----------

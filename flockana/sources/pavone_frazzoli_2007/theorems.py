@@ -14,7 +14,7 @@ _PROOF = "cyclic-pursuit"
 
 
 def _growing_part(seen: Observed) -> Hypothesis:
-    """Return the hypothesis that the start has a part in a mode that grows."""
+    """Return the hypothesis that the start excites a growing mode."""
     law, n = seen.law, seen.n
     angles = [(exact(law.angle) * n + 180 * j) / n for j in range(1, n)]  # degrees: those of which the sine is < 0 grow
     grows = [j for j, angle in enumerate(angles, 1) if 180 < angle < 360 or angle < 0]
@@ -28,7 +28,7 @@ def _growing_part(seen: Observed) -> Hypothesis:
 
 
 def _motion(seen: Observed, tolerances: Tolerances) -> list[Claim]:
-    """Return the claims that the centroid stays, and that the motion is the sum of the modes of its start."""
+    """Return the claims that the centroid is fixed, and that the motion is the sum of the start's modes."""
     law: CyclicPursuit = seen.law
     z = seen.run.q @ np.array([1.0, 1j])
     motion = np.fft.ifft(np.fft.fft(z[0] - z[0].mean()) * np.exp(np.outer(seen.t - seen.t[0], law.eigenvalues(seen.n))))

@@ -1,4 +1,4 @@
-"""The share of a flock that follows its leader."""
+"""Share of a flock that follows its leader."""
 
 from typing import Any
 

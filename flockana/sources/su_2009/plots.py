@@ -1,4 +1,4 @@
-"""The share of a flock that follows its leader against the share that is informed."""
+"""Share of followers against the share of informed agents."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
-    """Return n agents in a square, of which the first few follow a leader of constant velocity."""
+    """Return n agents in a square, the first few informed of a leader with constant velocity."""
     if not 1 <= informed <= n:
         raise ArgumentError(f"informed = {informed}: expected 1 to {n}, the number of agents")
     generator, who = np.random.default_rng(seed), range(informed)
@@ -164,7 +164,7 @@ SCENARIOS: dict[str, Builder] = {
 
 
 def _informing(some: int, n: int) -> Gains:
-    """Return the default gains, with those to the γ-agent for the first agents only."""
+    """Return the default gains, with c1γ and c2γ zero except for the first agents."""
     gains, felt = Gains(), np.arange(n) < some
     return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
 

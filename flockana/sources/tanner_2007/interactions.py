@@ -15,7 +15,7 @@ from flockana.interactions.pair_interaction import pair_matrix
 
 @dataclass(frozen=True)
 class LogPotential(DistanceFunction):
-    """Potential V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, zero at s = d alone and infinite at s = 0.
+    """Potential V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, zero only at s = d and infinite at s = 0.
 
     Parameters
     ----------
@@ -44,12 +44,12 @@ class LogPotential(DistanceFunction):
 
     @property
     def range(self) -> float:
-        """Infinite: the potential is defined at every distance."""
+        """Infinite range, as the potential is defined at every distance."""
         return inf
 
     @property
     def feature(self) -> float:
-        """Length d, up to which it repels; the attraction beyond has no end."""
+        """Length d of repulsion; the attraction beyond has no end."""
         return self.d
 
     def energy(self, s: Any) -> Any:
@@ -70,7 +70,7 @@ class LogPotential(DistanceFunction):
         return 2.0 * self.strength * (1.0 - rest) / s2, one, 2.0 * self.strength * (2.0 * rest - 1.0) / s2**2, 0.0 * one
 
     def nearest(self, energy: float) -> float:
-        """Return the distance below d at which V has this value.
+        """Return the distance below d with a given value of V.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a net, fixed or of proximity."""
+"""Laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a fixed or proximity net."""
 
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ Ends = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]
 
 
 class _MatchingLaw(Law):
-    """Law of the potentials and the consensus along a net, with its scales."""
+    """Base class of laws with potentials and consensus along a net, with scales."""
 
     potential: LogPotential
     k2: float
@@ -92,7 +92,7 @@ class FixedNetFlocking(_MatchingLaw):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The potential along the edges, whose adjacency is 1."""
+        """Potential along the edges, with adjacency 1."""
         return (LawFunction("the link potential", self.potential, 1.0, self.k2, edges=self.edges),)
 
     @cached_property
@@ -159,7 +159,7 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The potential of pairs within R, whose adjacency is 1."""
+        """Potential of pairs within R, with adjacency 1."""
         return (LawFunction("the pair potential", Within(self.potential, self.r), 1.0, self.k2),)
 
     @property

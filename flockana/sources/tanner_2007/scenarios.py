@@ -1,4 +1,4 @@
-"""Scenarios of Tanner, Jadbabaie and Pappas: a fixed wheel, and proximity nets that hold or part."""
+"""Scenarios of Tanner, Jadbabaie and Pappas: a fixed wheel, and proximity nets that hold or split."""
 
 from typing import Any
 

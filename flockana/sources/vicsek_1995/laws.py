@@ -27,7 +27,7 @@ _CANCELS = 1e-12  # of the neighbours' number: a sum of unit vectors that points
 
 @dataclass(frozen=True)
 class HeadingAveraging(DiscreteLaw):
-    """θ_i becomes the mean of θ_j over agent i and all agents in or on the circle of radius r about it.
+    """θ_i becomes the mean of θ_j over agent i and all agents within the closed circle of radius r.
 
     Positions move first, q_i + dt v (cos θ_i, sin θ_i), by the headings that they have; all agents turn at once. The
     linear mean is that of Jadbabaie, Lin and Morse, with headings in [0, 2π): it depends on where angles are counted
@@ -87,7 +87,7 @@ class HeadingAveraging(DiscreteLaw):
 
     @property
     def scales(self) -> Scales:
-        """The radius r, and the time to cross it."""
+        """Length and time scales: the radius r, and the time to cross it."""
         return Scales(self.range, self.range / self.speed)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -104,7 +104,7 @@ class HeadingAveraging(DiscreteLaw):
             )
 
     def velocities(self, headings: Any) -> FloatArray:
-        """The velocities of agents with these headings, shape (n, 2).
+        """Return the velocities of agents with given headings, shape (n, 2).
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class HeadingAveraging(DiscreteLaw):
         return self.speed * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
 
     def links(self, q: FloatArray) -> LinkArray:
-        """Unordered pairs in or on each other's circle, each once, unchecked.
+        """Return unordered pairs within the closed circle of radius r, each once, unchecked.
 
         Examples
         --------
@@ -131,7 +131,7 @@ class HeadingAveraging(DiscreteLaw):
         return pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """The headings of a start in [zero, zero + 2π); with noise, step 0."""
+        """Return the headings of a start in [zero, zero + 2π); with noise, also step 0."""
         heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
         return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
 
@@ -148,7 +148,7 @@ class HeadingAveraging(DiscreteLaw):
         return q + self.dt * before, velocities, (velocities - before) / self.dt, after | {"heading": turned}
 
     def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
-        """Derivative of the next headings in the headings: each averages its own and its neighbours'.
+        """Return the derivative of the next headings by the headings.
 
         Parameters
         ----------
@@ -194,7 +194,7 @@ class HeadingAveraging(DiscreteLaw):
 
 
 def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
-    """The mean angle of each agent and its neighbours, kept among these where rounding would put it outside."""
+    """Return the mean heading angle of each agent and its neighbours, clipped to their range."""
     (i, j), n = pairs.T, heading.size
     total = heading + np.bincount(i, heading[j], n) + np.bincount(j, heading[i], n)
     lower, most = heading.copy(), heading.copy()
@@ -205,7 +205,7 @@ def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
 
 
 def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
-    """The angle of the mean unit vector; where they cancel, the agent's own heading."""
+    """Return the angle of the mean unit vector; the agent's own heading if the mean vanishes."""
     (i, j), n = pairs.T, heading.size
     x, y = (f(heading) + np.bincount(i, f(heading)[j], n) + np.bincount(j, f(heading)[i], n) for f in (np.cos, np.sin))
     cancels = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
@@ -213,5 +213,5 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:
-    """Return the number of agents that each agent averages over, itself included."""
+    """Return the number of agents in each agent's average, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0

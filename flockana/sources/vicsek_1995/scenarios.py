@@ -1,4 +1,4 @@
-"""Scenarios of Jadbabaie, Lin and Morse: two groups that meet and agree, and two that part."""
+"""Scenarios of Jadbabaie, Lin and Morse: two groups that meet and agree, and two that separate."""
 
 import numpy as np
 

@@ -11,7 +11,7 @@ from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
 
 def neighbour_links(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the world of averaged headings: links of agents that hear each other."""
+    """Return the world of averaged headings: links between neighbours."""
     return World(edges=tuple(np.asarray(law.links(run.q[k]), dtype=np.int64) for k in frames))
 
 

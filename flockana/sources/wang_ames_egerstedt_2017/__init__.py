@@ -1,4 +1,4 @@
-"""Wang, Ames and Egerstedt (2017): a filter that keeps agents apart by control barrier functions."""
+"""Wang, Ames and Egerstedt (2017): a safety filter that keeps agents apart by control barrier functions."""
 
 from flockana.base.lazy import attach_stub
 

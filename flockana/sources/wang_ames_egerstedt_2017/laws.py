@@ -1,4 +1,4 @@
-"""A wrapper that changes inputs by as little as keeps agents apart: control barrier functions of pairs."""
+"""Safety filter: the least change of inputs that keeps agents apart, by control barrier functions of pairs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -70,7 +70,7 @@ class SafetyFilter(WrappingLaw):
             raise ArgumentError(f"agents {i[same[0]]} and {j[same[0]]} are at one place: expected distinct places")
 
     def barriers(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return h, the unit vectors from j to i, and the least of their product with u_i − u_j, for each pair i < j.
+        """Return h, the unit vectors from j to i, and the lower bound of their product with u_i − u_j, for each i < j.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Scenarios of the safety filter: a pair and five agents that are pulled to one place, and a pair that cannot brake."""
+"""Scenarios of the safety filter: a pair and five agents pulled together, and a pair too fast to brake."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ _LATE = vacuous("safety-filter", "safety-filter:apart", "safety-filter:braking")
 
 
 def _pulled(name: str, title: str, start: Start, expected: dict[str, Status], end: float = 8.0) -> Builder:
-    """Return agents of a complete net, which draw together, under the filter."""
+    """Return agents on a complete net, drawn together under the filter."""
     n = len(start[0])
     law = SafetyFilter(NetConsensus(np.ones((n, n)) - np.eye(n), 0.3, 0.3), distance=1.0)
     source = "Ours, on Wang, Ames and Egerstedt: consensus of positions, kept apart by the filter; D = α = γ = 1."

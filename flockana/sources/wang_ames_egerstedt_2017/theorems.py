@@ -1,4 +1,4 @@
-"""Wang, Ames and Egerstedt (2017): barriers of pairs that start above 0 stay there, and braking meets what they ask."""
+"""Wang, Ames and Egerstedt (2017): barriers that start positive stay positive, and braking is feasible."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ _PROOF = "safety-filter"
 
 
 def _at_start(law: SafetyFilter, q: FloatArray, p: FloatArray) -> tuple[Enclosure, Enclosure]:
-    """Return h and r - D of all pairs, with what rounding does to them."""
+    """Return h and r - D of all pairs at the start, with rounding errors."""
     i, j = np.triu_indices(len(q), 1)
     h, size = law.barriers(q, p)[0], 16.0 * EPS
     r, speed = np.linalg.norm(q[i] - q[j], axis=1), np.abs(p[i]).sum(axis=1) + np.abs(p[j]).sum(axis=1)

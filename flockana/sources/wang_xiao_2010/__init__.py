@@ -1,4 +1,4 @@
-"""Wang and Xiao (2010): velocities that agree in a finite time over an undirected net."""
+"""Wang and Xiao (2010): finite-time agreement of velocities over an undirected net."""
 
 from flockana.base.lazy import attach_stub
 

@@ -63,7 +63,7 @@ class FiniteTimeAlignment(Law):
 
     @property
     def scales(self) -> Scales:
-        """The time 1/a, and the length s/a."""
+        """Time scale 1/a, and length scale s/a."""
         return Scales(self.speed / self.gain, 1.0 / self.gain)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
@@ -85,7 +85,7 @@ class FiniteTimeAlignment(Law):
         return 0.5 * float(np.sum(v * v))
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        """Return 0 and ∂u/∂p, sparse; raise where two linked agents have an equal component of velocity, for α < 1."""
+        """Return 0 and ∂u/∂p, sparse; raise for α < 1 if two linked agents share a velocity component."""
         from scipy.sparse import csr_array
 
         i, j = self._ends()

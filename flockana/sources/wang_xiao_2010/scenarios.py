@@ -1,4 +1,4 @@
-"""Scenarios of agreement in a finite time: a ring; on the other side a linear law and a net in two parts."""
+"""Scenarios of finite-time agreement: a ring; for contrast a linear law and a disconnected net."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from flockana.sources.wang_xiao_2010.laws import FiniteTimeAlignment
 
 
 def _net(name: str, title: str, law: FiniteTimeAlignment, n: int, end: float, expected: dict[str, Status]) -> Builder:
-    """Return agents of a net that start at random."""
+    """Return agents on a net with a random start."""
     source = f"Ours, on Wang and Xiao: u_i = Σ_j sig(p_j - p_i)^α over links, α = {law.exponent:g}; a random start."
 
     def draw(seed: int) -> Start:

@@ -1,4 +1,4 @@
-"""Wang and Xiao (2010): velocities over a connected undirected net agree by a time that its eigenvalue λ₂ bounds."""
+"""Wang and Xiao (2010): velocities on a connected undirected net agree by a time bounded through λ₂."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def _connected(law: FiniteTimeAlignment, n: int) -> Hypothesis:
 
 
 def _rate(law: FiniteTimeAlignment, n: int) -> Enclosure:
-    """Return κ = λ₂^((1+α)/2), λ₂ of the Laplacian with the weights b^(2/(1+α)), b = a s^(1−α)."""
+    """Return κ = λ₂^((1+α)/2), with λ₂ of the Laplacian with weights b^(2/(1+α)), b = a s^(1−α)."""
     power, laplacian = 0.5 * (1.0 + law.exponent), np.zeros((n, n))
     for i, j in law.links:
         laplacian[i, j] = laplacian[j, i] = -1.0

@@ -1,4 +1,4 @@
-"""Linear laws of a net: agents draw towards the positions and velocities that they hear, over any digraph."""
+"""Linear consensus laws: agents move towards heard positions and velocities, over any digraph."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -71,19 +71,19 @@ class NetConsensus(HearingLaw):
 
     @cached_property
     def laplacian(self) -> FloatArray:
-        """L = diag(Σ_j a_ij) − A, shape (n, n): row i holds what agent i hears."""
+        """Laplacian L = diag(Σ_j a_ij) − A, shape (n, n): row i for what agent i hears."""
         weights = np.array(self.weights)
         return np.asarray(np.diag(weights.sum(axis=1)) - weights)
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether each pair hears each other with one weight."""
+        """Whether all pairs hear each other with equal weights."""
         weights = np.array(self.weights)
         return bool((weights == weights.T).all())
 
     @property
     def conservative(self) -> bool:
-        """Whether the net is symmetric, so that the force at rest is minus a gradient."""
+        """Whether the net is symmetric, so that the resting force is a gradient."""
         return self.symmetric
 
     def check_agents(self, n: int) -> None:  # noqa: D102

@@ -22,7 +22,7 @@ def gains_positive(law: NetConsensus) -> Hypothesis:
 
 
 def threshold_exceeded(law: NetConsensus) -> Hypothesis:
-    """Return the hypothesis β²/α > max Im²μ/(Re μ |μ|²) of a rooted net: by enclosures, else by exact algebra."""
+    """Return the hypothesis β²/α > max Im²μ/(Re μ |μ|²) of a rooted net, by enclosures or exact algebra."""
     name = "β²/α > max Im²μ/(Re μ |μ|²) over μ ≠ 0"
     laplacian = laplacian_of(law.weights)
     bound, ratio = velocity_threshold(moving_eigenvalues(laplacian)), exact(law.velocity) ** 2 / exact(law.position)
@@ -48,7 +48,7 @@ def _consensus(seen: Observed, needs: Needs) -> Claim:
 
 
 def _never(gains: Hypothesis, root: Hypothesis, above: Hypothesis | None) -> Claim:
-    """Return the claim that some start never agrees, vacuous where the conditions are met."""
+    """Return the claim that some start never agrees, vacuous if the conditions are met."""
     missed = root if above is None else above
     opposite = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[missed.status]
     need = Hypothesis(f"not: {missed.name}", opposite, detail=missed.detail)  # type: ignore[arg-type]

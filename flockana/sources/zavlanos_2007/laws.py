@@ -1,4 +1,4 @@
-"""Flocking that keeps its links: a potential without bound at the range, after Ji and Egerstedt and Zavlanos et al."""
+"""Link-keeping flocking: a potential unbounded at the range, after Ji and Egerstedt and Zavlanos et al."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -60,37 +60,37 @@ class LinkKeeping(SumOfTerms):
 
     @cached_property
     def tension(self) -> FormulaInteraction:
-        """ψ and the adjacency 1, as a formula."""
+        """Potential ψ and adjacency 1, as a formula."""
         return FormulaInteraction(
             "k*s**2/(r - s)", adjacency_formula="1", r=self.r, d=0.5 * self.r, parameters=(("k", self.k),)
         )
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """The term of the links."""
+        """Term of the links."""
         return (LinkTerm(self.tension, self.links, 1.0, self.c),)
 
     @property
     def scales(self) -> Scales:
-        """r, and the time in which k moves an agent by it."""
+        """Length r, and the time in which k moves an agent by r."""
         return Scales(self.r, sqrt(self.r / self.k))
 
     @property
     def poles(self) -> tuple[float, ...]:
-        """r, which no link may reach."""
+        """Distance r, which no link may reach."""
         return (self.r,)
 
     @property
     def pole_pairs(self) -> tuple[tuple[int, int], ...]:
-        """The links."""
+        """Linked pairs, to which the pole applies."""
         return self.links
 
     def check_agents(self, n: int) -> None:
-        """Raise if a link is of an agent that is not there."""
+        """Raise if a link names an agent outside the flock."""
         ensure_in_flock("links", self.links, n)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if a link is as long as r, where the tension has its pole."""
+        """Raise if a link is as long as r, the pole of the tension."""
         super().check_start(q, p)
         for (i, j), length in zip(self.links, self.lengths(q), strict=True):
             if length >= self.r:
@@ -102,7 +102,7 @@ class LinkKeeping(SumOfTerms):
         return np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
 
     def longest(self, energy: float) -> float:
-        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
+        """Return the length s < r at which one link stores all the energy: k s²/(r − s) = H.
 
         Parameters
         ----------

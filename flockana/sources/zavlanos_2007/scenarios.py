@@ -1,4 +1,4 @@
-"""Scenarios of links kept by tension: a chain thrown apart, and two unlinked pairs."""
+"""Scenarios of links kept by tension: a chain with outer agents moving out, and two unlinked pairs."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Links that a tension keeps: below an energy level none reaches the range, so the net stays connected and agrees."""
+"""Links kept by tension: below an energy level no link reaches the range, so the net stays connected and agrees."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ _PROOF = "links-kept"
 
 
 def _joined(seen: Observed) -> Hypothesis:
-    """The hypothesis that the links join all agents."""
+    """Return the hypothesis that the links connect all agents."""
     ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
     parts = len({*components(seen.n, ends).tolist()})
     text = f"{parts} component(s), {len(ends)} links"
@@ -23,7 +23,7 @@ def _joined(seen: Observed) -> Hypothesis:
 
 
 def longest_link(seen: Observed) -> Enclosure:
-    """Return the length of the longest link over the run: reached at a sample, bounded between."""
+    """Return an enclosure of the longest link over the run, also between samples."""
     ends = np.array(seen.law.links, dtype=np.int64).reshape(-1, 2)
     if not len(ends):
         return Enclosure.of(0.0)
@@ -37,7 +37,7 @@ def longest_link(seen: Observed) -> Enclosure:
 
 
 def _below(longest: Enclosure, r: float, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
-    """The claim that no link is longer than `most`: by a bound of the path, refuted by a sample alone."""
+    """Return the claim that no link is longer than `most`; only a sample refutes it."""
     return judged(name, (most - longest) / r, needs, proof=_PROOF).described(
         computed=float(longest.mid),
         stated=stated,

@@ -1,4 +1,4 @@
-"""The functional ‖v‖ + ∫φ of Ha and Liu on a run of the Cucker-Smale law, or of steps of it."""
+"""Functional ‖v‖ + ∫φ of Ha and Liu on a run of the Cucker-Smale law, continuous or discrete."""
 
 from flockana.theorems.alignment_bounds import AlignmentRate, Guarantee
 from flockana.theorems.between_samples import spread_over
@@ -8,7 +8,7 @@ PROOF = "cucker-smale"
 
 
 def guarantee_of(seen: Observed, stretch: float) -> Guarantee:
-    """Return what the functional guarantees: λ = K in φ where sums are divided by n, and nK where they are not."""
+    """Return the guarantee of the functional: λ = K in φ for sums divided by n, else nK."""
     law = seen.law.continuous
     phi = AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else seen.n), stretch)
     return Guarantee(seen, phi, seen.spread, spread_over(seen).max(), seen.velocity_spread, PROOF)

@@ -1,4 +1,4 @@
-"""The Cucker-Smale law in steps of time: the flock of the continuous law, if a step is not too long."""
+"""Cucker-Smale law in discrete time: flocking as in continuous time for short steps."""
 
 from math import sqrt
 
@@ -12,7 +12,7 @@ _ROUNDING = 1e-14  # relative, of a product of three numbers
 
 
 def _law(seen: Observed) -> Hypothesis:
-    """The hypothesis that a run is of the law in steps, which move positions by old or new velocities or their mean."""
+    """Return the hypothesis that a run is of the discrete law, with positions moved by old, new or mean velocities."""
     law = seen.law
     steps = type(law) is FixedSteps and law.position_factor in (0.0, 0.5, 1.0) and type(law.law) is CuckerSmale
     name = law.title + (f" of {law.law.title}" if hasattr(law, "law") else "")

@@ -1,4 +1,4 @@
-"""A flock under Algorithm 2 as it is built: sensors, messages, clocks, actuators and wind are not perfect."""
+"""Algorithm 2 with realistic imperfections: sensors, messages, clocks, actuators and wind."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""Scenarios of pair laws by their formula: a Morse flock that follows, and one that holds together by itself."""
+"""Scenarios of pair laws from formulas: a following Morse flock, and a self-bound flock."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ _VERIFIED = verified("any-potential") | verified(*(f"any-potential:{claim}" for 
 
 
 def _morse() -> FormulaInteraction:
-    """Return Morse's potential with its least near 7, brought to 0 at the range 14."""
+    """Return Morse's potential with its minimum near 7, brought to 0 at the range 14."""
     return pair_law(
         "k*((1 - exp(-a*(s - d)))**2 - 1)*(1 - s**2/r**2)**2",
         adjacency="(1 - s/r)**2",
@@ -41,7 +41,7 @@ def _follows(seed: int = 0) -> Scenario:
 
 
 def _holds(seed: int = 0) -> Scenario:
-    """Return four agents under Algorithm 1 with too little energy to part."""
+    """Return four agents under Algorithm 1 with too little energy to separate."""
     generator = np.random.default_rng(seed)
     rhombus = 6.0 * np.array([(0.0, 0.0), (1.0, 0.0), (0.5, 0.75**0.5), (1.5, 0.75**0.5)])
     title = "Four agents with Morse's potential that have too little energy to part"

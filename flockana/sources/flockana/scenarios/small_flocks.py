@@ -1,4 +1,4 @@
-"""Small scenarios at the edge of a claim, from which a search for counterexamples begins."""
+"""Small scenarios at the limits of a claim, as starts for counterexample searches."""
 
 from math import sqrt
 

@@ -1,4 +1,4 @@
-"""Olfati-Saber and Murray: consensus on a digraph, when it is the average, how fast, and in which steps."""
+"""Olfati-Saber and Murray: consensus on a digraph: average value, rate, and admissible steps."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ Rows = tuple[tuple[float, ...], ...]
 
 
 def is_balanced(weights: Rows) -> Hypothesis:
-    """Return the hypothesis that each agent is heard as much as it hears, exactly."""
+    """Return the hypothesis that each agent's weights of hearing and being heard are equal, exactly."""
     columns = [sum((exact(row[j]) for row in weights), exact(0.0)) for j in range(len(weights))]
     rows = [sum(map(exact, row), exact(0.0)) for row in weights]
     off = [abs(float((a - b).p) / float((a - b).q)) for a, b in zip(rows, columns, strict=True)]
@@ -53,7 +53,7 @@ def _agreement(seen: Observed, root: Hypothesis) -> Claim:
 
 
 def average(seen: Observed, needs: Needs) -> Claim:
-    """Return the claim that all tend to the average of the start."""
+    """Return the claim that all agents tend to the average of the start."""
     off = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
     return limit_claim("average", needs, proof=_PROOF).described(
         computed=float(off),
@@ -63,7 +63,7 @@ def average(seen: Observed, needs: Needs) -> Claim:
 
 
 def _elsewhere(root: Hypothesis, balanced: Hypothesis) -> Claim:
-    """Return the claim that some start ends elsewhere, vacuous on a balanced net."""
+    """Return the claim that some start does not tend to the average, vacuous on a balanced net."""
     opposite = {"met": "unmet", "unmet": "met"}[balanced.status]
     need = Hypothesis(f"not: {balanced.name}", opposite, detail=balanced.detail)  # type: ignore[arg-type]
     if need.status == "unmet":
@@ -81,7 +81,7 @@ def slowest_rate(laplacian: FloatArray) -> float:
 
 
 def decay(seen: Observed, needs: Needs, rate: float) -> Claim:
-    """Return the claim that the disagreement falls at a rate at least."""
+    """Return the claim that the disagreement falls at least at a given rate."""
     size = np.sqrt(np.sum((seen.run.q - seen.run.q.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
     error = np.sqrt(seen.n) * seen.shape_error.max(axis=1) + 8.0 * EPS * np.abs(seen.run.q).max(axis=(1, 2))
     bound = size[0] * np.exp(-rate * (seen.t - seen.t[0]))
@@ -93,7 +93,7 @@ def decay(seen: Observed, needs: Needs, rate: float) -> Claim:
 
 
 def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
-    """Return the claim about steps q_i + ε Σ_j a_ij (q_j - q_i): the largest ε, and that it is at least 1/Δ."""
+    """Return the claim about steps q_i + ε Σ_j a_ij (q_j - q_i): the largest ε is at least 1/Δ."""
     moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
     limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
     shortest = min(limits, key=lambda one: float(one.mid())) if limits else None

@@ -47,7 +47,7 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
 
 
 def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """Return the claim that the library's delay margin, by a sweep over frequency, agrees with the closed form."""
+    """Return the claim that the library's delay margin (frequency sweep) agrees with the closed form."""
     off, listed = 0.0, {}
     for name, (system, largest) in nets.items():
         margin = delay_margin(system)
@@ -107,7 +107,7 @@ def _exact(name: str, sign: int) -> Claim:
 
 
 def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """Return the claim that the agreed value is the mean of the start, whatever the delay."""
+    """Return the claim that the agreed value is the mean of the start for any delay."""
     off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
     size = max(len(system.late[1]) for system, _ in nets.values())
     return of_state("average", size * EPS - off, 0.0, proof=_PROOF).described(

@@ -1,4 +1,4 @@
-"""Olfati-Saber and Murray: the average is reached also while the net switches among balanced ones."""
+"""Olfati-Saber and Murray: average consensus on switching balanced nets."""
 
 from flockana.laws.in_turn import VelocityInTurn
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
@@ -19,7 +19,7 @@ def _nets_in_turn(seen: Observed) -> Hypothesis:
 
 
 def _of_all(needs: list[Hypothesis]) -> Hypothesis:
-    """Return the first net's hypothesis that is unmet, else the last net's, in words about all nets."""
+    """Return the first unmet hypothesis of the nets, else the last net's, worded for all nets."""
     worst = unmet(needs) or needs[-1]
     name = worst.name.replace("the net is", "every net is")
     return condition(name, worst.status == "met", worst.margin, f"net {needs.index(worst)}: {worst.detail}")

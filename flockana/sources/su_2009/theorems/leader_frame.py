@@ -1,4 +1,4 @@
-"""Run in the frame of its virtual leader: informed agents, lasting links, velocities that decay."""
+"""Run in the frame of its virtual leader: informed agents, lasting links, decaying velocities."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -31,7 +31,7 @@ def informed(run: Trajectory) -> np.ndarray:
 
 
 def some_informed(run: Trajectory) -> Hypothesis:
-    """Return the hypothesis that informed agents share one c1 > 0 and one c2 > 0, and the others have none."""
+    """Return the hypothesis that informed agents share c1, c2 > 0, and the other agents have none."""
     pull, match = gains_of(run)
     who = pull > 0.0
     alike = np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
@@ -40,7 +40,7 @@ def some_informed(run: Trajectory) -> Hypothesis:
 
 
 def constant_velocity(run: Trajectory, *, any_p_r: bool = False) -> Hypothesis:
-    """Return the hypothesis that the leader's velocity is constant and p_r; with `any_p_r`, off it by a constant."""
+    """Return the hypothesis that the leader's velocity is constant and equals p_r (or differs by a constant)."""
     # p_r = dq_r/dt + e acts on agents of one c1 and one c2 as the true velocity of a leader at q_r + (c2/c1) e does.
     target = run.law.target
     name = "the leader's velocity is constant" + (", and so is p_r" if any_p_r else "")
@@ -56,7 +56,7 @@ def constant_velocity(run: Trajectory, *, any_p_r: bool = False) -> Hypothesis:
 
 
 def as_the_leader_sees(seen: Observed) -> Observed:
-    """Return a run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run."""
+    """Return a run in the frame of its leader, where the γ-agent of Algorithm 2 is at rest; cached."""
     # Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs
     # away.
     return seen.cached("leader's frame", lambda: seen.transformed(_seen))
@@ -74,7 +74,7 @@ def _seen(run: Trajectory) -> Trajectory:
 
 
 def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
-    """Return t, q, p and u of samples, or of steps between them, relative to the leader."""
+    """Return t, q, p and u of samples or steps relative to the leader."""
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
     place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
@@ -104,7 +104,7 @@ def comes_to_rest(
     *,
     proof: str | None = None,
 ) -> Claim:
-    """Return the claim that the velocities of some agents, of a run in its leader's frame, die out."""
+    """Return the claim that the velocities of given agents decay to 0 in the leader's frame."""
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
     what = f"the largest of {count} differences from the leader's velocity"
     about: dict[str, Any] = {

@@ -77,7 +77,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
 
 
 def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
-    """Return the basin of the flock's shape; none is known for other pair laws."""
+    """Return the basin of the flock's shape in a list; empty for other pair laws."""
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
     q, p, *errors = seen.end

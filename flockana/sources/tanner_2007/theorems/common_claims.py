@@ -14,7 +14,7 @@ MATCHED = "matched-velocities"
 
 
 def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: Needs) -> Claim:
-    """Return the claim that some pairs never come nearer than where V alone is the energy of the start."""
+    """Return the claim that given pairs stay beyond the distance where V alone equals the initial energy."""
     if not len(i):
         return by_count("no-collision", 0, needs, detail="no pair is joined")
     energy, distance = seen.energy[0].widened(_energy_error(seen, i, j)), least_distance(seen, i, j)

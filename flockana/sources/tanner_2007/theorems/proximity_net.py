@@ -1,4 +1,4 @@
-"""Tanner, Jadbabaie and Pappas (2007): a net of proximity whose forces jump at its range, connected at all times."""
+"""Tanner, Jadbabaie and Pappas (2007): a proximity net with force jumps at its range, always connected."""
 
 import numpy as np
 

@@ -6,7 +6,7 @@ from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, exact
 
 
 def _own_block() -> Any:
-    """Second derivatives of the total potential along one agent, less those of the agent's own potential."""
+    """Return the Hessian block of the total potential of one agent, less that of the agent's own potential."""
     import sympy as sp
 
     V, places = sp.Function("V"), [sp.symbols(f"x{i} y{i}", real=True) for i in range(3)]

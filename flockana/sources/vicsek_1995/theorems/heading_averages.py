@@ -56,7 +56,7 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
 
 
 def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Return a certificate that a connected net never changes again, so that all headings tend to one."""
+    """Return a certificate that a connected net stays constant, so that all headings tend to one."""
     # With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
     # of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
     # steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
@@ -87,12 +87,12 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def neighbourhood_sizes(n: int, pairs: LinkArray) -> FloatArray:
-    """Return the number of agents that each averages over, itself included."""
+    """Return the number of agents in each agent's average, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0
 
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
-    """Return the weighted mean heading that a constant connected net preserves and tends to."""
+    """Return the limit heading of a constant connected net: the preserved weighted mean."""
     return float(weights @ heading / weights.sum())
 
 

@@ -1,4 +1,4 @@
-"""Jadbabaie, Lin and Morse: headings agree if the nets are jointly connected over window after window of time."""
+"""Jadbabaie, Lin and Morse: headings agree if the nets are jointly connected in every time window."""
 
 from dataclasses import replace
 from typing import Any
@@ -18,7 +18,7 @@ _EVERY = 1e-6  # of a step: samples that are one step apart
 
 
 def _kinds(run: Trajectory) -> list[Hypothesis]:
-    """Return the hypotheses that headings are averaged as numbers, without noise, and that every step is kept."""
+    """Return the hypotheses that headings are averaged as numbers, without noise, and every step is stored."""
     law, steps = run.law, np.diff(run.t)
     plain = law.average == "headings" and law.noise == 0.0
     is_recorded = "heading" in run.extra and bool(np.all(np.abs(steps - law.dt) <= _EVERY * law.dt))
@@ -41,7 +41,7 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
 
 
 def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
+    """Return the claim that no heading leaves the span of the previous headings."""
     lower, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(lower) < 0.0) | (np.diff(most) > 0.0))
     return by_count("hull", out.size, needs, proof=_PROOF).described(
@@ -53,7 +53,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
 
 
 def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...], needs: list[Hypothesis]) -> Claim:
-    """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
+    """Return the claim that each block of n − 1 windows shrinks the span by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]

@@ -1,4 +1,4 @@
-"""Averaged headings depend on where angles are counted from: two agents side by side may turn round."""
+"""Averaged headings depend on the zero of angles: two adjacent agents may turn around."""
 
 from fractions import Fraction
 
@@ -9,13 +9,13 @@ _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turn
 
 
 def averaged(headings: tuple[Fraction, ...]) -> Fraction:
-    """The mean of headings in turns, each counted in [0, 1), as a direction in [0, 1)."""
+    """Return the mean of headings in turns, each taken in [0, 1), as a direction in [0, 1)."""
     counted = [heading % 1 for heading in headings]
     return (sum(counted, start=Fraction(0)) / len(counted)) % 1
 
 
 def _turned() -> Claim:
-    """The mean of a turned pair against the turned mean of the pair, in whole fractions of a turn."""
+    """Return the mean of a rotated pair and the rotated mean of the pair, in exact fractions of a turn."""
     pair = (_AWAY, -_AWAY)
     differ = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
     turned_round = averaged(pair)
@@ -29,7 +29,7 @@ def _turned() -> Claim:
 
 
 def _away_from_cut() -> Claim:
-    """Return the claim that the mean turns with the flock as long as no heading passes the direction of angle 0."""
+    """Return the claim that the mean rotates with the flock unless a heading crosses the angle 0."""
     import sympy as sp
 
     n, turn, k = sp.Symbol("n", positive=True, integer=True), sp.Symbol("t", real=True), sp.Symbol("k", integer=True)
@@ -43,7 +43,7 @@ def _away_from_cut() -> Claim:
 
 
 def _vectors() -> Claim:
-    """Return the claim that the mean unit vector (Vicsek's rule) turns with the flock, whatever the turn."""
+    """Return the claim that the mean unit vector (Vicsek's rule) rotates with the flock for any rotation."""
     import sympy as sp
 
     a, b, turn = sp.symbols("a b t", real=True)
