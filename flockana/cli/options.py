@@ -22,10 +22,7 @@ Start = Annotated[
 ]
 AnySeed = Annotated[int | None, typer.Option("--seed", min=0, help="Seed of a scenario's random start; by default 0.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
-On = Annotated[
-    str | None,
-    typer.Option("--on", metavar="CASE", help=f"A scenario, a saved run (.nc), or {OWN}."),
-]
+On = Annotated[str | None, typer.Option("--on", metavar="CASE", help=f"A scenario, a saved run (.nc), or {OWN}.")]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]
 
 # the law, if the source has none

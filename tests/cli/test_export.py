@@ -22,10 +22,7 @@ def test_the_nearest_consensus_can_be_chosen(call, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("lammps", "minimal-2d"), "has no pair term for LAMMPS to tabulate"),
-    ],
+    ("arguments", "message"), [(("lammps", "minimal-2d"), "has no pair term for LAMMPS to tabulate")]
 )
 def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, message):
     code, _, error = call(*arguments, "-o", "new")

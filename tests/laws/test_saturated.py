@@ -26,6 +26,4 @@ def test_a_falling_agent_by_hand():
     assert run.q[-1, 0].tolist() == pytest.approx([1.0, 0.0])
 
 
-test_bad_input = refused(
-    (lambda: Saturated(LAW, 1.0, "axis"), "by = 'axis': expected one of length, component"),
-)
+test_bad_input = refused((lambda: Saturated(LAW, 1.0, "axis"), "by = 'axis': expected one of length, component"))

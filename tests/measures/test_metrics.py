@@ -86,7 +86,4 @@ def test_coincident_pairs():
     assert metrics.coincident_pairs(q, 1e-200) == 6
 
 
-test_refusals = refused(
-    (lambda: metrics.coincident_pairs(SQUARE, 0.0), "tol = 0: expected a number > 0"),
-    exact=True,
-)
+test_refusals = refused((lambda: metrics.coincident_pairs(SQUARE, 0.0), "tol = 0: expected a number > 0"), exact=True)

@@ -42,6 +42,5 @@ def test_other_units_and_files_keep_it(tmp_path):
 
 
 test_what_is_refused = refused(
-    (lambda: fl.GaziPassino(attraction=0.0), "attraction = 0"),
-    (lambda: fl.GaziPassino(c=-1.0), "c = -1"),
+    (lambda: fl.GaziPassino(attraction=0.0), "attraction = 0"), (lambda: fl.GaziPassino(c=-1.0), "c = -1")
 )

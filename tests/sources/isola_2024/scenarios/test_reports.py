@@ -5,16 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import (
-    Algorithm2,
-    AlphaInteraction,
-    Gains,
-    StaticTarget,
-    Tolerances,
-    Trajectory,
-    connectivity,
-    simulate,
-)
+from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, Tolerances, Trajectory, connectivity, simulate
 from flockana.scenarios import scenario
 from flockana.sources.isola_2024.scenarios.reports import DT, REPORTS, STATIC
 
