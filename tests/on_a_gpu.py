@@ -14,10 +14,9 @@ from types import FunctionType
 import numpy as np
 from numba import cuda, float64, int64
 
-from flockana.interactions.alpha import AlphaInteraction
+from flockana import AlphaInteraction, links
 from flockana.jit import Inlined
 from flockana.kernels import alpha
-from flockana.measures.nets import links
 
 
 @cache

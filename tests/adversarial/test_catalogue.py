@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import DiscreteLaw, scenario, scenarios
 from flockana.base.errors import ArgumentError
-from flockana.laws.discrete import DiscreteLaw
-from flockana.scenarios import scenario, scenarios
 from tests.adversarial.cases import Case
 from tests.adversarial.published import changes_of_run, published_runs
 from tests.adversarial.transforms import UNITS, UnchangedError, delayed_start, in_units, renumbered, rigid

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from flockana import Tolerances, verify
-from flockana.theorems import theorem, theorems
+from flockana import Tolerances, theorem, theorems, verify
 from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED
 from tests.adversarial.published import changes
 

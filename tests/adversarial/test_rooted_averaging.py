@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana import NetAveraging, Tolerances
-from flockana.theorems.catalogue import theorem
+from flockana import NetAveraging, Tolerances, theorem
 from flockana.theorems.observed import Observed
 from tests.adversarial.cases import VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds

@@ -5,9 +5,8 @@ import pytest
 import sympy as sp
 
 import flockana as fl
-from flockana import Capsule, MinimalFlocking, Polygon, rescale, symbolic
+from flockana import CallableTarget, Capsule, MinimalFlocking, Polygon, RescaledVelocity, SineTarget, rescale, symbolic
 from flockana.base.scales import Scales
-from flockana.environment.targets import CallableTarget, RescaledVelocity, SineTarget
 from flockana.sources.notebook_r2.laws import PushedAlgorithm2
 from tests.refused import refused
 

@@ -4,13 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, CallableTarget, LinearTarget, Scenario, Trajectory
 from flockana.base.errors import SolverError
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CallableTarget, LinearTarget
 from flockana.equilibria.equilibrium_files import read_equilibrium
-from flockana.interactions import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios import Scenario
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 
 COMMAND = ("equilibrium",)

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from flockana import Algorithm1, AlphaInteraction, Trajectory
 from flockana.base.errors import SolverError
 from flockana.cli.positions_source import builders, read_source
-from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, links
-from flockana.laws.olfati_saber import Algorithm1
 from tests.programs import out_of_a_kernel
 
 COMMAND = ("lattice",)

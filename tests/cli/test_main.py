@@ -10,10 +10,9 @@ import pytest
 from PIL import Image
 from rich.cells import cell_len
 
+from flockana import Algorithm1, Trajectory
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.cli import main as command_line
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.seed_surveys import Survey
 from flockana.report.stability import NO_FLOCKS
 from flockana.report.verify_catalogue import Task, check_all, plan

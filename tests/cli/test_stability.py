@@ -2,14 +2,10 @@ from math import sqrt
 
 import pytest
 
-from flockana import Delayed, Gains, Sampled, simulate
+from flockana import Algorithm2, Delayed, Gains, Sampled, StaticTarget, find_equilibrium, linearise, simulate
 from flockana.base.errors import ArgumentError
 from flockana.cli.stability import _with_flags
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability import linearise
 from flockana.stability.delay import scalar_margin
 
 COMMAND = ("stability",)

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, LinkKeeping, StaticTarget
+from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, LinkKeeping, StaticTarget, simulate
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.dynamics.simulate import simulate
 from flockana.solvers.solver_names import ADAPTIVE, METHODS
 from tests.programs import out_of_a_kernel
 

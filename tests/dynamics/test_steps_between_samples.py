@@ -9,10 +9,9 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale, simulate
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.sample import Samples
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.steps_between_samples import Between, Recorder, merged
 from flockana.measures.metrics import cohesion_radii, min_distances
 from flockana.measures.path_bounds import closest_approach, cohesion_bound

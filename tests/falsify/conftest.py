@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import scenario
-from flockana.falsify import falsify
+from flockana import falsify, scenario
 from flockana.theorems import Hypothesis, Theorem
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure

@@ -7,14 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, Gains, StaticTarget, scenario, simulate
+from flockana import Algorithm2, Gains, StaticTarget, Tolerances, falsify, replay, scenario, simulate, theorem, verify
 from flockana.base.errors import ArgumentError
-from flockana.falsify import falsify, replay
 from flockana.falsify.bounded_space import search_space
 from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
 from flockana.sources.geschwender_2016.theorems.energy_printed import _printed_rate
-from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.attraction import final_basin
 from flockana.theorems.observed import Observed
 from tests.falsify.conftest import HEAD_ON, OWN, THREE_AT_REST, fast

@@ -5,9 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Trajectory, scenario
+from flockana import Algorithm1, Trajectory, falsify, scenario
 from flockana.base.errors import ArgumentError
-from flockana.falsify import falsify
 from flockana.falsify.bounded_space import search_space
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.grade import FAILED, grade, shortfall

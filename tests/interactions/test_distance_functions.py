@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import FixedNetFlocking, Law, PairTerm, ProximityFlocking, Term
 from flockana.interactions.distance_functions import DistanceFunction, Within
-from flockana.laws.law import Law
-from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Term
-from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
 
 BENT = fl.pair_law(
     "(s - d)**2/2 + k*Abs(s - d)*(s - d)", adjacency="1 - s/r", range=6.0, length=2.0, parameters={"k": 0.2}

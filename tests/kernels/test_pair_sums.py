@@ -7,11 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.interactions import AlphaInteraction
+from flockana import AlphaInteraction, DeadZoneInteraction
 from flockana.jit import register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.pair_lift import lift
-from flockana.sources.li_dead_zone import DeadZoneInteraction
 
 ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
 

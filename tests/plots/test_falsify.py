@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 
-from flockana import plots, scenario
+from flockana import falsify, plots, scenario
 from flockana.base.errors import ArgumentError
-from flockana.falsify import falsify
 from flockana.plots.falsify import search_history
 from tests.plots.artists import axes
 

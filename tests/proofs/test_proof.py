@@ -12,9 +12,8 @@ import numpy as np
 import sympy as sp
 import z3
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Capsule, Sphere, StaticTarget, simulate
+from flockana import Algorithm1, Algorithm2, Algorithm3, Capsule, Sphere, StaticTarget, simulate, theorems, verify
 from flockana.symbolic import functions, obstacles, structural_identity
-from flockana.theorems import theorems, verify
 from flockana.theorems.proofs import RIGOUR
 from proofs import cohesion, signs_of_phi, smoothness, structural_split, theorem6
 from proofs.proof import RIGOURS, Proof, Step, names, proofs

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.laws.discrete import DiscreteLaw
-from flockana.scenarios import scenario, scenarios
+from flockana import DiscreteLaw, scenario, scenarios
 
 MOST = 10.0  # times rtol, of the largest energy of the run
 

@@ -3,9 +3,8 @@ from pathlib import Path
 
 import pytest
 
+from flockana import scenarios, theorems
 from flockana.report.coverage import coverage
-from flockana.scenarios import scenarios
-from flockana.theorems import theorems
 from tools.coverage_references import faults
 
 SOURCES = {source.key: source for source in coverage()}

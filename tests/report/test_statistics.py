@@ -5,14 +5,13 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from flockana.ensemble import clopper_pearson, ensemble, shares
+from flockana import clopper_pearson, ensemble, scenario, shares
 from flockana.ensemble.one_run import Job, Record, Request, run_batch
 from flockana.report.build import page_environment, verdicts_json, write_report
 from flockana.report.console import statistics_table
 from flockana.report.seed_surveys import make_survey, surveys
 from flockana.report.statistics import TEMPLATE, Share, entry_of, gather
 from flockana.report.verify_catalogue import check_all
-from flockana.scenarios import scenario
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,8 @@
 from collections import Counter
 
-from flockana.laws.discrete import DiscreteLaw
+from flockana import DiscreteLaw, scenario, scenarios
 from flockana.report.seed_surveys import Survey, surveys
 from flockana.report.verify_catalogue import _execution_order, plan
-from flockana.scenarios import scenario, scenarios
 
 
 def test_one_flow_is_begun_then_all_maps_then_the_others():

@@ -7,13 +7,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from flockana import Tolerances, rescale, theorems
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
 from flockana.scenarios import Report, scenario
 from flockana.scenarios.findings import finding, in_source_units
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
-from flockana.theorems import Tolerances, theorems
 
 OWN = [
     *("paper-flocking", "paper-dynamic-topology", "paper-fragmentation", "paper-rendezvous-3d"),

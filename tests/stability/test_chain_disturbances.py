@@ -7,10 +7,9 @@ import pytest
 from scipy.linalg import expm
 from scipy.sparse import csr_array
 
-from flockana import Algorithm1, Algorithm2, MinimalFlocking, StaticTarget, find_equilibrium, linearise
+from flockana import Algorithm1, Algorithm2, Linearisation, MinimalFlocking, StaticTarget, find_equilibrium, linearise
 from flockana.lattice import hexagonal_patch
 from flockana.stability.chain_disturbances import passivity, string_gains, string_stability, transient_growth
-from flockana.stability.linearisation import Linearisation
 from tests.refused import refused
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))

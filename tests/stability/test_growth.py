@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from flockana import StaticTarget
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, Linearisation, StaticTarget
 from flockana.stability.growth import MOST, Steps, first_growth
-from flockana.stability.linearisation import Linearisation
 from flockana.stability.map_linearisation import moved_before
 from flockana.stability.sampling import SamplingMargin, margin_of_flow
 

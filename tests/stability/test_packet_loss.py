@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from flockana import Algorithm2, StaticTarget, find_equilibrium, linearise
+from flockana import Algorithm2, Linearisation, StaticTarget, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch
-from flockana.stability.linearisation import Linearisation
 from flockana.stability.packet_loss import _step, loss_margin
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))

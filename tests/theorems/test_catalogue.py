@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Tolerances, simulate
+from flockana import Algorithm1, Tolerances, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.theorems import theorem, theorems, verify
 from tests.theorems.made_up import made_up
 
 PAIR = np.array([[0.0], [7.0]])

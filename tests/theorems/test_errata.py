@@ -5,13 +5,12 @@ from math import tanh
 import numpy as np
 import pytest
 
-from flockana import DeadZoneInteraction, components, scenario
+from flockana import DeadZoneInteraction, components, scenario, theorem, theorems
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.sources.jond_2025.theorems.j01_edge_limits import random_forest
 from flockana.sources.jond_2025.theorems.j03_eigenvalue_pairs import path_matrices
 from flockana.sources.jond_2025.theorems.j07_speed_bound import dragged_speed
 from flockana.sources.jond_2025.theorems.j17_late_reaction import first_step
-from flockana.theorems import theorem, theorems
 from flockana.theorems.errata import SORTS, Erratum, errata, erratum_of, printed
 
 RUNS = {"E11": "collapse", "E12": "msn-case4", "E13": "three-agents-1d"}  # a scenario that expects it

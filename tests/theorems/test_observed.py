@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana import RationalWeight, SemiImplicitEuler
-from flockana.sources.zavlanos_2007.laws import LinkKeeping
+from flockana import LinkKeeping, RationalWeight, SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, verify
 from flockana.theorems import second_runs as module
 from flockana.theorems.attraction import final_basin

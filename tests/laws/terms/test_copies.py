@@ -1,8 +1,6 @@
 import numpy as np
 
-from flockana.environment.gamma_agent_copies import Copies
-from flockana.environment.spring import Spring
-from flockana.interactions import Gains
+from flockana import Copies, Gains, Spring
 from flockana.laws.terms.copies import CopiesTerm
 
 

@@ -5,10 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana.interactions import AlphaInteraction, Gains
+from flockana import AlphaInteraction, Gains, Tolerances, theorem
 from flockana.lattice import hexagonal_spiral
 from flockana.sources.montanari_2025 import theorems as heterogeneous_gains
-from flockana.theorems import Tolerances, theorem
 
 OPTIONS = [("printed", 12, {"rotation": "counted"}), ("apart", 12, {"rotation": "apart"}),
            ("simplified", 30, {"form": "simplified"})]  # fmt: skip

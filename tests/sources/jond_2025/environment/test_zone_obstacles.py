@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
-from flockana import Alien, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
+from flockana import Alien, Polygon, SimplePolygon, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
 from flockana.base.errors import ArgumentError
-from flockana.environment.polygon import Polygon, SimplePolygon
 from flockana.sources.jond_2025.environment.zone_obstacles import Box, ball_clearance_along
 from tests.refused import refused
 

@@ -7,9 +7,8 @@ from itertools import cycle
 import numpy as np
 import pytest
 
-from flockana import rescale
+from flockana import rescale, scenario
 from flockana.base.errors import ArgumentError
-from flockana.scenarios import scenario
 from flockana.sources.jond_2025.scenarios import prose_claims
 from flockana.sources.jond_2025.scenarios.prose_claims import SCENARIOS
 

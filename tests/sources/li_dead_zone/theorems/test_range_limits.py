@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from flockana import DeadZoneFlocking, SemiImplicitEuler, cohesion_radius, simulate
-from flockana.sources.li_dead_zone import DeadZoneInteraction
+from flockana import DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler, cohesion_radius, simulate
 from flockana.sources.li_dead_zone.theorems.local_basin import hold
 from flockana.sources.li_dead_zone.theorems.net_components import components_of
 from flockana.sources.li_dead_zone.theorems.range_limits import first_entry

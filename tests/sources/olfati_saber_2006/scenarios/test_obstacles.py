@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm3, Sphere, StaticTarget, Tolerances, Trajectory, simulate, verify
-from flockana.scenarios import scenario
+from flockana import Algorithm3, Sphere, StaticTarget, Tolerances, Trajectory, scenario, simulate, verify
 from flockana.scenarios.findings import component_counts
 from flockana.sources.olfati_saber_2006.scenarios.obstacle_claims import blocked, rests
 from flockana.sources.olfati_saber_2006.scenarios.obstacles import GAINS, SCENARIOS, free_start

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, Gains, Tolerances, simulate, verify
+from flockana import Algorithm2, Gains, LinearTarget, RescaledVelocity, StaticTarget, Tolerances, simulate, verify
 from flockana.base.seals import sealed
-from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
 from flockana.theorems.collisions import pairs_at_one_instant
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import hexagon, hypothesis, judged, made_up, statuses

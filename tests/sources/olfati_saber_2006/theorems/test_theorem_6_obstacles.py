@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm3, Gains, Sphere, Wall, simulate, verify
-from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
+from flockana import Algorithm3, Gains, LinearTarget, RescaledVelocity, Sphere, StaticTarget, Wall, simulate, verify
 from flockana.sources.olfati_saber_2006.theorems.theorem_6_obstacles import condition_76
 from flockana.theorems.observed import Observed
 from tests.theorems.made_up import hypothesis, judged, made_up

@@ -5,10 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from flockana.interactions import PairInteraction
-from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.term import Term
+from flockana import PairInteraction, PairTerm, SumOfTerms, Term
 
 
 @dataclass(frozen=True)
