@@ -38,8 +38,9 @@ except ImportError:  # Windows: there every process compiles what it needs
 COMPILES = "flockana compiles for this machine, which happens once and takes up to a minute; first {} ..."
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
 prange = range  # of one thread (`Parallel`)
+_NO_C, _NO_PYTHON = {"no_cfunc_wrapper": True}, {"no_cpython_wrapper": True}  # entries that numba adds to each function
 _PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
-_FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
+_FORM = b"2"  # another if this file comes to compile otherwise: it is no source of kernels itself
 _SILENT = 3.0  # seconds of compiling that go without a word
 _UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
 _ONE = RLock()  # one thread compiles at a time
@@ -54,6 +55,7 @@ class Kernel:
         functools.update_wrapper(self, function)
         self.__name__, self.__qualname__ = function.__name__, function.__qualname__
         self.function, self.kept, self.options, self._thaws = function, kept, options, False
+        self.rounds = 0  # that were run in the interpreter (`flockana.kernels.little_work`)
         self._compiled: Callable[..., Any] | None = None
         self._dispatcher: Any = None
 
@@ -80,6 +82,11 @@ class Kernel:
     def py_func(self) -> Callable[..., Any]:
         """The function as it was written."""
         return self.function
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether it has been compiled, or loaded, for some types."""
+        return self._compiled is not None
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the compiled function; read-only arrays are passed as writable views."""
@@ -143,7 +150,7 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
 
 def register_jitable(function: Callable[..., Any]) -> Inlined:
     """Return a function that kernels can call and that is compiled into them."""
-    return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
+    return Inlined(function, False, {"forceinline": True, "error_model": "numpy", **_NO_C, **_NO_PYTHON})
 
 
 def inlined(function: Callable[..., Any]) -> Inlined:
@@ -156,7 +163,25 @@ def inlined(function: Callable[..., Any]) -> Inlined:
 
 def kernel(function: Callable[..., Any]) -> Kernel:
     """Return a kernel cached on disk, with options shared by all kernels."""
-    return Kernel(function, True, {"error_model": "numpy", "nogil": True})
+    return Kernel(function, True, {"error_model": "numpy", "nogil": True, **_NO_C})
+
+
+class Subroutine(Kernel):
+    """Kernel that kernels call: compiled without the entry by which Python calls it."""
+
+    _for_python: Kernel | None = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the function, compiled once more for Python, as in tests."""
+        if self._for_python is None:
+            function = _renamed(self.function, self.function.__name__)
+            self._for_python = Kernel(function, False, self.options | {"no_cpython_wrapper": False})
+        return self._for_python(*arguments)
+
+
+def subroutine(function: Callable[..., Any]) -> Kernel:
+    """Return a kernel, kept on disk, for other kernels to call."""
+    return Subroutine(function, True, {"error_model": "numpy", "nogil": True, **_NO_C, **_NO_PYTHON})
 
 
 class Parallel(Kernel):
@@ -179,7 +204,7 @@ def parallel(kernel: Kernel) -> Kernel:
 
     Files and symbols of compiled code bear names of functions: it has one of its own.
     """
-    options = kernel.options | {"parallel": True}
+    options = kernel.options | {"parallel": True, "no_cpython_wrapper": False}
     return Parallel(_renamed(kernel.function, f"parallel_{kernel.__name__}"), kernel.kept, options)
 
 

@@ -40,7 +40,9 @@ _OPERATORS = re.compile(  # the others of cosmic-ray change a type or cannot com
     "|ReplaceUnaryOperator_(USub_UAdd|Delete_Invert|Delete_Not)"
     "|AddNot|ExceptionReplacer|NumberReplacer|RemoveDecorator|ZeroIterationForLoop)"
 )
-_COMPILING = re.compile(r"njit|kernel$|inlined|register_jitable|vectorize|lift|override|abstractmethod|overload|cache")
+_COMPILING = re.compile(
+    r"njit|kernel$|subroutine|inlined|register_jitable|vectorize|lift|override|abstractmethod|overload|cache"
+)
 
 
 def meaningless(tree: ast.AST) -> Iterator[ast.AST]:

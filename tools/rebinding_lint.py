@@ -20,7 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOMS = ("kernels", "laws", "dynamics", "interactions")
-COMPILED = {"njit", "kernel", "inlined", "register_jitable"}
+COMPILED = {"njit", "kernel", "subroutine", "inlined", "register_jitable"}
 ARRAYS = {"empty", "zeros", "ones", "full", "empty_like", "zeros_like", "ones_like", "arange"}
 SHAPES = {"shape", "size", "ndim"}
 

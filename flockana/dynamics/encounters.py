@@ -32,7 +32,7 @@ from flockana.kernels.alpha import BETA_AREA
 from flockana.kernels.bound_templates import bound
 from flockana.kernels.encounters import Around, Ends
 from flockana.kernels.grid import LARGE
-from flockana.kernels.large import as_callback, lister
+from flockana.kernels.large import as_callback, covering, lister
 from flockana.kernels.laws import guard_of
 from flockana.kernels.obstacle_terms import body_numbers
 from flockana.kernels.step_checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
@@ -108,7 +108,7 @@ class Encounters:
         return Around(
             self.radii[order], float(self.far), (float(shortest), float(largest)), thawed(self.poles), toward,
             np.ascontiguousarray(first), np.ascontiguousarray(second), few, *self._guard,
-            (float(self.shell), float(self.skirt)), as_callback(lister(large=len(order) >= LARGE)),
+            (float(self.shell), float(self.skirt)), as_callback(lister(large=len(order) >= LARGE)), covering(),
         )  # fmt: skip
 
     @cached_property

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import inlined
-from flockana.kernels.agent_sums import finite, put
+from flockana.kernels.agent_sums import finite, put_row
 from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
 from flockana.kernels.verlet import COUNT
 
@@ -73,7 +73,7 @@ def march(block, k, h, ends, system, method, room, pairs):
     """
     y, t, stop, fixed, tried = block.y, block.t[k], ends[0], method.exponent == 0.0, 0
     first, past = np.int64(1), np.int64(method.stages + 1)  # typed, as in `advance`
-    put(block.f[k], room.rates[0])
+    put_row(block.f[k], room.rates[0])
     if h == 0.0 and fixed:
         h = np.inf
     elif h == 0.0:
@@ -97,6 +97,6 @@ def march(block, k, h, ends, system, method, room, pairs):
             break
         h, rejected = later, True
     end = room.rates[method.rows[method.stages]]
-    put(end, block.f[k + 1])
+    put_row(end, block.f[k + 1])
     is_known = finite(step.reached) and finite(end)
     return Marched(RUNNING if is_known else NOT_FINITE, step.h, later, tried)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined, kernel, subroutine
 
 _SAMPLE = 256  # agents that suffice to estimate the slope
 
@@ -12,11 +12,12 @@ def square_between(q, i, j):
     """Return the squared distance ‖q_j − q_i‖² of two agents."""
     total = 0.0
     for c in range(q.shape[1]):
-        total += (q[j, c] - q[i, c]) ** 2
+        gap = q[j, c] - q[i, c]
+        total += gap * gap
     return total
 
 
-@kernel
+@subroutine
 def finite(x):
     """Return whether all numbers of an array are finite."""
     is_known = True
@@ -25,7 +26,7 @@ def finite(x):
     return is_known
 
 
-@kernel
+@subroutine
 def column_mean(x, c):
     """Return the mean over agents of coordinate c."""
     n = x.shape[0]
@@ -37,7 +38,7 @@ def column_mean(x, c):
     return ((a + b) + (d + e)) / n
 
 
-@kernel
+@subroutine
 def column_squares(x, c, centre):
     """Return the sum of squares Σ_i (x_ic − centre)²."""
     n = x.shape[0]
@@ -50,7 +51,7 @@ def column_squares(x, c, centre):
     return (a + b) + (d + e)
 
 
-@kernel
+@subroutine
 def squared_deviations(x):
     """Return the sum of squared deviations Σ_i ‖x_i − mean‖²."""
     total = 0.0
@@ -59,7 +60,7 @@ def squared_deviations(x):
     return total
 
 
-@kernel
+@subroutine
 def slope_along(x, y, c, flat):
     """Return the least-squares slope of y_ic over x_ic for a hundred agents; `flat` if undefined."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
@@ -89,6 +90,13 @@ def pull_to(u, x, v, place, velocity, c1, c2):
         _pull_to(u, x, v, place, velocity, c1, c2, 2)
     else:
         _pull_to(u, x, v, place, velocity, c1, c2, x.shape[1])
+
+
+@inlined
+def put_row(values, into):
+    """Copy a vector to the front of another."""
+    for k in range(values.size):
+        into[k] = values[k]
 
 
 @kernel

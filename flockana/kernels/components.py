@@ -7,11 +7,11 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.jit import kernel
+from flockana.jit import kernel, subroutine
 from flockana.kernels.agent_sums import square_between
 
 
-@kernel
+@subroutine
 def _root(parent, i):
     """Return the root of agent i's component, and shorten the path to the root."""
     while parent[i] != i:

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
-from flockana.kernels.agent_sums import column_mean, put, slope_along
+from flockana.jit import inlined, subroutine
+from flockana.kernels.agent_sums import column_mean, put_row, slope_along
 from flockana.kernels.quintic_paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
 
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
@@ -45,6 +45,7 @@ class Around(NamedTuple):
     starts: Any
     shell: Any  # distance at which the force of obstacles begins, and how far an agent may go within it
     listed: Any  # how pairs are listed: `flockana.kernels.verlet.listed_anew`
+    covers: Any  # and whether a list still holds all of them: `flockana.kernels.verlet.covers`
 
 
 class PairRoom(NamedTuple):
@@ -62,13 +63,16 @@ class PairRoom(NamedTuple):
 def pair_room(radii):
     """Return work space for a pair of agents with a given number of radii."""
     points = np.empty((2, 6, 3))
-    points[:] = 0.0
+    for one in range(2):
+        for k in range(6):
+            for c in range(3):
+                points[one, k, c] = 0.0
     return PairRoom(
         np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), points, np.empty(2), np.empty(2), np.empty((2, radii))
     )
 
 
-@kernel
+@subroutine
 def relative_curve(points, curve):
     """Write a pair's relative control points into `curve`; return their largest distance from the first."""
     way = 0.0
@@ -152,7 +156,7 @@ def share_of_pair(room, far, share):
     return share
 
 
-@kernel
+@subroutine
 def steepest(slope):
     """Return the largest of the slopes of all agents' paths."""
     most = 0.0
@@ -170,7 +174,10 @@ def common_way(ends):
     steep.
     """
     h, q0, p0, u0, q1, p1, u1 = ends
-    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
+    mean, slope, centre, s, z = np.empty((6, 3)), np.empty((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
+    for k in range(6):
+        for c in range(3):
+            mean[k, c] = slope[k, c] = 0.0
     for c in range(q0.shape[1]):
         centre[c] = column_mean(q0, c)
         out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
@@ -181,7 +188,9 @@ def common_way(ends):
         ways = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
         _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
     if not steepest(slope) < _STEEP:
-        slope[:] = 0.0
+        for k in range(6):
+            for c in range(3):
+                slope[k, c] = 0.0
     return mean, slope, centre
 
 
@@ -258,7 +267,7 @@ def share_of_listed(ends, common, between, around, first, second, share):
         if not _stays_beyond(ends, i, j, outer):
             for a in range(2):
                 one, curve = i if a == 0 else j, room.points[a]
-                put(radii[one], room.radii[a])
+                put_row(radii[one], room.radii[a])
                 room.allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], curve)
                 for node in range(6):  # by its indices: compiled code does not check that shapes agree
                     for c in range(m):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined, kernel, subroutine
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most
@@ -25,7 +25,7 @@ def _ends(x, k):
     return low, high
 
 
-@kernel
+@subroutine
 def _closed_up(q, width, most):
     """Return a flock with gaps along each coordinate closed up; pairs within range stay so.
 
@@ -60,8 +60,8 @@ def sort_into_grid(q, side):
     are strips across the longest side.
     """
     (n, m), most, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
-    low, across, strides, total, farthest = np.empty(m), np.empty(m), np.zeros(m, np.int64), np.inf, 0.0
-    ranks = np.zeros(m, np.int64)  # the same strides, rising
+    low, across, strides, total, farthest = np.empty(m), np.empty(m), np.empty(m, np.int64), np.inf, 0.0
+    ranks = np.empty(m, np.int64)  # the same strides, rising
     for attempt in range(2):
         if total <= most:
             break
@@ -81,13 +81,16 @@ def sort_into_grid(q, side):
             total *= across[k]
     strips = not total <= most  # of NaN too
     if strips:
-        strides[:], longest = 0, 0
+        longest = 0
         for k in range(m):
+            strides[k] = 0
             if across[k] > across[longest]:
                 longest = k
         strides[longest], total = 1, most
     cells = np.int64(total)
-    start, cell = np.zeros(cells + 1, np.uint64), np.empty(n, np.int64)
+    start, cell = np.empty(cells + 1, np.uint64), np.empty(n, np.int64)
+    for c in range(cells + 1):
+        start[c] = np.uint64(0)
     for i in range(n):
         c = 0
         for k in range(m):
@@ -96,7 +99,9 @@ def sort_into_grid(q, side):
         start[cell[i] + 1] += np.uint64(1)
     for c in range(cells):
         start[c + 1] += start[c]
-    fill, order = start[:-1].copy(), np.empty(n, np.uint64)
+    fill, order = np.empty(cells, np.uint64), np.empty(n, np.uint64)
+    for c in range(cells):
+        fill[c] = start[c]
     for i in range(n):
         order[fill[cell[i]]] = i
         fill[cell[i]] += np.uint64(1)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.jit import Kernel, callback_like, launch_threads
+from flockana.jit import Kernel, callback_like, kernel, launch_threads
 from flockana.kernels.grid import LARGE
 from flockana.kernels.runge_kutta import Work, combine
 from flockana.kernels.slab_lists import listed_by_threads, listed_in_slabs
@@ -27,6 +27,12 @@ def as_callback(listing: Kernel) -> Any:
     return callback_like(listing, 0, np.empty((1, 1)), 0.0, no_pairs(1, 1))
 
 
+@cache
+def covering(*, several: bool = False) -> Any:
+    """Return `flockana.kernels.verlet.covers` as a callback, for one thread or for several."""
+    return callback_like(covered_by_threads if several else covers, True, no_pairs(1, 1), np.empty((1, 1)), 0.0)
+
+
 def parallel_twin(kernel: Kernel) -> Kernel:
     """Return the multithreaded twin of a kernel; the kernel itself without one."""
     twin: Kernel = getattr(sys.modules[kernel.__module__], f"parallel_{kernel.__name__}", kernel)
@@ -36,19 +42,25 @@ def parallel_twin(kernel: Kernel) -> Kernel:
 @cache
 def work_of(*, large: bool, several: bool = False) -> Work:
     """Return the step functions other than the law, by flock size and number of threads."""
-    covering, combining = (covered_by_threads, combined_by_threads) if several else (covers, combine)
     if several:
         launch_threads()
     y, rates, rows = np.empty(1), np.empty((1, 1)), np.empty(1, np.int64)
     return Work(
         as_callback(lister(large=large, several=several)),
-        callback_like(covering, True, no_pairs(1, 1), rates, 0.0),
-        callback_like(combining, None, y, 0.0, y, rates, rows, 0, y),
+        covering(several=several),
+        callback_like(combined_by_threads if several else combine, None, y, 0.0, y, rates, rows, 0, y),
     )
+
+
+@kernel
+def _listed_by(listing, q, reach, pairs):
+    """Let a callback list pairs: what steps call is then all that is compiled."""
+    return listing(q, reach, pairs)
 
 
 def fill(pairs: Pairs, q: Any, reach: float, several: bool = False) -> Pairs:
     """List the pairs closer than `reach`; return the list, enlarged as needed unless CROWDED."""
-    while lister(large=len(q) >= LARGE, several=several)(q, reach, pairs) < CROWDED:
+    listing = as_callback(lister(large=len(q) >= LARGE, several=several))
+    while _listed_by(listing, q, reach, pairs) < CROWDED:
         pairs = with_room(pairs) or pairs
     return pairs

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import kernel
+from flockana.jit import subroutine
 
 
 class Listed(NamedTuple):
@@ -20,7 +20,7 @@ class Listed(NamedTuple):
     room: Any  # (3 slabs, BLOCK), the same
 
 
-@kernel
+@subroutine
 def no_energy(t, x, v, numbers, panels, listed):
     """Return 0, the energy of a term without a potential."""
     return 0.0

@@ -55,7 +55,7 @@ def _sampled(step, due, method, states, work, system, pairs):
     slope = np.empty(step.y.size)
     stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):
-        interpolated((due[k] - step.t) / step.h, step, method)
+        interpolated((due[k] - step.t) / step.h, step, method, system.work.combine)
         rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
         work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
 

@@ -10,7 +10,7 @@ from zlib import crc32
 
 import numpy as np
 
-from flockana.jit import inlined, kernel, parallel, prange, register_jitable
+from flockana.jit import inlined, kernel, parallel, prange, register_jitable, subroutine
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
@@ -100,7 +100,7 @@ def _act_in_slab(own, s, x, v, u, numbers, listed, work):
     block[0][0] = total
 
 
-@kernel
+@subroutine
 def act(t, x, v, u, numbers, panels, listed):
     """Add the forces of the listed pairs to u and return their power: even slabs at once, then odd ones."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
@@ -125,7 +125,7 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
     room[3 * s, 0], room[3 * s, 1] = total, pairs
 
 
-@kernel
+@subroutine
 def energy(t, x, v, numbers, panels, listed):
     """Return c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
     first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
@@ -152,7 +152,7 @@ def _linked(x, ends, begin, end, near, s2):
     return end - begin
 
 
-@kernel
+@subroutine
 def act_links(t, x, v, u, numbers, panels, listed):
     """Add the forces of links to u and return their power; `numbers` are c1, c2, link count, links, and par."""
     total, links, near = 0.0, np.int64(numbers[2]), listed.near
@@ -164,7 +164,7 @@ def act_links(t, x, v, u, numbers, panels, listed):
     return -numbers[1] * total
 
 
-@kernel
+@subroutine
 def energy_links(t, x, v, numbers, panels, listed):
     """Return the energy c1 Σ ψ over links."""
     total, links = 0.0, np.int64(numbers[2])

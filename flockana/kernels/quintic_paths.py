@@ -14,8 +14,7 @@ every (t − θ)₊ᵏ⁻¹ are ≥ 0; and of each of these the bound holds (tes
 
 import numpy as np
 
-from flockana.jit import inlined, kernel, register_jitable
-from flockana.kernels.agent_sums import put
+from flockana.jit import inlined, kernel, register_jitable, subroutine
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself
@@ -32,7 +31,7 @@ def polygon(a, b, out, back, bend0, bend1):
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
-@kernel
+@subroutine
 def quintic(h, a, p0, u0, b, p1, u1, out):
     """Write the control points of one agent's quintic from a to b into `out`, (6, 3); return its error allowance."""
     off2, off3 = 0.0, 0.0
@@ -54,14 +53,17 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
     motion is from the quintic where the interval resolves it (see above).
     """
     n = q0.shape[0]
-    points, reach, allowance = np.zeros((n, 6, 3)), np.zeros(n), np.zeros(n)
+    points, reach, allowance = np.empty((n, 6, 3)), np.empty(n), np.empty(n)
     for i in range(n):
+        for k in range(6):
+            for c in range(3):
+                points[i, k, c] = 0.0  # coordinates that there are not
         allowance[i] = quintic(h, q0[i], p0[i], u0[i], q1[i], p1[i], u1[i], points[i])
         reach[i] = reach_of(points[i]) + allowance[i]
     return points, reach, allowance
 
 
-@kernel
+@subroutine
 def reach_of(c):
     """Return the largest distance of a curve's control points (6, 3) from the first: a bound for the curve."""
     s2 = 0.0
@@ -70,14 +72,14 @@ def reach_of(c):
     return np.sqrt(s2)
 
 
-@kernel
+@subroutine
 def centred(points, allowance):
     """Subtract the flock's common drift from the control points in place; return the remaining reaches.
 
     No distance between agents changes.
     """
     n = points.shape[0]
-    reach = np.zeros(n)
+    reach = np.empty(n)
     for c in range(1, 6):
         for k in range(3):
             drift = 0.0
@@ -98,7 +100,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@kernel
+@subroutine
 def _start(points, reach, i, j, stop, stack):
     """Load the pair's relative curve into the stack, unless its ends exclude a distance below stop."""
     s2 = 0.0
@@ -112,7 +114,7 @@ def _start(points, reach, i, j, stop, stack):
     return True
 
 
-@kernel
+@subroutine
 def _hull_bound(c):
     """Return a lower bound of the curve's distance to 0: its control points projected on their mean direction."""
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
@@ -127,7 +129,7 @@ def _hull_bound(c):
     return bound
 
 
-@kernel
+@subroutine
 def _halve(stack, spans, top):
     """Halve the curve stack[top] by de Casteljau: the left half is pushed, the right half stays."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
@@ -141,7 +143,7 @@ def _halve(stack, spans, top):
     spans[top + 1, 0], spans[top + 1, 1] = left, middle
 
 
-@kernel
+@subroutine
 def _least_distance(stack, spans, stop, tol):
     """Return (lower bound, distance, parameter) of the closest point to 0 of the curve stack[0], within tol.
 
@@ -167,7 +169,7 @@ def _least_distance(stack, spans, stop, tol):
     return proven, best, where
 
 
-@kernel
+@subroutine
 def _first_touch(stack, spans, tol):
     """Return the first parameter at which the curve stack[0] is within tol of 0; -1 if it never is."""
     spans[0, 0], spans[0, 1] = 0.0, 1.0
@@ -220,14 +222,20 @@ def closest_of_few(t, states, slack, stops, tols):
     """
     (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
     first, second = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
-    lower, best, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
-    a, b = np.full(steps, -1), np.full(steps, -1)
+    lower, best, where = np.empty(steps), np.empty(steps), np.empty(steps)
+    a, b, x = np.empty(steps, np.int64), np.empty(steps, np.int64), np.empty((n, 3))
     for k in range(steps):
+        lower[k], best[k], where[k], a[k], b[k] = stops[k], stops[k], -1.0, -1, -1
         if stops[k] == 0.0:
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-        reach, allowance = reach + slack[k], allowance + slack[k]
-        x, limit, count = points[:, 0].copy(), ((stops[k] + 2.0 * reach.max()) * (1.0 + 1e-9)) ** 2, 0
+        farthest_reach, count = 0.0, 0
+        for i in range(n):
+            reach[i], allowance[i] = reach[i] + slack[k, i], allowance[i] + slack[k, i]
+            x[i, 0], x[i, 1], x[i, 2] = points[i, 0, 0], points[i, 0, 1], points[i, 0, 2]
+            if reach[i] > farthest_reach or np.isnan(reach[i]):
+                farthest_reach = reach[i]
+        limit = ((stops[k] + 2.0 * farthest_reach) * (1.0 + 1e-9)) ** 2
         for i in range(n):
             for j in range(i + 1, n):
                 first[count], second[count] = i, j
@@ -249,7 +257,7 @@ def touching_pairs(points, reach, first, second, tol, out):
         out[k] = _first_touch(stack, spans, tol)
 
 
-@kernel
+@subroutine
 def _largest_distance(stack, spans, enough, tol):
     """Return (upper bound, parameter) of the curve stack[0]'s largest distance from 0, within tol or up to `enough`."""
     proven, best, where = 0.0, 0.0, -1.0
@@ -273,7 +281,7 @@ def _largest_distance(stack, spans, enough, tol):
     return proven, where
 
 
-@kernel
+@subroutine
 def farthest(points, allowance, floor, tol):
     """Return (upper bound, agent, parameter) of the largest agent distance from the centre, at least `floor`.
 
@@ -293,7 +301,9 @@ def farthest(points, allowance, floor, tol):
         common += allowance[i] / n
     for i in range(n):
         slack = allowance[i] + common
-        put(points[i], stack[0])
+        for c in range(6):
+            for k in range(3):
+                stack[0, c, k] = points[i, c, k]
         bound, where = _largest_distance(stack, spans, max(upper, floor + tol) - slack, tol)
         if bound + slack > upper:
             upper, agent, at = bound + slack, i, where
@@ -306,5 +316,7 @@ def farthest_in_turn(t, states, slack, floors, tols):
     (q, p, u), upper = states, np.empty(len(t) - 1)
     for k in range(len(t) - 1):
         points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-        upper[k] = farthest(points, allowance + slack[k], floors[k], tols[k])[0]
+        for i in range(allowance.size):
+            allowance[i] += slack[k, i]
+        upper[k] = farthest(points, allowance, floors[k], tols[k])[0]
     return upper

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel, register_jitable
+from flockana.jit import inlined, kernel, register_jitable, subroutine
 from flockana.kernels.agent_sums import column_squares, squared_deviations
 from flockana.kernels.verlet import COUNT
 
@@ -92,7 +92,7 @@ def combine(y, h, weights, rates, rows, count, out):
         combine_strip(begin, y, h, weights, rates, rows, count, out)
 
 
-@kernel
+@subroutine
 def frame_at(t, view, frame):
     """Write position and velocity of the vectors' reference frame."""
     start, origin, drift = view
@@ -100,7 +100,7 @@ def frame_at(t, view, frame):
         frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
 
 
-@kernel
+@subroutine
 def rate_of(t, y, f, system, pairs):
     """Write the rate of the vector y into f; list pairs again unless the list is still complete."""
     n, m, law, frame, (reach, skin) = system.order.size, system.frame.shape[1], system.law, system.frame, system.reach
@@ -117,7 +117,7 @@ def rate_of(t, y, f, system, pairs):
     )  # fmt: skip
 
 
-@kernel
+@subroutine
 def energy_of(t, y, system, pairs):
     """Return the energy H of a vector with listed pairs: potential plus kinetic energy in the law's frame."""
     n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
@@ -134,7 +134,7 @@ def energy_of(t, y, system, pairs):
     )  # fmt: skip
 
 
-@kernel
+@subroutine
 def stages_of(step, method, begin, end, system, pairs):
     """Compute stages `begin` to `end` of a step; `reached` is its end after the last stage."""
     rows, rates = method.rows, step.rates
@@ -148,8 +148,8 @@ def stages_of(step, method, begin, end, system, pairs):
 
 
 @inlined
-def interpolated(theta, step, method):
-    """Write the vector at a share θ of the step into the step's spare array."""
+def interpolated(theta, step, method, combining):
+    """Write the vector at a share θ of the step into the step's spare array by `combine` or its callback."""
     interpolant = method.interpolant
     count, powers = interpolant.shape
     weights = np.empty(count)
@@ -157,7 +157,7 @@ def interpolated(theta, step, method):
         weights[j] = 0.0
         for k in range(powers - 1, -1, -1):
             weights[j] = (weights[j] + interpolant[j, k]) * theta
-    combine(step.y, step.h, weights, step.rates, method.rows, count, step.trial)
+    combining(step.y, step.h, weights, step.rates, method.rows, count, step.trial)
 
 
 @inlined
@@ -190,7 +190,7 @@ def error_of(step, method):
     return h * fifth / sqrt((fifth + 0.01 * third) * y.size) if fifth != 0.0 or third != 0.0 else 0.0
 
 
-@kernel
+@subroutine
 def _weighed(a, b, y, method):
     """Return the root mean square of a − b relative to the tolerance."""
     total = 0.0

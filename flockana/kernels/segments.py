@@ -6,7 +6,7 @@ and are handed back as UNSURE where it does not.
 
 import numpy as np
 
-from flockana.jit import kernel
+from flockana.jit import kernel, subroutine
 
 UNSURE = 2
 _TURN = 3.5 * 2.0**-53  # Shewchuk's bounds are (3 + 16u)u and (7 + 56u)u; the rest is slack for subnormal products
@@ -15,7 +15,7 @@ _DOT = 8.0 * 2.0**-53
 _TINY = 1e-280  # below, products may have underflowed
 
 
-@kernel
+@subroutine
 def turn(a0, a1, b0, b1, c0, c1):
     """Return the sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE within rounding.
 
@@ -34,7 +34,7 @@ def turn(a0, a1, b0, b1, c0, c1):
     return UNSURE
 
 
-@kernel
+@subroutine
 def _volume(a, b, c, d):
     """Return the sign of the volume of a tetrahedron abcd: 1, −1 or 0, or UNSURE within rounding."""
     u, v, w = a - d, b - d, c - d
@@ -67,7 +67,7 @@ def meet(c, d, a, b):
     return 1  # each line is met by the other segment; four points on one line have overlapping boxes
 
 
-@kernel
+@subroutine
 def _overlap(a, b, c, planes):
     """Return whether the links a–b and a–c of one agent run the same way and overlap."""
     unsure = False
@@ -88,7 +88,7 @@ def _overlap(a, b, c, planes):
     return 1 if not unsure and size > _TINY and dot > _DOT * size else UNSURE
 
 
-@kernel
+@subroutine
 def cross(x, i, j, g, h, planes):
     """Return whether the links i–j and g–h cross: 1, 0, or UNSURE within rounding.
 
@@ -127,21 +127,23 @@ def cross(x, i, j, g, h, planes):
     return answer
 
 
-@kernel
+@subroutine
 def foot(p, a, b):
     """Return the distance of a point from a segment."""
     along, size = 0.0, 0.0
     for k in range(3):
-        along += (p[k] - a[k]) * (b[k] - a[k])
-        size += (b[k] - a[k]) ** 2
+        way = b[k] - a[k]
+        along += (p[k] - a[k]) * way
+        size += way * way
     s = min(1.0, max(0.0, along / size)) if size > 0.0 else 0.0
     far = 0.0
     for k in range(3):
-        far += (p[k] - a[k] - s * (b[k] - a[k])) ** 2
+        off = p[k] - a[k] - s * (b[k] - a[k])
+        far += off * off
     return np.sqrt(far)
 
 
-@kernel
+@subroutine
 def between(a, b, c, d):
     """Return the distance of two segments that do not cross, at an end or along their common normal."""
     nearest = min(min(foot(a, c, d), foot(b, c, d)), min(foot(c, a, b), foot(d, a, b)))
@@ -155,7 +157,8 @@ def between(a, b, c, d):
         if 0.0 < s < 1.0 and 0.0 < t < 1.0:
             gap = 0.0
             for k in range(3):
-                gap += (c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])) ** 2
+                off = c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])
+                gap += off * off
             nearest = min(nearest, np.sqrt(gap))
     return nearest
 

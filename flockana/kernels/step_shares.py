@@ -12,7 +12,7 @@ from flockana.kernels.neighbours import fill_from_grid
 from flockana.kernels.pole_crossings import crossing_listed
 from flockana.kernels.quintic_paths import bernstein
 from flockana.kernels.runge_kutta import frame_at
-from flockana.kernels.verlet import COUNT, CROWDED, SKIN, covers
+from flockana.kernels.verlet import COUNT, CROWDED, SKIN
 
 # Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list.
 BODIES = True  # bound
@@ -91,8 +91,8 @@ def share_of_step(t, ends, around, view, kept, near):
             if not around.radii.size:
                 return share
         rows_kept = kept
-        if not covers(kept, ends.q0, between[1]):
-            if not covers(near, ends.q0, between[1]):
+        if not around.covers(kept, ends.q0, between[1]):
+            if not around.covers(near, ends.q0, between[1]):
                 around.listed(ends.q0, (1.0 + SKIN) * between[1], near)
             rows_kept = near
         count = rows_kept.counts[COUNT]

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel, register_jitable
-from flockana.kernels.agent_sums import put, slope_along
+from flockana.jit import inlined, kernel, register_jitable, subroutine
+from flockana.kernels.agent_sums import slope_along
 from flockana.kernels.grid import empty_cuts, sort_into_grid
 
 
@@ -75,7 +75,7 @@ def list_cells(x, grid, limit, cells, lists, count):
     return count
 
 
-@kernel
+@subroutine
 def list_pairs(q, reach, first, second):
     """Write the pairs closer than `reach` into two arrays; return their count.
 
@@ -121,10 +121,12 @@ def covers(pairs, q, within):
     return False
 
 
-@kernel
+@subroutine
 def noted(count, q, reach, pairs):
     """Record the positions of a new list, and return its count."""
-    put(q, pairs.places)
+    for i in range(q.shape[0]):
+        for c in range(q.shape[1]):
+            pairs.places[i, c] = q[i, c]
     pairs.reach[0] = reach if count >= CROWDED else 0.0
     pairs.counts[COUNT] = count
     pairs.counts[MADE] += 1

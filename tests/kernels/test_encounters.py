@@ -48,7 +48,7 @@ def around(radii):
     """No poles and no obstacles."""
     none, edges = np.empty(0, np.uint32), (float(radii.min()), float(radii.max()))
     return Around(
-        radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0), None
+        radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0), None, None
     )
 
 

@@ -57,7 +57,7 @@ def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
             assert error == pytest.approx(expected, rel=1e-9)
     dense = theirs.dense_output()
     for theta in (0.1, 0.5, 0.93, 1.0):
-        interpolated(theta, step, method)
+        interpolated(theta, step, method, combine)
         np.testing.assert_allclose(out, dense(0.3 + theta * h), rtol=1e-13, atol=1e-14)
 
 
