@@ -15,6 +15,7 @@ from flockana.base.errors import ArgumentError
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues
 from flockana.jit import thawed
 from flockana.kernels.grid import LARGE
+from flockana.kernels.little_work import for_little
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.pair_lift import PairKernels
 from flockana.kernels.scalars import sigma_norm
@@ -43,7 +44,7 @@ def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> Inne
     """Return `DistanceFunction.inner` of compiled functions with their parameters."""
     line = np.append(0.0, np.sqrt(s2))[:, None]
     ends = np.arange(1, line.size, dtype=np.int64)
-    w, a, bend = kernels.terms(line, np.zeros_like(ends), ends, par)
+    w, a, bend = for_little(kernels.terms, 8 * ends.size)(line, np.zeros_like(ends), ends, par)
     slope = kernels.adjacency_slope
     return w, a, bend, np.full_like(w, np.nan) if slope is None else slope(s2, par)
 
@@ -275,7 +276,8 @@ class PairInteraction(DistanceFunction):
             delta = q[j] - q[i]
             if not self.coincidence:
                 _ensure_apart(i, j, delta)
-            matrices.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
+            terms = for_little(self.kernels.terms, 8 * i.size)(q, i, j, self.par)
+            matrices.append((i.copy(), j.copy(), block_of(i, j, delta, terms)))
         if not matrices:
             return csr_array((n * m, n * m))
         i, j, blocks = (np.concatenate(each) for each in zip(*matrices, strict=True))

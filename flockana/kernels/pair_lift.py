@@ -14,6 +14,7 @@ import numpy as np
 from flockana.jit import Kernel, thawed
 from flockana.kernels.blocks import APART, as_tuple
 from flockana.kernels.bound_templates import bound
+from flockana.kernels.little_work import for_little
 
 _ROOM = "flockana.kernels."
 
@@ -87,6 +88,7 @@ def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
     def over_array(z: Any, *parameters: Any) -> Any:
         if not row:  # bound, and numba loaded, at the first call
             row.append(bound(_ROOM + "over_array", function=function).over_array)
-        return row[0](z, tuple(thawed(each) if isinstance(each, np.ndarray) else float(each) for each in parameters))
+        numbers = tuple(thawed(each) if isinstance(each, np.ndarray) else float(each) for each in parameters)
+        return for_little(row[0], 4 * z.size)(z, numbers)
 
     return over_array

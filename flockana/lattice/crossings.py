@@ -24,6 +24,7 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import scaled_near_one
 from flockana.jit import thawed
+from flockana.kernels.little_work import for_little
 from flockana.kernels.segments import UNSURE, crossing_signs, meet, nearest_links
 from flockana.measures.nets import LinkArray
 
@@ -68,7 +69,7 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     exact, x, planes = _Exact(q, links), _padded(_squarable(q)), 3 if q.shape[1] == 3 else 1
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b in _close_links(x, links, 0.0):
-        signs = crossing_signs(x, thawed(links), a, b, planes)
+        signs = for_little(crossing_signs, 4 * a.size)(x, thawed(links), a, b, planes)
         for k in np.flatnonzero(signs == UNSURE):
             signs[k] = exact.cross(int(a[k]), int(b[k]))
         blocks.append(np.column_stack([a, b])[signs == 1].astype(np.int32))
@@ -219,6 +220,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     near, (within,), unit = scaled_near_one(q, reach)
     x, best = _padded(near), None
     for a, b in _close_links(x, links, within):
-        within, k = nearest_links(x, thawed(links), a, b, q.shape[1] < 3, within)
+        within, k = for_little(nearest_links, 8 * a.size)(x, thawed(links), a, b, q.shape[1] < 3, within)
         best = best if k < 0 else (int(a[k]), int(b[k]))
     return Separation(within * unit, best)
