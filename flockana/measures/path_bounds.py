@@ -12,14 +12,8 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.kernels import quintic_paths
 from flockana.kernels.neighbours import DENSE_MAX, pair_blocks
-from flockana.kernels.quintic_paths import (
-    closest_of_few,
-    closest_pair,
-    control_points,
-    farthest_in_turn,
-    touching_pairs,
-)
 from flockana.measures.metrics import cohesion_radii, min_distances
 
 States = tuple[FloatArray, FloatArray, FloatArray]  # q, p, u over time
@@ -73,16 +67,18 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
     q, p, u = (np.ascontiguousarray(x) for x in states)
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
-        approach = closest_of_few(t, (q, p, u), slack, stops, tols)
+        approach = quintic_paths.closest_of_few(t, (q, p, u), slack, stops, tols)
         near = np.flatnonzero(approach[3] >= 0)
         yield from zip(near.tolist(), *(each[near].tolist() for each in approach), strict=True)
         return
     for k in np.flatnonzero(stops).tolist():
-        points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        points, reach, allowance = quintic_paths.control_points(
+            t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1]
+        )
         reach, allowance, stop = reach + slack[k], allowance + slack[k], float(stops[k])
         for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
             tol = max(RELATIVE_TOL * stop, noises[k])
-            low, distance, at, a, b = closest_pair(points, reach, allowance, i, j, stop, tol)
+            low, distance, at, a, b = quintic_paths.closest_pair(points, reach, allowance, i, j, stop, tol)
             if a >= 0:
                 stop = low
                 yield k, low, distance, at, a, b
@@ -104,7 +100,7 @@ def cohesion_bound(
     floors, noises = np.maximum(radii[:-1], radii[1:]), ROUNDING * np.maximum(extents[:-1], extents[1:])
     slack = np.zeros((len(floors), q.shape[1])) if slack is None else slack
     states = tuple(np.ascontiguousarray(x) for x in (q, p, u))
-    return farthest_in_turn(t, states, slack, floors, np.maximum(RELATIVE_TOL * floors, noises))
+    return quintic_paths.farthest_in_turn(t, states, slack, floors, np.maximum(RELATIVE_TOL * floors, noises))
 
 
 @dataclass(frozen=True)
@@ -125,10 +121,10 @@ def contacts(
     first: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1) if intervals is None else intervals:
         h = t[k + 1] - t[k]
-        points, reach, _ = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        points, reach, _ = quintic_paths.control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
         for i, j in pair_blocks(q[k], tol + 2.0 * float(reach.max())):
             at = np.empty(i.size)
-            touching_pairs(points, reach, i, j, tol, at)
+            quintic_paths.touching_pairs(points, reach, i, j, tol, at)
             hit = at >= 0.0
             i, j, shares = i[hit], j[hit], at[hit].tolist()
             for a, b, share in zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), shares, strict=True):

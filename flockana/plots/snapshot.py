@@ -14,14 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_finite_scalar,
-    ensure_links,
-    ensure_points,
-    ensure_positive,
-    ensure_series,
-)
+from flockana.base import checks
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
@@ -72,18 +65,18 @@ def snapshot(
     return axes_drawn
 
 
-def nearest_sample(t: FloatArray, time: float | None) -> int:
+def nearest_sample(t: checks.FloatArray, time: float | None) -> int:
     """Return the index of the sample nearest to a time; the last by default."""
     if time is None:
         return len(t) - 1
-    when, first, last = ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
+    when, first, last = checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
     room = _ROUNDING * (last - first)
     if not first - room <= when <= last + room:
         raise ArgumentError(f"time = {when:g}: expected a time of the run, {first:g} to {last:g}")
     return int(np.argmin(np.abs(t - when)))
 
 
-def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
+def _range_circles(ax: Any, q: checks.FloatArray, law: Any) -> None:
     """Draw circles at the range of the pair law, or of each agent."""
     if law.pair is None or not np.isfinite(law.pair.range) or q.shape[1] != 2:
         raise ArgumentError(
@@ -122,7 +115,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 
 
 @singledispatch
-def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
+def in_view(law: Any, trajectory: Trajectory) -> checks.FloatArray:
     """Return points that must be visible in a film of a run, shape (N, m)."""
     corners = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
@@ -168,9 +161,9 @@ def configuration(
     bar : bool
         Draw the colour bar of the strain.
     """
-    points = ensure_points("q", q)
+    points = checks.ensure_points("q", q)
     m = points.shape[1]
-    pairs = None if edges is None else ensure_links(edges, len(points), "edges")
+    pairs = None if edges is None else checks.ensure_links(edges, len(points), "edges")
     d = None if d is None else _lengths(d, pairs)
     axes = ensure_axes(ax, m=m)
     x = in_plane(points)
@@ -199,14 +192,14 @@ def configuration(
 def _lengths(d: Any, pairs: Any) -> Any:
     """Return desired distances: one number > 0, or one for each edge."""
     if pairs is None or np.isscalar(d):
-        return ensure_positive("d", d)
-    lengths = ensure_series("d", d, len(pairs))
+        return checks.ensure_positive("d", d)
+    lengths = checks.ensure_series("d", d, len(pairs))
     if not (lengths > 0.0).all():
         raise ArgumentError(f"d has the entry {lengths.min():g}: expected numbers > 0")
     return lengths
 
 
-def _multiplicities(ax: Any, x: FloatArray) -> None:
+def _multiplicities(ax: Any, x: checks.FloatArray) -> None:
     """Write ×k beside each position shared by k agents."""
     extent = float(np.ptp(x, axis=0).max())
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
@@ -218,7 +211,9 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
         ax.text(*x[here].mean(axis=0), f"  ×{here.sum()}", zorder=5, **look)
 
 
-def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
+def _links(
+    ax: Any, x: checks.FloatArray, points: checks.FloatArray, pairs: Any, d: Any, r: float | None, bar: bool
+) -> None:
     """Draw links coloured by strain; the scale ends at the breaking strain, at most 1."""
     # Where agents have many, links are thin, and those near d lie above the others.
     if len(pairs) == 0:
@@ -237,7 +232,7 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: fl
         colour_bar(ax, coloured, "strain (length − d)/d", extend="min" if limit < 1.0 else "max")
 
 
-def _arrowheads(ax: Any, x: FloatArray, pairs: Any) -> None:
+def _arrowheads(ax: Any, x: checks.FloatArray, pairs: Any) -> None:
     """Mark one-way links with arrowheads at their midpoints."""
     both = {tuple(pair) for pair in pairs.tolist()}
     one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in both], dtype=np.int64)
@@ -250,7 +245,7 @@ def _arrowheads(ax: Any, x: FloatArray, pairs: Any) -> None:
     ax.quiver(*(0.45 * start + 0.55 * end).T, *along.T, color=MUTED, zorder=2.2, **look, **heads)
 
 
-def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float) -> None:
+def _beta_agents(ax: Any, points: checks.FloatArray, field: ObstacleField, size: float) -> None:
     """Draw the β-agents in range, each joined to its agent."""
     near = field.links(points, np.zeros_like(points))
     if near.agent.size == 0:
@@ -263,7 +258,7 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     """Draw velocities as arrows; return a note on their scale for the title, empty without arrows."""
-    x, v = in_plane(ensure_points("q", q)), in_plane(ensure_points("p", p))
+    x, v = in_plane(checks.ensure_points("q", q)), in_plane(checks.ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest == 0.0:

@@ -4,18 +4,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana.base import checks
 from flockana.base.binomial import clopper_pearson
-from flockana.base.checks import (
-    ensure_choice,
-    ensure_count,
-    ensure_dimension,
-    ensure_fits,
-    ensure_kind,
-    ensure_positive,
-    ensure_seed,
-    ensure_series,
-    real_array,
-)
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.lattice import fcc, honeycomb, triangular
 
@@ -29,7 +19,9 @@ def message(kind, function, *arguments, **options):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("check", [ensure_positive, ensure_count, lambda name, value: ensure_seed(value)])
+@pytest.mark.parametrize(
+    "check", [checks.ensure_positive, checks.ensure_count, lambda name, value: checks.ensure_seed(value)]
+)
 def test_an_array_for_a_scalar_is_told_on_one_line(check):
     text = message(ArgumentError, check, "seed", ARRAY)
     assert text.startswith("seed = array([[ 0., 1., 2.], [ 3.,")
@@ -37,7 +29,7 @@ def test_an_array_for_a_scalar_is_told_on_one_line(check):
 
 
 def test_what_is_not_finite_and_what_is_unknown_are_told_on_one_line_too():
-    assert "\n" not in message(ArgumentError, ensure_series, "weights", np.full(50, np.nan))
+    assert "\n" not in message(ArgumentError, checks.ensure_series, "weights", np.full(50, np.nan))
     assert "\n" not in message(UnknownNameError, fl.scenario, ARRAY)
     assert format_value("two  spaces") == "'two  spaces'"
 
@@ -45,7 +37,10 @@ def test_what_is_not_finite_and_what_is_unknown_are_told_on_one_line_too():
 def test_whole_numbers_of_very_many_digits_are_told_by_their_size():
     assert (format_value(10**39), format_value(-HUGE)) == (f"{10**39}", "about -1e+400")
     assert format_value([10**5000]) == "a list that cannot be written"
-    assert message(ArgumentError, ensure_count, "n", -(10**5000)) == "n = about -1e+5000: expected a whole number >= 1"
+    assert (
+        message(ArgumentError, checks.ensure_count, "n", -(10**5000))
+        == "n = about -1e+5000: expected a whole number >= 1"
+    )
 
 
 @pytest.mark.parametrize(
@@ -54,7 +49,7 @@ def test_whole_numbers_of_very_many_digits_are_told_by_their_size():
         (fcc, (HUGE, 1, 1, 7.0)),
         (honeycomb, (HUGE, 2, 7.0)),
         (triangular, (10**5000, 7.0)),
-        (ensure_fits, ("A", (HUGE, 2), "ask for less")),
+        (checks.ensure_fits, ("A", (HUGE, 2), "ask for less")),
     ],
 )
 def test_sizes_beyond_every_float_are_refused(function, arguments):
@@ -71,9 +66,9 @@ def test_counts_beyond_every_float_are_refused():
     [
         (lambda value: fl.ZoneFlocking(form=value), "form = array([1., 2.]): expected one of "),
         (lambda value: fl.HeadingAveraging(average=value), "average = array([1., 2.]): expected one of headings, "),
-        (lambda value: ensure_choice("kind", value, ("a", "b")), "kind = array([1., 2.]): expected one of a, b"),
+        (lambda value: checks.ensure_choice("kind", value, ("a", "b")), "kind = array([1., 2.]): expected one of a, b"),
         (lambda value: fl.SineTarget((0.0, 0.0), (1.0, 0.0), 1.0, 0.1, axis=value), "axis = array([1., 2.]): expected"),
-        (ensure_dimension, "m = array([1., 2.]): expected a dimension"),
+        (checks.ensure_dimension, "m = array([1., 2.]): expected a dimension"),
     ],
 )
 def test_an_array_is_no_choice(made, text):
@@ -81,11 +76,11 @@ def test_an_array_is_no_choice(made, text):
 
 
 def test_numbers_become_an_array_and_texts_do_not():
-    assert real_array([1, 2.5]).tolist() == [1.0, 2.5]
+    assert checks.real_array([1, 2.5]).tolist() == [1.0, 2.5]
     with pytest.raises(TypeError, match="<U3 are no real numbers"):
-        real_array(["1", "2.5"])
+        checks.real_array(["1", "2.5"])
 
 
 def test_a_value_of_another_kind_is_refused_by_name():
     with pytest.raises(ArgumentError, match=r"system = None: expected a control\.StateSpace"):
-        ensure_kind("system", None, "StateSpace", "a control.StateSpace")
+        checks.ensure_kind("system", None, "StateSpace", "a control.StateSpace")

@@ -13,14 +13,7 @@ from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.tolerance import Control, ErrorFloors
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
+from flockana.environment import targets
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
@@ -34,12 +27,12 @@ from flockana.sources.li_dead_zone import DeadZoneInteraction
 from tests.programs import posix
 
 TARGETS = [
-    StaticTarget((5.0, -3.0), (0.3, 0.1)),
-    LinearTarget((20.0, 3.0), (1.5, -0.5)),
-    SineTarget((0.0, 4.0), (1.0, 0.2), amplitude=2.0, frequency=0.3, phase=0.7),
-    CircleTarget((5.0, 1.0), 8.0, frequency=0.2, phase=-0.4),
-    RescaledVelocity(StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
-    RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
+    targets.StaticTarget((5.0, -3.0), (0.3, 0.1)),
+    targets.LinearTarget((20.0, 3.0), (1.5, -0.5)),
+    targets.SineTarget((0.0, 4.0), (1.0, 0.2), amplitude=2.0, frequency=0.3, phase=0.7),
+    targets.CircleTarget((5.0, 1.0), 8.0, frequency=0.2, phase=-0.4),
+    targets.RescaledVelocity(targets.StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
+    targets.RescaledVelocity(targets.CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
 ]
 SPHERES = Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0)
 TRIANGLE = Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)])
@@ -98,9 +91,9 @@ def laws():
     yield 2, Algorithm1(DeadZoneInteraction(ramp=0.5))
     yield 2, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
     for m in (1, 3):
-        yield m, Algorithm2(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
+        yield m, Algorithm2(target=targets.LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
     for m, bodies in BODIES:
-        yield m, Algorithm3(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
+        yield m, Algorithm3(target=targets.LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
 
 
 def engine(law, q, p, plan, t=0.0):
@@ -180,7 +173,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
     """RK4's steps hang on encounters alone; the force's kink at d' makes others differ by rounding."""
     q, p = np.array([[0.0, 0.0], [0.0, 8.0]]), np.array([[21.0, 0.5], [20.0, 0.0]])
     kind = LastOfAll if beside else Algorithm3
-    law = kind(target=LinearTarget((0.0, 3.5), (20.0, 0.0)), obstacles=[*beside, body])
+    law = kind(target=targets.LinearTarget((0.0, 3.5), (20.0, 0.0)), obstacles=[*beside, body])
     stepped = Stepped(law.alpha, law.gains, law.target, law.beta, law.obstacles)
     ours, plain = (simulate(one, q, p, (0.0, 3.0), method="RK4", dt=2.0) for one in (law, stepped))
     assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
@@ -194,7 +187,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
     q, p = np.array([[0.0, 0.0], [300.0, 0.1]]), np.array([[20.0, 0.0], [-20.0, 0.0]])
-    still = {"target": StaticTarget((0.0, 0.0)), "gains": Gains(c1_gamma=0.0, c2_gamma=0.0)}
+    still = {"target": targets.StaticTarget((0.0, 0.0)), "gains": Gains(c1_gamma=0.0, c2_gamma=0.0)}
     ours, plain = (simulate(kind(**still), q, p, (0.0, 20.0), method="RK4", dt=20.0) for kind in (Algorithm2, Plain))
     assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
     np.testing.assert_allclose(ours.path.t, plain.path.t, rtol=1e-9)
@@ -219,7 +212,7 @@ def test_calls_of_one_step_make_the_same_run(monkeypatch):
 
 
 def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
-    class Told(LinearTarget):
+    class Told(targets.LinearTarget):
         """A γ-agent that lies about its velocity."""
 
         def state(self, t):
@@ -261,7 +254,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     plain = [
         Plain(target=TARGETS[1]),
         Algorithm2(target=Told((0.0, 0.0), (1.0, 0.0))),
-        Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
+        Algorithm2(target=targets.RescaledVelocity(targets.CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
         Strong(),
         Algorithm1(Weighed()),
     ]
@@ -359,7 +352,7 @@ def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_t
 
 
 def test_a_run_that_fails_says_why():
-    wild = Algorithm2(gains=Gains(c1_gamma=1e300), target=StaticTarget((0.0, 0.0)))
+    wild = Algorithm2(gains=Gains(c1_gamma=1e300), target=targets.StaticTarget((0.0, 0.0)))
     run = simulate(wild, *start(), (0.0, 10.0), method="RK4", dt=1.0)
     assert run.status == "failed"
     assert "RK4 left the finite numbers at t = " in run.message

@@ -21,17 +21,9 @@ from flockana import (
     TaylorStep,
     VelocityLaw,
     linearise,
+    stability,
 )
 from flockana.base.errors import ArgumentError
-from flockana.stability import (
-    delay_margin,
-    delay_system,
-    loss_margin,
-    rightmost_roots,
-    scalar_margin,
-    scalar_period,
-    transient_growth,
-)
 from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelaySystem, late_part
 from flockana.stability.estimates import ensure_maps, ensure_study
@@ -165,8 +157,8 @@ def test_structural_modes_leave_the_centre_out():
 
 
 def test_margins_of_one_agent_are_closed_forms():
-    assert ONE.delay_margin().delay == pytest.approx(scalar_margin(K, D).delay, rel=1e-12)
-    assert ONE.sampling_margin().period == scalar_period(K, D)[0]
+    assert ONE.delay_margin().delay == pytest.approx(stability.scalar_margin(K, D).delay, rel=1e-12)
+    assert ONE.sampling_margin().period == stability.scalar_period(K, D)[0]
     # the place alone late: ω² = K e^(−jωτ) + jωD ..., |ω² − jωD| = K
     omega = sqrt(0.5 * (-D * D + sqrt(D**4 + 4.0 * K * K)))
     margin = ONE.delay_margin(carries="positions")
@@ -181,7 +173,7 @@ def test_margins_of_one_agent_are_closed_forms():
 
 def test_links_that_are_late_one_by_one():
     """A chain: each link by itself is s² + (2s + 1) e^(−sτ); one that does not exist adds nothing."""
-    exact = scalar_margin(1.0, 2.0).delay
+    exact = stability.scalar_margin(1.0, 2.0).delay
     assert CHAIN.delay_margin(delayed="pairs", links=[(2, 1)]).delay == pytest.approx(exact, rel=1e-9)
     assert CHAIN.delay_margin(delayed="pairs", links=[(0, 2)]).delay == inf
     assert CHAIN.delay_margin(delayed="neighbours").delay == inf  # block triangular: its own state is prompt
@@ -197,14 +189,15 @@ def test_a_root_that_passes_zero_without_a_swing():
     Without damping the drift itself grows at once: s² + s − … .
     """
     one, blank = np.eye(1), np.zeros((1, 1))
-    margin = delay_margin(DelaySystem((-one, 2.0 * one), (one, blank), neutral=1))
+    margin = stability.delay_margin(DelaySystem((-one, 2.0 * one), (one, blank), neutral=1))
     assert margin.delay == pytest.approx(2.0, rel=1e-9)
     assert margin.frequency == 0.0
     roots = [
-        rightmost_roots(DelaySystem((-one, 2.0 * one), (one, blank), 1), tau, count=1)[0].real for tau in (1.9, 2.1)
+        stability.rightmost_roots(DelaySystem((-one, 2.0 * one), (one, blank), 1), tau, count=1)[0].real
+        for tau in (1.9, 2.1)
     ]
     assert roots[0] < 0.0 < roots[1]
-    assert delay_margin(DelaySystem((-one, blank), (one, blank), neutral=2)).delay == 0.0
+    assert stability.delay_margin(DelaySystem((-one, blank), (one, blank), neutral=2)).delay == 0.0
 
 
 def test_norms_and_margins_of_directed_nets():
@@ -214,7 +207,7 @@ def test_norms_and_margins_of_directed_nets():
     k, d = (float(part.toarray()[0, 0]) for part in (flock.stiffness, flock.damping))
     norms = flock.norms()
     assert norms.h2 == pytest.approx(1.0 / sqrt(2.0 * d * k), rel=1e-9)
-    assert flock.delay_margin(delayed="pairs").delay == pytest.approx(scalar_margin(k, d).delay, rel=1e-9)
+    assert flock.delay_margin(delayed="pairs").delay == pytest.approx(stability.scalar_margin(k, d).delay, rel=1e-9)
 
 
 def test_a_response_by_names():
@@ -243,8 +236,8 @@ def test_studies_of_nets_are_those_of_the_functions():
     heard = CHAIN.string_gains()
     assert heard.gains[2] == pytest.approx(heard.gains[1] ** 2, rel=1e-8)
     assert (CHAIN.passivity().passive, ONE.passivity().passive) == (False, True)
-    assert ONE.transient_growth().growth == transient_growth(ONE).growth
-    assert ONE.loss_margin(0.1, on_loss="hold") == loss_margin(ONE, 0.1, on_loss="hold")
+    assert ONE.transient_growth().growth == stability.transient_growth(ONE).growth
+    assert ONE.loss_margin(0.1, on_loss="hold") == stability.loss_margin(ONE, 0.1, on_loss="hold")
 
 
 def test_a_matlab_file(tmp_path):
@@ -264,8 +257,11 @@ test_bad_input = refused(
     (lambda: CHAIN.delay_margin(delayed="pairs", links=[(0, 3)]), "expected pairs of two different agents from 0 to 2"),
     (lambda: CHAIN.delay_margin(delayed="pairs", links=[0, 1]), "expected pairs .i, j. of agents"),
     (lambda: ONE.delay_margin(carries="noise"), "unknown quantity that is late 'noise'"),
-    (lambda: delay_system(TaylorStep(Algorithm1(), 0.1), [[0.0], [7.0]]), "TaylorStep is a map"),
-    (lambda: delay_system(AverageConsensus(np.eye(2)[::-1]), [[7.0], [7.0]]), "AverageConsensus is of first order"),
+    (lambda: stability.delay_system(TaylorStep(Algorithm1(), 0.1), [[0.0], [7.0]]), "TaylorStep is a map"),
+    (
+        lambda: stability.delay_system(AverageConsensus(np.eye(2)[::-1]), [[7.0], [7.0]]),
+        "AverageConsensus is of first order",
+    ),
     (lambda: DelaySystem((np.eye(2), np.eye(3)), (np.eye(2),) * 2), r"matrices of shapes \(2, 2\), \(3, 3\)"),
     (lambda: DelaySystem((np.eye(1), np.eye(1)), (nan * np.eye(1),) * 2), "a number that is not finite"),
 )

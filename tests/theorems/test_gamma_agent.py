@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm2, Algorithm3, Trajectory, simulate, verify
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
+from flockana.environment import targets
 from flockana.theorems.gamma_agent import consistent, declared_rate_is_true, slip, target_rests
 
 HERE, AWAY = (3.0, 1.0), (2.0, -1.0)
@@ -25,10 +18,10 @@ def run(target, t=None):
 
 
 MOVING = [
-    LinearTarget(HERE, AWAY),
-    SineTarget(HERE, AWAY, 3.0, 0.3),
-    CircleTarget(HERE, 3.0, 0.3),
-    CallableTarget(lambda t: ((np.sin(t), 1.0), (np.cos(t), 0.0)), changes_slower_than=1.0),
+    targets.LinearTarget(HERE, AWAY),
+    targets.SineTarget(HERE, AWAY, 3.0, 0.3),
+    targets.CircleTarget(HERE, 3.0, 0.3),
+    targets.CallableTarget(lambda t: ((np.sin(t), 1.0), (np.cos(t), 0.0)), changes_slower_than=1.0),
 ]
 
 
@@ -49,7 +42,7 @@ def test_a_step_of_one_rounding_is_no_interval():
 @pytest.mark.parametrize("target", MOVING[:3], ids=lambda target: type(target).__name__)
 @pytest.mark.parametrize("factor", [0.0, 0.5, 0.999, 1.001])
 def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor):
-    told = RescaledVelocity(target, factor)
+    told = targets.RescaledVelocity(target, factor)
     speed = np.linalg.norm([target.rate(t) for t in np.linspace(0.0, 5.0, 400)], axis=1).max()
     found = consistent(run(told))
     assert found.status == "unmet"
@@ -60,17 +53,17 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
 
 def test_rest_and_the_velocity_that_is_told_beside_it():
     for told, status in (((0.0, 0.0), "met"), (AWAY, "unmet")):
-        found = [target_rests(run(StaticTarget(HERE, told)), any_p_r=some).status for some in (True, False)]
+        found = [target_rests(run(targets.StaticTarget(HERE, told)), any_p_r=some).status for some in (True, False)]
         assert found == ["met", status]
-    assert target_rests(run(LinearTarget(HERE, (0.0, 0.0))), any_p_r=False).status == "met"
-    assert consistent(run(StaticTarget(HERE, AWAY))).status == "unmet"
+    assert target_rests(run(targets.LinearTarget(HERE, (0.0, 0.0))), any_p_r=False).status == "met"
+    assert consistent(run(targets.StaticTarget(HERE, AWAY))).status == "unmet"
 
 
 def test_a_function_that_was_seen_at_rest_but_for_rounding_is_assumed_to_be():
-    found = target_rests(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), any_p_r=False)
+    found = target_rests(run(targets.CallableTarget(lambda t: (HERE, (0.0, 0.0)))), any_p_r=False)
     assert found.status == "assumed"
     assert "as seen at 561 times" in found.detail  # 41 samples, 40 middles and six points in each of 80 halves
-    noisy = CallableTarget(lambda t: ((5.0 * np.cos(t) ** 2 + 5.0 * np.sin(t) ** 2, 1.0), (0.0, 0.0)))
+    noisy = targets.CallableTarget(lambda t: ((5.0 * np.cos(t) ** 2 + 5.0 * np.sin(t) ** 2, 1.0), (0.0, 0.0)))
     assert target_rests(run(noisy), any_p_r=False).status == "assumed"
 
 
@@ -80,9 +73,9 @@ def test_a_function_is_assumed_until_its_user_states_how_slowly_it_changes():
         return (np.sin(t), 1.0), (np.cos(t), 0.0)
 
     for slow, status in ((None, "assumed"), (1.0, "met"), (1e-5, "assumed")):  # the last asks for 2e6 times
-        target = CallableTarget(path, changes_slower_than=slow)
+        target = targets.CallableTarget(path, changes_slower_than=slow)
         assert consistent(run(target)).status == declared_rate_is_true(run(target)).status == status
-    still = CallableTarget(lambda t: (HERE, AWAY), changes_slower_than=0.1)
+    still = targets.CallableTarget(lambda t: (HERE, AWAY), changes_slower_than=0.1)
     assert target_rests(run(still), any_p_r=True).status == "met"
     assert consistent(run(still)).status == "unmet"
 
@@ -90,26 +83,28 @@ def test_a_function_is_assumed_until_its_user_states_how_slowly_it_changes():
 def test_closed_forms_decide_where_the_samples_see_nothing():
     """Samples, and Gauss nodes of whole periods, see a circle at rest; the subclass has the name and another motion."""
     whole = np.linspace(0.0, 4.0, 5)
-    circle = RescaledVelocity(CircleTarget(HERE, 3.0, 2.0), 0.3)
+    circle = targets.RescaledVelocity(targets.CircleTarget(HERE, 3.0, 2.0), 0.3)
     assert target_rests(run(circle, whole), any_p_r=True).status == "unmet"
     assert consistent(run(circle, whole)).status == "unmet"
-    other = type("StaticTarget", (StaticTarget,), {"state": lambda self, t: (np.sin(2 * np.pi * t) * np.ones(2), HERE)})
+    other = type(
+        "StaticTarget", (targets.StaticTarget,), {"state": lambda self, t: (np.sin(2 * np.pi * t) * np.ones(2), HERE)}
+    )
     assert (other(HERE).consistent, other(HERE).constant_velocity) == (None, None)
     assert target_rests(run(other(HERE, AWAY), [0.0, 0.3, 1.0]), any_p_r=True).status == "unmet"
 
 
 @pytest.mark.parametrize("between", [0.02, 0.11])
 def test_a_jump_between_two_samples_is_seen(between):
-    jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
+    jumps = targets.CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
     assert target_rests(run(jumps), any_p_r=False).status == "unmet"
     assert consistent(run(jumps)).status == "unmet"
 
 
 def test_a_motion_that_vanishes_at_every_sample_is_seen_and_samples_too_sparse_leave_it_open():
     h = 5.0 / 40.0
-    between = CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
+    between = targets.CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
     assert target_rests(run(between), any_p_r=True).status == "unmet"
-    fast = CallableTarget(CircleTarget(HERE, 3.0, 7.3).state)
+    fast = targets.CallableTarget(targets.CircleTarget(HERE, 3.0, 7.3).state)
     assert consistent(run(fast, np.linspace(0.0, 5.0, 4))).status == "assumed"
     assert slip(run(MOVING[0], [1.0]), lambda t: np.zeros(2))[1] == np.inf
 
@@ -118,7 +113,7 @@ def test_a_motion_that_vanishes_at_every_sample_is_seen_and_samples_too_sparse_l
 @pytest.mark.parametrize("instants", [[0.0, 1.0, 2.0, 3.0], None], ids=["sparse", "default"])
 def test_a_jump_between_samples_is_seen_at_the_solver_s_steps(instants, options):
     """The target is away for 1.2 < t < 1.3 only, and rests at all whole times."""
-    jumps = CallableTarget(lambda t: ((400.0 if 1.2 < t < 1.3 else 0.0, 0.0), (0.0, 0.0)))
+    jumps = targets.CallableTarget(lambda t: ((400.0 if 1.2 < t < 1.3 else 0.0, 0.0), (0.0, 0.0)))
     q = np.array([[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]])
     seen = simulate(Algorithm3(target=jumps), q, 0.0 * q, (0.0, 3.0), t_eval=instants, **options)
     verdict = verify("energy", seen)
