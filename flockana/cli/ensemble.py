@@ -85,13 +85,7 @@ def ensemble_command(
 
 
 def read_options(texts: list[str]) -> dict[str, Any]:
-    """Parse options ``NAME=VALUES``: numbers, truth values or texts, and lists of several.
-
-    Examples
-    --------
-    >>> read_options(["n=20,40", "push=true", "ratio=1e-3"])
-    {'n': [20, 40], 'push': True, 'ratio': 0.001}
-    """
+    """Parse options ``NAME=VALUES``: numbers, truth values or texts, and lists of several."""
     options: dict[str, Any] = {}
     for text in texts:
         name, _, values = text.partition("=")

@@ -93,13 +93,7 @@ def falsify_command(
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
-    """Return the bounds of the parameters to vary, by name, from the option's text.
-
-    Examples
-    --------
-    >>> read_ranges(["gains.c1_gamma=0.1,10"])
-    {'gains.c1_gamma': (0.1, 10.0)}
-    """
+    """Return the bounds of the parameters to vary, by name, from the option's text."""
     ranges: dict[str, tuple[float, float]] = {}
     for text in texts:
         name, _, bounds = text.partition("=")

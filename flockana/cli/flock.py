@@ -34,12 +34,6 @@ def read_motion(
 
     `potential` asks for a law that has one; `at` has the positions of a law in a Python file. Without a run the
     velocities are None.
-
-    Examples
-    --------
-    >>> law, q, _ = read_motion("line:3", d=2.0)
-    >>> law.title, law.alpha.d, q.ravel().tolist()
-    ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
     from flockana.cli.positions_source import ensure_source, read_source
     from flockana.cli.subject import is_own, read_law
@@ -73,12 +67,6 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
     """Print the expected time of work on a large flock to stderr; raise if it is too long.
 
     `as_given` tells whether only the modes at given positions are sought; None where there is no such choice.
-
-    Examples
-    --------
-    >>> announce_time(200_000, as_given=True)
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: n = 200000: expected at most 150000 agents
     """
     most, each = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
     if n > most:

@@ -20,9 +20,9 @@ from flockana.base.files import ensure_path, read_text_file
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
 _FILES = (".nc", ".csv", ".json")
-_BUILDERS = {"line": "N", "triangular": "N", "hexagonal-spiral": "N", "hexagonal-patch": "RINGS"}
-_BUILDERS |= {"square": "ROWSxCOLS", "honeycomb": "ROWSxCOLS"}
-_BUILDERS |= dict.fromkeys(("simple-cubic", "fcc", "hcp", "bcc"), "NXxNYxNZ")
+BUILDERS = {"line": "N", "triangular": "N", "hexagonal-spiral": "N", "hexagonal-patch": "RINGS"}
+BUILDERS |= {"square": "ROWSxCOLS", "honeycomb": "ROWSxCOLS"}
+BUILDERS |= dict.fromkeys(("simple-cubic", "fcc", "hcp", "bcc"), "NXxNYxNZ")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +40,7 @@ class Source:
 
 
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
-    """Read or build a configuration.
-
-    Examples
-    --------
-    >>> read_source("hexagonal-spiral:7").q.shape, read_source("square:2x2", d=2.0).r
-    ((7, 2), 2.4)
-    """
+    """Read or build a configuration."""
     path = ensure_path(name)
     d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
     law: Any = None
@@ -74,13 +68,7 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
 
 
 def integrated_law(law: Any) -> Any:
-    """Return the continuous law behind a scheme; other laws and None unchanged.
-
-    Examples
-    --------
-    >>> integrated_law(None) is None
-    True
-    """
+    """Return the continuous law behind a scheme; other laws and None unchanged."""
     return law.continuous if getattr(law, "approximates", False) else law
 
 
@@ -113,38 +101,16 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, FloatArray, Any
 
 
 def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
-    """Raise on a name that is neither an existing file nor a builder.
-
-    Examples
-    --------
-    >>> ensure_source("line:3")
-    """
+    """Raise on a name that is neither an existing file nor a builder."""
     path, builder = ensure_path(name), name.partition(":")[0]
-    if path.suffix not in _FILES and builder not in _BUILDERS and not os.path.exists(path):
-        raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *_BUILDERS))
-
-
-def builders() -> tuple[str, ...]:
-    """Return every builder with the format of its size argument.
-
-    Examples
-    --------
-    >>> builders()[0]
-    'line:N'
-    """
-    return tuple(f"{name}:{form}" for name, form in _BUILDERS.items())
+    if path.suffix not in _FILES and builder not in BUILDERS and not os.path.exists(path):
+        raise UnknownNameError("scenario, file or builder" if more else "file or builder", builder, (*more, *BUILDERS))
 
 
 def build(text: str, d: float) -> tuple[FloatArray, float]:
-    """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
-
-    Examples
-    --------
-    >>> build("line:3", 7.0)
-    (array([[ 0.], [ 7.], [14.]]), 2.0)
-    """
+    """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice."""
     name, _, size = text.partition(":")
-    form, function = _BUILDERS[name], name.replace("-", "_")
+    form, function = BUILDERS[name], name.replace("-", "_")
     numbers = size.split("x")
     if len(numbers) != len(form.split("x")) or not all(k.isascii() and k.isdigit() for k in numbers):
         raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")

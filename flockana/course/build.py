@@ -151,13 +151,7 @@ def exercises(source: Path) -> Iterator[Exercise]:
 
 
 def asked(check: str) -> tuple[str, str]:
-    """Return the variable in an exercise's check, and the form of the answer.
-
-    Examples
-    --------
-    >>> asked('grade(jump, 1.0, hint="one-sided limits")')
-    ('jump', 'number')
-    """
+    """Return the variable in an exercise's check, and the form of the answer."""
     *before, last = ast.parse(check).body
     match last:
         case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:
@@ -171,15 +165,7 @@ def asked(check: str) -> tuple[str, str]:
 
 
 def form_check(check: str) -> str:
-    """Return the check in a student's copy, which tests the form of the answer only.
-
-    Examples
-    --------
-    >>> print(form_check('grade(jump, 1.0, hint="one-sided limits")'))
-    from flockana.course import answered
-    <BLANKLINE>
-    answered(jump, "number")
-    """
+    """Return the check in a student's copy, which tests the form of the answer only."""
     name, form = asked(check)
     return f'from flockana.course import answered\n\nanswered({name}, "{form}")'
 

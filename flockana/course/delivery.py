@@ -19,19 +19,7 @@ def notebook_bytes(book: Any) -> bytes:
 
 
 def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
-    """Write files into a folder, or none if one exists there with other content.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     first = deliver(folder, {"map.md": b"as it is delivered"})
-    ...     again = deliver(folder, {"map.md": b"as it is delivered"})
-    ...     _ = first[0].write_text("with notes")
-    ...     deliver(folder, {"map.md": b"as it is delivered"})
-    Traceback (most recent call last):
-    flockana.base.errors.FileError: ...map.md exists with other content: ...
-    """
+    """Write files into a folder, or none if one exists there with other content."""
     home = ensure_path(folder, action="write to", remedy=_REMEDY)
     paths = {home / name: content for name, content in files.items()}
     missing = [path for path, content in paths.items() if not _is_there(path, content)]

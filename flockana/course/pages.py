@@ -35,13 +35,7 @@ class Lecture:
 
 
 def number_of(source: Path) -> str:
-    """Return the number of a lecture from its file name.
-
-    Examples
-    --------
-    >>> number_of(Path("00a_graphs_and_lyapunov.py"))
-    '00a'
-    """
+    """Return the number of a lecture from its file name."""
     return source.stem.partition("_")[0]
 
 
@@ -148,17 +142,7 @@ def fold_depth(cells: list[Any], lecture: Lecture) -> None:
 
 
 def fold(title: str, text: str) -> str:
-    """Return text that is folded under its title until clicked.
-
-    Examples
-    --------
-    >>> print(fold("Proof", "Add up.").strip())
-    <details><summary>Proof</summary>
-    <BLANKLINE>
-    Add up.
-    <BLANKLINE>
-    </details>
-    """
+    """Return text that is folded under its title until clicked."""
     return f"\n<details><summary>{title}</summary>\n\n{text.strip()}\n\n</details>\n\n"
 
 

@@ -10,13 +10,7 @@ from flockana.recorded.recording import Recording
 
 
 def unknown_program(seed: int = 0) -> Recording:
-    """Return the exact log of seven agents under Algorithm 1 with a friction that the seed chooses.
-
-    Examples
-    --------
-    >>> unknown_program().q.shape
-    (201, 7, 2)
-    """
+    """Return the exact log of seven agents under Algorithm 1 with a friction that the seed chooses."""
     generator = np.random.default_rng([seed, 15])
     law = Algorithm1(gains=Gains(c1_alpha=30.0, c2_alpha=float(generator.integers(20, 80)) / 10.0))
     start = hexagonal_patch(1, 7.1)

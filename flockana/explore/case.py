@@ -26,14 +26,7 @@ _KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
 
 @dataclass(frozen=True)
 class Case:
-    """Case of the explorer's page: a start with changed parameters and moved agents.
-
-    Examples
-    --------
-    >>> case = Case("scenario", "hexagon", duration=2.0, changes={"gains.c1_alpha": 9.0}, moved={0: (1.0, 2.0)})
-    >>> case.parts.law.gains.c1_alpha, case.parts.q0[0].tolist(), case.parts.t_span
-    (9.0, [1.0, 2.0], (0.0, 2.0))
-    """
+    """Case of the explorer's page: a start with changed parameters and moved agents."""
 
     kind: str  # what it starts from
     name: str  # of the scenario or law; a file's path
@@ -122,13 +115,7 @@ def program(parts: Start) -> str:
 
 
 def run_file(asked: Any) -> bytes:
-    """Return the run of a case as netCDF.
-
-    Examples
-    --------
-    >>> run_file({"kind": "scenario", "name": "hexagon", "duration": 0.1})[1:4]
-    b'HDF'
-    """
+    """Return the run of a case as netCDF."""
     parts = Case.of(asked).parts
     run = parts.recorded or simulate(parts.law, parts.q0, parts.p0, parts.t_span, **parts.options)
     with tempfile.TemporaryDirectory(prefix="flockana-") as folder:

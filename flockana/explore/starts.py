@@ -81,13 +81,7 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
-    """Return a law with default parameters, and agents at random in a square.
-
-    Examples
-    --------
-    >>> from_law("Algorithm1", n=7).q0.shape
-    (7, 2)
-    """
+    """Return a law with default parameters, and agents at random in a square."""
     ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
     length, end = _tried_laws()[name].length, _tried_laws()[name].span
@@ -109,13 +103,7 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=8)
 def from_scenario(name: str, *, seed: int = 0) -> Start:
-    """Return the case of a scenario of the catalogue.
-
-    Examples
-    --------
-    >>> from_scenario("hexagon").theorems[0]
-    'energy'
-    """
+    """Return the case of a scenario of the catalogue."""
     item = scenario(name, seed)
     lines = (
         f"item = fl.scenario({name!r}, seed={item.seed})",
@@ -155,13 +143,7 @@ def from_file(path: str) -> Start:
 
 @cache
 def theorems_of(law: str) -> tuple[str, ...]:
-    """Return the ids of theorems that the catalogue checks on this kind of law, errata excluded.
-
-    Examples
-    --------
-    >>> theorems_of("CuckerSmale")[0]
-    'cucker-smale'
-    """
+    """Return the ids of theorems that the catalogue checks on this kind of law, errata excluded."""
     items = (scenario(name) for name in scenarios())
     names = (name for item in items if type(item.law).__name__ == law for name in item.theorems)
     return tuple(dict.fromkeys(name for name in names if name.islower()))

@@ -30,14 +30,7 @@ class Packed:
 
 
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
-    """Return a header and arrays as bytes.
-
-    Examples
-    --------
-    >>> header, arrays = decode(encode({"n": 2}, {"q": Packed(np.array([[0.5, 1.0], [0.25, 1.5]]))}))
-    >>> header["n"], arrays["q"].tolist()
-    (2, [[0.5, 1.0], [0.25, 1.5]])
-    """
+    """Return a header and arrays as bytes."""
     entries, bodies = [], []
     for name, packed in arrays.items():
         values = np.asarray(packed.values, dtype=np.float64)

@@ -9,15 +9,7 @@ Marks = list[tuple[float, str]]
 
 
 def marks_of(run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[float] = ()) -> Marks:
-    """Return the marked instants of a run in order, each with its claims.
-
-    Examples
-    --------
-    >>> from flockana import scenario, verify
-    >>> run = scenario("hexagon").run()
-    >>> [name for _, name in marks_of(run, [verify("os-1", run)])]
-    ['os-1 iii, os-1 iii-barrier', 'os-1 ii']
-    """
+    """Return the marked instants of a run in order, each with its claims."""
     marks: dict[float, list[str]] = {float(time): ["as in the source"] for time in instants}
     for verdict in verdicts:
         for claim in verdict.claims:

@@ -33,13 +33,7 @@ def style() -> str:
 
 
 def text_of(data: bytes) -> str:
-    """Return bytes as text that can be embedded in a page.
-
-    Examples
-    --------
-    >>> text_of(b"FLK1")
-    'RkxLMQ=='
-    """
+    """Return bytes as text that can be embedded in a page."""
     return base64.b64encode(data).decode("ascii")
 
 

@@ -8,7 +8,7 @@ from PIL import Image
 
 from flockana import Algorithm1, AlphaInteraction, Trajectory
 from flockana.base.errors import SolverError
-from flockana.cli.positions_source import builders, read_source
+from flockana.cli.positions_source import BUILDERS, read_source
 from flockana.lattice import hexagonal_patch, links
 from tests.programs import out_of_a_kernel
 
@@ -90,8 +90,7 @@ def test_a_csv_is_read_with_and_without_a_header(found, tmp_path, text):
 
 
 def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is_heeded():
-    for form in builders():
-        name, size = form.split(":")
+    for name, size in BUILDERS.items():
         given = read_source(f"{name}:" + "x".join("2" for _ in size.split("x")), d=3.0)
         lengths = [np.linalg.norm(given.q[i] - given.q[j]) for i, j in links(given.q, 3.0 * given.max_ratio)]
         np.testing.assert_allclose(lengths, 3.0, rtol=1e-12, err_msg=name)
@@ -169,7 +168,7 @@ def test_the_table_fits_in_80_columns_and_help_lists_the_builders(call):
     assert max(map(len, out.splitlines())) <= 80
     assert "\x1b" not in out
     shown = call("--help")[1]
-    assert all(form.split(":")[0] + ":" in shown for form in builders())
+    assert all(f"{name}:" in shown for name in BUILDERS)
 
 
 def test_the_commands_load_nothing_heavy():
