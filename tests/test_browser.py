@@ -265,7 +265,6 @@ def test_a_widget_leaves_the_kernel_whole_and_its_time_goes_both_ways(visit, tmp
     assert (buffer["path"], buffer["encoding"]) == (["data"], "base64")
     header, arrays = decode(base64.b64decode(buffer["data"]))
     assert (header["n"], arrays["t"][-1]) == (3, 2.0)
-
     (tmp_path / "empty.html").write_text('<!doctype html><html lang="en"><title>A notebook</title><body></body></html>')
     tab = visit(tmp_path / "empty.html")
     state = model["state"]

@@ -39,7 +39,6 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
         parts = case.parts
         send("form", form(case, parts))
         ensure_small(parts)
-
         show, saved = partial(send, "run"), parts.recorded
         run = shown(saved, show) if saved is not None else watched(parts, show, limit=limit, cancelled=cancelled)
         send("ran", {"status": run.status, "message": run.message, "samples": len(run.t)})

@@ -157,7 +157,6 @@ def _picture(entries: Sequence[ScenarioShares]) -> Picture | None:
     rows = {f"{entry.options or entry.scenario}: {row.claim}": row for entry in entries for row in entry.rows}
     if not rows:
         return None
-
     both = {of: [getattr(row, of) for row in rows.values()] for of in ("verified", "refuted")}
     shares = {of: np.array([(each.share, each.low, each.high) for each in share]).T for of, share in both.items()}
     runs = [each.runs for each in both["verified"]]

@@ -30,12 +30,10 @@ def compare(q, p, pair):
     target = LinearTarget(np.arange(1.0, m + 1), np.full(m, 0.5))
     q_r, p_r, t = np.arange(1.0, m + 1) + 0.5 * 2.0, 0.5, 2.0
     one, two = Algorithm1(alpha_of(pair), gains), Algorithm2(alpha_of(pair), gains, target)
-
     u = dense.acceleration(q, p, pair, 3.0, 0.7)
     assert np.abs(one.acceleration(t, q, p) - u).max() <= REL * max(np.abs(u).max(), 1e-300)
     u -= 0.3 * (q - q_r) + 1.9 * (p - p_r)
     assert np.abs(two.acceleration(t, q, p) - u).max() <= REL * np.abs(u).max()
-
     v, x = p - p.mean(axis=0), q - q.mean(axis=0)
     potential, dissipation = 3.0 * dense.potential(q, pair), dense.dissipation(q, p, pair)
     assert one.energy(t, q, p) == pytest.approx(potential + 0.5 * np.sum(p * p), rel=REL)

@@ -70,7 +70,6 @@ def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     assert outdated(q, 9.0, no_pairs(4, 2))
     pairs = kept(q, 10.0)
     assert pairs.counts[COUNT] == 2  # both within range and skin
-
     moved = q + np.array([100.0, -50.0])
     assert not outdated(moved, 9.0, pairs)  # a common motion is none
     moved[2] -= [0.98, 0.0]
