@@ -18,20 +18,10 @@ import nbformat
 
 from flockana.base.checks import ensure_choice
 from flockana.base.errors import ArgumentError
+from flockana.course import pages
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.grading import form_of
 from flockana.course.numbers import give_own_numbers, variants
-from flockana.course.pages import (
-    course_map,
-    entry_of,
-    fold_depth,
-    header,
-    map_page,
-    notation_page,
-    number_of,
-    number_statements,
-    references,
-)
 
 _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
@@ -79,8 +69,8 @@ def lectures() -> Path:
 
 def sources() -> list[Path]:
     """Return the lectures in teaching order."""
-    files = {number_of(path): path for path in lectures().glob("*.py")}
-    return [files[lecture.number] for lecture in course_map(lectures())]
+    files = {pages.number_of(path): path for path in lectures().glob("*.py")}
+    return [files[lecture.number] for lecture in pages.course_map(lectures())]
 
 
 def tags(cell: Any) -> list[str]:
@@ -102,16 +92,16 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
         )
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL} | ({"student": student} if student else {}))
     if student:
-        give_own_numbers(book.cells, number_of(source), variants(source.parent)[number_of(source)], student)
+        give_own_numbers(book.cells, pages.number_of(source), variants(source.parent)[pages.number_of(source)], student)
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
-    entry = entry_of(source)
-    number_statements(book.cells, entry)
-    fold_depth(book.cells, entry)
-    book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
+    entry = pages.entry_of(source)
+    pages.number_statements(book.cells, entry)
+    pages.fold_depth(book.cells, entry)
+    book.cells.insert(1, nbformat.v4.new_markdown_cell(pages.header(entry, source.parent)))
     lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
     hidden = {"tags": ["install"], "jupyter": {"source_hidden": True}}
     book.cells.insert(2, nbformat.v4.new_code_cell(lines, metadata=hidden))
-    book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
+    book.cells.append(nbformat.v4.new_markdown_cell(pages.references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
         if "check" in tags(cell) and version == "student":
@@ -174,10 +164,10 @@ def write(folder: Path, version: str = "student", *, address: str = "", student:
     """Write one version of all lectures with all imported files; with solutions, also the lecturer's pages."""
     notebooks = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
     books = {f"{name}.ipynb": notebook_bytes(book) for name, book in notebooks.items()}
-    pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
+    files = {"map.md": pages.map_page(lectures()).encode(), "notation.md": pages.notation_page(lectures()).encode()}
     if version == "solutions":
-        pages |= lecturer_pages()
-    return deliver(folder, books | pages | companions())[: len(books)]
+        files |= lecturer_pages()
+    return deliver(folder, books | files | companions())[: len(books)]
 
 
 def lecturer_pages() -> dict[str, bytes]:

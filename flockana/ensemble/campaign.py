@@ -287,7 +287,7 @@ def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, s
     """Return the key of each run, including the source of user functions."""
     shared = request.to_dict(strict=strict)
     own_names = {name for name in (request.scenario, *request.metrics) if ":" in name}
-    shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own_names)}
+    shared["own"] = {name: _file_digest(resolve_name(name), name, strict) for name in sorted(own_names)}
     margins = {f"claim {each.id}": getattr(each.check, "margin", each.check) for each in request.own}
     starts = {} if request.flock is None else {key: getattr(request.flock, key) for key in ("q0", "p0")}
     for key, function in (margins | {key: start for key, start in starts.items() if callable(start)}).items():
@@ -307,10 +307,6 @@ def _written(function: Any, name: str, strict: bool) -> list[Any]:
             raise ArgumentError(f"{name}: its function holds a value that a store cannot write: {error}") from None
         values = repr(held)
     return [getattr(getattr(function, "__code__", None), "co_firstlineno", 0), values]
-
-
-def _source_digest(name: str, *, strict: bool) -> str:
-    return _file_digest(resolve_name(name), name, strict)
 
 
 def _file_digest(function: Any, name: str, strict: bool) -> str:

@@ -6,14 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
-from flockana.base.checks import (
-    ensure_choice,
-    ensure_kind,
-    ensure_positive,
-    ensure_seed,
-    ensure_time_span,
-    ensure_vector,
-)
+from flockana.base import checks
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.explore.parameters import changed, expression, tree_of
@@ -39,12 +32,12 @@ class Case:
     moved: Mapping[int, Any] = field(default_factory=dict)  # places of agents by number
 
     def __post_init__(self) -> None:
-        ensure_choice("kind", self.kind, KINDS)
-        ensure_kind("name", self.name, str, "a text")
-        ensure_seed(self.seed)  # n and m are checked where a law gets its flock
+        checks.ensure_choice("kind", self.kind, KINDS)
+        checks.ensure_kind("name", self.name, str, "a text")
+        checks.ensure_seed(self.seed)  # n and m are checked where a law gets its flock
         if self.duration is not None:
-            ensure_positive("duration", self.duration)
-        ensure_kind("changes", self.changes, Mapping, "values by name")
+            checks.ensure_positive("duration", self.duration)
+        checks.ensure_kind("changes", self.changes, Mapping, "values by name")
 
     @classmethod
     def of(cls, asked: Any) -> Self:
@@ -75,11 +68,11 @@ class Case:
         for agent, place in sorted(self.moved.items()):
             if agent >= len(q0):
                 raise ArgumentError(f"moved agent {agent}: expected one of 0 … {len(q0) - 1}")
-            q0[agent] = ensure_vector(f"agent {agent}", place, q0.shape[1])
+            q0[agent] = checks.ensure_vector(f"agent {agent}", place, q0.shape[1])
             lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
         span, options = start.t_span, dict(start.options)
         if self.duration is not None:
-            span = ensure_time_span((span[0], span[0] + float(self.duration)))
+            span = checks.ensure_time_span((span[0], span[0] + float(self.duration)))
             options.pop("t_eval", None)  # its times are those of another span
             lines += [f"t_span = {span}", 'options.pop("t_eval", None)']
         parts: dict[str, Any] = {"law": law, "q0": q0, "t_span": span, "options": options, "lines": tuple(lines)}
@@ -108,10 +101,10 @@ def program(parts: Start) -> str:
     imports += ["import numpy as np"] if "np." in text else []
     tols = f", tolerances={parts.tolerances_text}" if parts.tolerances_text else ""
     run = ["run = saved"] if parts.recorded is not None else ["run = fl.simulate(law, q0, p0, t_span, **options)"]
-    checks = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{tols}))"] if parts.theorems else []
-    checks += ["print(*item.reported(run))"] if parts.source is not None else []
+    verdicts = [f"for name in {parts.theorems}:", f"    print(fl.verify(name, run{tols}))"] if parts.theorems else []
+    verdicts += ["print(*item.reported(run))"] if parts.source is not None else []
     head = [*imports[:1], *([""] if imports else []), *imports[1:], "import flockana as fl", ""]
-    return "\n".join([*head, text, *run, *checks]) + "\n"
+    return "\n".join([*head, text, *run, *verdicts]) + "\n"
 
 
 def run_file(asked: Any) -> bytes:

@@ -60,11 +60,8 @@ def law_names() -> tuple[str, ...]:
 def _tried_laws() -> dict[str, Candidate]:
     """Return the laws that can be tried, by the name of their class."""
     targeted = Candidate(Algorithm2, span=20.0), Candidate(Algorithm3, span=40.0)
-    return {each.law.__name__: each for each in sorted((*targeted, *candidates().values()), key=_class_name)}
-
-
-def _class_name(candidate: Candidate) -> str:
-    return candidate.law.__name__
+    by_name = {each.law.__name__: each for each in (*targeted, *candidates().values())}
+    return {name: by_name[name] for name in sorted(by_name)}
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
