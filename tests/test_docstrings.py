@@ -35,6 +35,8 @@ EVIDENT = {
     *("d", "dt", "lengths", "m", "n", "q", "p", "r", "s", "t", "z"),  # s: distances, z: σ-norms
     *("alpha", "gains", "interaction", "law", "mode", "name", "options", "seed", "t_span", "target", "tolerances"),
     "trajectory",
+    *("about", "claim", "detail", "disproof", "error", "fields", "holds", "needs", "proof", "rigour"),  # of claims
+    *("check", "fact", "remedy", "run", "solver", "steps", "verdict"),
 }
 
 

@@ -125,7 +125,9 @@ def falsify(
             )
     record = _Record()
     record.add(None, problem.graded(run, verdict))
-    _warn_of_unmet(f"{item.id} on {begin.name}", record.unmet or {})
+    if record.unmet:
+        texts = "; ".join(record.unmet.values())
+        _LOG.warning("%s on %s: no claim at its own start, which does not meet: %s", item.id, begin.name, texts)
     search = Search(space.start, seed)
     ended: Ending = "budget"
     with progress_bar(budget, enabled=progress, steady=True) as advance:
@@ -166,13 +168,6 @@ def falsify(
         unmet=tuple(record.unmet or {}),
     )
     return sealed(result)
-
-
-def _warn_of_unmet(what: str, unmet: Mapping[str, str]) -> None:
-    """Log which hypotheses the scenario's own start does not meet, before the budget is spent."""
-    if unmet:
-        texts = "; ".join(unmet.values())
-        _LOG.warning("%s: no claim at its own start, which does not meet: %s", what, texts)
 
 
 def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:

@@ -84,8 +84,6 @@ class Counterexample(ShortRepr):
 
         Parameters
         ----------
-        run : Trajectory
-            What `run` returned.
         theorem : Theorem, optional
             The theorem itself, if it is not one of the catalogue.
         """
@@ -111,7 +109,6 @@ class Counterexample(ShortRepr):
             If it was interrupted.
         """
         self._ensure_found()
-
         judge = partial(self.verify, theorem=theorem)
         return confirmed(judge(self.run()), judge, self)
 

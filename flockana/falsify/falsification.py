@@ -123,23 +123,11 @@ class Falsification:
         return self.least(self.claim)
 
     def least(self, claim: str) -> FloatArray:
-        """Return the least margin of a claim up to each evaluation, shape (evaluations,).
-
-        Parameters
-        ----------
-        claim : str
-            Its name.
-        """
+        """Return the least margin of a claim up to each evaluation, shape (evaluations,)."""
         return np.fmin.accumulate(self.margins[claim])
 
     def refuting(self, claim: str) -> tuple[int, ...]:
-        """Return the evaluations that refute a claim, counted from 0.
-
-        Parameters
-        ----------
-        claim : str
-            Its name.
-        """
+        """Return the evaluations that refute a claim, counted from 0."""
         return tuple(k for k, status in enumerate(self.statuses[claim]) if status == "refuted")
 
     @property
@@ -148,13 +136,7 @@ class Falsification:
         return tuple(name for name in self.statuses if self.refuting(name))
 
     def worst_status(self, claim: str) -> str:
-        """Return the worst status of a claim in the search: refuted, else inconclusive, verified, vacuous, failed.
-
-        Parameters
-        ----------
-        claim : str
-            Its name.
-        """
+        """Return the worst status of a claim in the search: refuted, else inconclusive, verified, vacuous, failed."""
         return min(self.statuses[claim], key=_WORST_FIRST.index)
 
     def run(self) -> Trajectory:

@@ -4,16 +4,7 @@ import inspect
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
-from flockana.base.checks import (
-    ensure_count,
-    ensure_dimension,
-    ensure_finite_scalar,
-    ensure_fits,
-    ensure_known,
-    ensure_points,
-    ensure_seed,
-    ensure_time_span,
-)
+from flockana.base import checks
 from flockana.base.errors import ArgumentError
 from flockana.laws.velocity import ensure_any_law
 from flockana.scenarios.lazy_start import LazyArray
@@ -28,10 +19,11 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
     ensure_any_law(parts["law"])
-    ensure_time_span(parts["t_span"])
-    ensure_seed(parts["seed"])
+    checks.ensure_time_span(parts["t_span"])
+    checks.ensure_seed(parts["seed"])
     shapes = {
-        key: v.shape if isinstance(v := parts[key], LazyArray) else ensure_points(key, v).shape for key in ("q0", "p0")
+        key: v.shape if isinstance(v := parts[key], LazyArray) else checks.ensure_points(key, v).shape
+        for key in ("q0", "p0")
     }
     if shapes["q0"] != shapes["p0"]:
         raise ArgumentError(
@@ -59,7 +51,7 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
 def ensure_judged(names: Iterable[str]) -> None:
     """Raise unless all theorem ids exist."""
     for name in names:
-        ensure_known("theorem", name, theorems())
+        checks.ensure_known("theorem", name, theorems())
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
@@ -78,10 +70,10 @@ def _ensure_like(default: Any, key: str, value: Any) -> None:
         if not isinstance(value, bool):
             raise ArgumentError(f"{key} = {value!r}: expected True or False")
     elif isinstance(default, float):
-        ensure_finite_scalar(key, value)
+        checks.ensure_finite_scalar(key, value)
     elif key == "m":
-        ensure_dimension(value)
+        checks.ensure_dimension(value)
     elif isinstance(default, int):
-        count = ensure_count(key, value)
+        count = checks.ensure_count(key, value)
         if key == "n":
-            ensure_fits(f"a short run of {count} agents,", (3 * _SAMPLES, count, 3), "ask for fewer agents")
+            checks.ensure_fits(f"a short run of {count} agents,", (3 * _SAMPLES, count, 3), "ask for fewer agents")

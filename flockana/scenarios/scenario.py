@@ -163,13 +163,7 @@ class Scenario(WithStart):
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:
-        """Return differences of a verdict from the expected one, one line each.
-
-        Parameters
-        ----------
-        verdict : Verdict
-            Of this scenario.
-        """
+        """Return differences of a verdict from the expected one, one line each."""
         return differences(verdict, self.expected)
 
 

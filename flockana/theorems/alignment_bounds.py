@@ -129,8 +129,7 @@ class Guarantee:
         is_finite = x_m.mid > 0.0 and x_m.mid < inf
         k = int(self.x.mid.argmax())
         margin = 1.0 - x / x_m if is_finite else Enclosure.around(0.0, inf)
-        return judged("bounded", margin, needs, proof=self.proof).described(
-            computed=float(x.mid),
+        return judged("bounded", margin, needs, proof=self.proof, computed=float(x.mid)).described(
             stated=f"{self.names[0].format('(t)')} <= x_M = {x_m.mid:.6g}",
             witness={"time": float(self.seen.t[k])},
             detail=f"{name} is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
@@ -146,8 +145,7 @@ class Guarantee:
         fall = (v[0] / v[1:count]).log() / t
         margin = fall / rate - 1.0
         k = margin.worst_index
-        return judged("rate", margin, needs, proof=self.proof).described(
-            computed=float(fall.mid[k]),
+        return judged("rate", margin, needs, proof=self.proof, computed=float(fall.mid[k])).described(
             stated=f"{name.format('(t)')} <= {name.format('(0)')} exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
             witness={"time": float(t[k] + seen.t[0])},
             detail=f"from the start to any sample {self.names[1].format('')} falls at a mean rate of {fall.mid[k]:.6g} "
@@ -162,8 +160,7 @@ class Guarantee:
             if x_m < inf
             else "x_M cannot be computed"
         )
-        return limit_claim(what, needs, proof=self.proof).described(
-            computed=float(v[-1]),
+        return limit_claim(what, needs, proof=self.proof, computed=float(v[-1])).described(
             stated=f"{self.names[1].format('(t)')} -> 0, and every q_j - q_i has a limit",
             witness={"time": float(self.seen.t[-1])},
             detail=f"{name} goes from {v[0]:.4g} to {v[-1]:.4g} at t = {self.seen.t[-1]:g}; {text}",

@@ -112,10 +112,7 @@ def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, .
 
 
 def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tuple[Any, ...]:
-    """Return the row of one claim: decided by the first unmet requirement, else by proof or disproof.
-
-    `shown` is a hypothesis of the whole theorem that only a motion meets or misses.
-    """
+    """Return the row of one claim: decided by the first unmet requirement, else by proof or disproof."""
     for missing in ("unmet", "assumed"):
         for each in claim.needs:
             if each.status == missing and not each.on_motion:

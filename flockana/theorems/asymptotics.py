@@ -43,8 +43,7 @@ def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name:
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if is_certain and not pressed else []
     strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if is_certain else None
-    return limit_claim(name, needs, decides, escape=strained).described(
-        computed=end.strain,
+    return limit_claim(name, needs, decides, escape=strained, computed=end.strain).described(
         stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
         witness={"force": end.force, "links": end.links, "curvature": end.curvature},
         detail=f"at the end: {kind}, links {end.shortest:.6g} to {end.longest:.6g}, residual force {end.force:.2g}"

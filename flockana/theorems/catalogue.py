@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from types import ModuleType
-from typing import Any
 
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.base.modules import modules, source_modules
@@ -15,7 +14,9 @@ from flockana.theorems.theorem import Theorem
 def catalogue() -> dict[str, Theorem]:
     """Return all theorems by id, from every module of this package and of the sources' theorems."""
     by_id = {item.id: item for module in theorem_modules() for item in theorems_in(module).values()}
-    return dict(sorted(by_id.items(), key=lambda pair: _natural(pair[0])))
+    # E2 before E10, and the errata after the theorems
+    numbers = {name: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)] for name in by_id}
+    return {name: by_id[name] for name in sorted(by_id, key=lambda name: (name[:1].isupper(), numbers[name]))}
 
 
 def theorem_modules() -> Iterator[ModuleType]:
@@ -27,11 +28,6 @@ def theorem_modules() -> Iterator[ModuleType]:
 def theorems_in(module: ModuleType) -> dict[str, Theorem]:
     """Return the theorems defined in a module, by name."""
     return {name: item for name, item in vars(module).items() if isinstance(item, Theorem)}
-
-
-def _natural(name: str) -> tuple[Any, ...]:
-    """Return the sort key of an id: E2 before E10, errata after theorems."""
-    return (name[:1].isupper(), *(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)))
 
 
 def theorems() -> tuple[str, ...]:

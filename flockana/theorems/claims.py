@@ -68,8 +68,6 @@ def conclude(
 
     Parameters
     ----------
-    name, needs, about, rigour, proof, disproof, detail, **fields
-        As in `judged`.
     by_numbers : str
         Status by numbers or certificates alone.
     margin : Enclosure
@@ -120,8 +118,6 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
     ----------
     status : str
         Status by numbers or certificates alone.
-    needs, about
-        As in `judged`.
     """
     statuses = {need.status for need in needs}
     if "unmet" in statuses:
@@ -138,8 +134,6 @@ def counted(name: str, most: int, certain: int, possible: int, needs: Needs = ()
         How many there may be.
     certain, possible : int
         How many there are at least, and at most.
-    needs, **fields
-        As in `judged`.
 
     Examples
     --------
@@ -160,8 +154,6 @@ def spectral(name: str, margin: float, error: float, needs: Needs = (), **fields
     ----------
     margin, error : float
         The margin and how far it may be off: by a residual, Weyl's bound, the quadrature's estimate or rounding.
-    needs, **fields
-        As in `judged`.
 
     Examples
     --------
@@ -181,8 +173,6 @@ def by_count(name: str, failures: int, needs: Needs = (), **fields: Any) -> Clai
 
     Parameters
     ----------
-    name, needs, **fields
-        As in `judged`.
     failures : int
         How many there are.
 
@@ -196,13 +186,6 @@ def by_count(name: str, failures: int, needs: Needs = (), **fields: Any) -> Clai
 
 def exact(name: str, holds: bool, **fields: Any) -> Claim:
     """Return a claim decided by algebra, without numerical error.
-
-    Parameters
-    ----------
-    holds : bool
-        Whether it is true.
-    **fields
-        Further fields of the claim.
 
     Examples
     --------
@@ -219,8 +202,6 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
     ----------
     residual : expression or sequence of expressions
         The difference of the two sides, which becomes the witness.
-    **fields
-        Further fields of the claim.
 
     Examples
     --------
@@ -239,8 +220,6 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
 
     Parameters
     ----------
-    name, **fields
-        As in `judged`.
     reason : str or Hypothesis
         Why, in words, or the hypothesis.
 
@@ -258,13 +237,6 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
 def undecided(name: str, detail: str, needs: Needs = (), **fields: Any) -> Claim:
     """Return an undecided claim; vacuous if a hypothesis is unmet.
 
-    Parameters
-    ----------
-    name, needs, **fields
-        As in `judged`.
-    detail : str
-        Why, in words.
-
     Examples
     --------
     >>> undecided("rate", "the velocities match from the start").status
@@ -278,13 +250,7 @@ _EXPECTED: Mapping[Status, str] = {"refuted": "printed", "verified": "corrected"
 
 
 def statement_of(check: Callable[..., Any]) -> str:
-    """Return the statement of a theorem: the docstring of the function that checks it, as one paragraph.
-
-    Parameters
-    ----------
-    check : callable
-        The function.
-    """
+    """Return the statement of a theorem: the docstring of the function that checks it, as one paragraph."""
     return " ".join((check.__doc__ or "").split())
 
 

@@ -52,8 +52,7 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
     margin = allowed - distance
     worst, whose = margin.worst_index, "the centre of mass" if law.moving else "the γ-agent"
     agent = int(pulled[worst])
-    return judged(name, margin, needs, proof=proof).described(
-        computed=float(distance.mid[worst]),
+    return judged(name, margin, needs, proof=proof, computed=float(distance.mid[worst])).described(
         stated=f"agent {agent} stays within {allowed.mid[worst]:.5g} of {whose}",
         witness={"agent": agent},
         detail=f"of {pulled.size} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "

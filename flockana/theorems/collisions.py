@@ -158,17 +158,8 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
     status: HypothesisStatus = "met" if energy.hi < low else "unmet" if energy.lo >= high else "assumed"
     detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}"
     detail += f" and at most {high:.5g}" if np.isfinite(high) else ""
-    bound = high if status == "unmet" else low
-    margin = float(bound - energy.mid)
-    return Hypothesis(
-        "H(0) < min{V : two agents coincide}",
-        status,
-        margin,
-        detail,
-        float(energy.half_width),
-        decided="enclosed",
-        remedy=LESS_ENERGY,
-    )
+    name, margin = "H(0) < min{V : two agents coincide}", float((high if status == "unmet" else low) - energy.mid)
+    return Hypothesis(name, status, margin, detail, float(energy.half_width), decided="enclosed", remedy=LESS_ENERGY)
 
 
 def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothesis:
@@ -191,8 +182,7 @@ def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: 
             margin = Enclosure.of(-certain[pair])
             by = f"passing each other by at least {certain[pair]:.4g}"
             text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
-    return judged(name, margin, needs, proof=proof).described(
-        computed=float(distance.mid),
+    return judged(name, margin, needs, proof=proof, computed=float(distance.mid)).described(
         stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",
@@ -241,8 +231,7 @@ def pairs_at_one_instant(
     low = float(spare.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
     refuted = high < 0.0 and not seen.doubt
     margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
-    return judged(name, margin, needs, proof=proof).described(
-        computed=int(together.max(initial=0)),
+    return judged(name, margin, needs, proof=proof, computed=int(together.max(initial=0))).described(
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
         witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(allowed[worst])},
         detail=_instant_text(int(together.max(initial=0)), float(allowed.min())),

@@ -17,17 +17,8 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.decay import Decay, LinearRange, decay, decay_table, linear_range
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
-from flockana.theorems.claims import erratum, spectral, undecided
-from flockana.theorems.toolkit import (
-    Checked,
-    Claim,
-    FloatArray,
-    Hypothesis,
-    Observed,
-    Tolerances,
-    condition,
-    run_theorem,
-)
+from flockana.theorems.claims import erratum, run_theorem, spectral, undecided
+from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Observed, Tolerances, condition
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense

@@ -34,8 +34,7 @@ def balance(
     worst = int(np.argmax(off.mid))
     residual, unit = float(seen.residual.mid[worst]), largest or 1.0
     course = "falls" if energy[-1] <= energy[0] else "rises"
-    return judged(name, tolerances.energy - off / unit, needs, proof=proof).described(
-        computed=abs(residual) / unit,
+    return judged(name, tolerances.energy - off / unit, needs, proof=proof, computed=abs(residual) / unit).described(
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
         witness={"time": float(seen.t[worst]), "residual": residual},
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by "
@@ -77,10 +76,8 @@ def falling_share(
     *,
     one_sign: bool = False,
 ) -> Enclosure:
-    """Return −rate over the magnitude of its terms, from 1 (all terms fall) to −1, at each sample.
-
-    Terms that have one sign in exact arithmetic cancel in their computation alone, whatever the error of the state.
-    """
+    """Return −rate over the magnitude of its terms, from 1 (all terms fall) to −1, at each sample."""
+    # Terms of one sign in exact arithmetic cancel in their computation alone, whatever the error of the state.
 
     def share(run: Trajectory) -> FloatArray:
         falls = -rate(run)

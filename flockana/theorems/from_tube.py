@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.measures.nets import components
+from flockana.theorems.hypotheses import condition
 from flockana.theorems.limit_certificates import Certificate, limit_claim
 from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Needs, Tolerances, judged, positive_room
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike, Tube
 
 Pair = tuple[int, int]
+certain = partial(condition, decided="enclosed")  # a hypothesis that balls decide
 
 
 @dataclass(frozen=True)
@@ -133,14 +136,8 @@ def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *,
     if case.basin is None:
         return limit_claim(name, needs, [Certificate(-1.0, case.doubt)], rigour="interval", **fields)
     room = Enclosure.of(1.0) if margin is None else ends(margin)
-    return limit_claim(
-        name,
-        needs,
-        [Certificate(float(room.lo), "", 0.0)],
-        escape=Certificate(float(-room.hi), "", 0.0),
-        rigour="interval",
-        **fields,
-    )
+    escape = Certificate(float(-room.hi), "", 0.0)
+    return limit_claim(name, needs, [Certificate(float(room.lo), "", 0.0)], escape=escape, rigour="interval", **fields)
 
 
 def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: str, proof: str | None = None) -> Claim:

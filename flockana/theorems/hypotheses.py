@@ -33,14 +33,8 @@ def condition(
 
     Parameters
     ----------
-    holds : bool
-        Whether it is met.
     margin : float, optional
         How far it is met (positive) or missed (negative).
-    detail : str
-        In words.
-    error : float, optional
-        Of the margin.
     decided : {"exact", "proved", "enclosed"}
         By which means; exact means from parameters, a start, or a closed form.
     remedy : str
@@ -101,11 +95,6 @@ def law_is(
 def hypothesis_from_fact(name: str, fact: Fact) -> Hypothesis:
     """Return a hypothesis about a function, with the status of a fact about it.
 
-    Parameters
-    ----------
-    fact : Fact
-        What is decided.
-
     Examples
     --------
     >>> hypothesis_from_fact("ψ is C¹", Fact("unmet", "the force jumps at s = 1")).status
@@ -119,11 +108,6 @@ def smooth_pair(run: Observed) -> Hypothesis:
     """Return the hypothesis that the pair law is C¹ off coincidence, and smooth at its range.
 
     A force without a limit where two agents meet is no fault here: runs that come to that point end.
-
-    Parameters
-    ----------
-    run : Observed
-        A run of a law with a pair interaction.
     """
     law = run.law
     entry_of = {entry.function: entry for entry in law.functions if entry.stiffness != 0.0 or entry.function is None}
@@ -135,13 +119,7 @@ def smooth_pair(run: Observed) -> Hypothesis:
 
 
 def weight_nonnegative(run: Observed) -> Hypothesis:
-    """Return the hypothesis that no adjacency is negative, so that consensus never drives velocities apart.
-
-    Parameters
-    ----------
-    run : Observed
-        A run of a law that may have a pair law and a net of its own.
-    """
+    """Return the hypothesis that no adjacency is negative, so that consensus never drives velocities apart."""
     name = "a_ij >= 0 at every distance"
     entries = [entry for entry in run.law.functions if entry.damping != 0.0 or entry.function is None]
     if not entries:
@@ -161,8 +139,6 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
 
     Parameters
     ----------
-    run : Observed or Tube
-        A run of a law with gains.
     **gains : str
         How each is written, by its name in `Gains`; common to all agents.
     """
@@ -174,13 +150,7 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
 
 
 def common_gains(run: Observed | Tube) -> Hypothesis:
-    """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple.
-
-    Parameters
-    ----------
-    run : Observed
-        A run of a law with gains.
-    """
+    """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple."""
     several = run.law.gains.per_agent
     detail = "gains are given per agent" if several else ""
     remedy = "give all agents one c1γ and one c2γ"
@@ -188,25 +158,13 @@ def common_gains(run: Observed | Tube) -> Hypothesis:
 
 
 def has_lattice(run: Observed) -> Hypothesis:
-    """Return the hypothesis that the law has a lattice scale d and an interaction range r.
-
-    Parameters
-    ----------
-    run : Observed
-        The run.
-    """
+    """Return the hypothesis that the law has a lattice scale d and an interaction range r."""
     is_known = run.law.lattice is not None
     return condition("the law has a scale d and a range r", is_known, detail=run.law.title)
 
 
 def alpha_gain(run: Observed) -> list[Hypothesis]:
-    """Return the hypotheses c1α > 0, and common gains where the law has a γ-agent.
-
-    Parameters
-    ----------
-    run : Observed
-        A run of a law with an α-interaction.
-    """
+    """Return the hypotheses c1α > 0, and common gains where the law has a γ-agent."""
     return [*([common_gains(run)] if run.law.target is not None else []), positive(run, c1_alpha="c1α")]
 
 
@@ -217,10 +175,6 @@ def positive_room(name: str, room: Enclosure, detail: str, *, remedy: str = "") 
     ----------
     room : Enclosure
         The number, such as a bound less what lies below it.
-    detail : str
-        In words.
-    remedy : str
-        What would make it positive.
 
     Examples
     --------

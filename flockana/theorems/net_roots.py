@@ -11,10 +11,8 @@ _SHOWN = 4  # agents of a group
 
 
 def unheard_groups(weights: Any) -> list[list[int]]:
-    """Return the groups of agents that hear nobody outside (weights_ij > 0: i hears j); a root is a group of one.
-
-    A net has a root exactly if there is one group, and is strongly connected exactly if that is all agents.
-    """
+    """Return the groups of agents that hear nobody outside (weights_ij > 0: i hears j); a root is a group of one."""
+    # There is a root exactly if there is one group; a net is strongly connected exactly if that is all agents.
     import networkx
 
     hears = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)

@@ -45,7 +45,6 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
     if not isinstance(name, str) or not name or not callable(margin):
         texts = f"{format_value(name)}, {format_value(margin)}"
         raise ArgumentError(f"claim({texts}): expected a name and a function of a run")
-
     text = statement or name
     return Theorem(name, text, text, "own claim", "trajectory", OwnCheck(name, margin, text), references=())
 

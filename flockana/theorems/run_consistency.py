@@ -30,7 +30,8 @@ def _ensure_fits(run: Trajectory) -> bool:
     if run.status == "failed":  # where agents met the law has no input
         difference[~np.isfinite(run._flows[0]).all(axis=(1, 2))] = 0.0
     if isinstance(run.law, SwitchedLaw):
-        difference[_at_switches(run.law, run)] = 0.0
+        law, tiny = run.law, 1e-9 * run.scales.length  # at a jump of the force the input has two values
+        difference[[bool((law.margins(law.pieces(q), q).inside < tiny).any()) for q in run.q]] = 0.0
     allowed = SAME_INPUT * max(float(np.abs(run.u).max()), run.scales.force)
     for k in np.flatnonzero(~(difference <= allowed)).tolist():
         if difference[k] <= allowed + _rounded_input(run, k):
@@ -63,9 +64,3 @@ def _rounded_input(run: Trajectory, k: int) -> float:
         return 0.0
     forces = zip(slopes, (run.q[k], run.p[k]), strict=True)
     return float(sum(abs(slope) @ np.spacing(np.abs(x).ravel()) for slope, x in forces).max())
-
-
-def _at_switches(law: SwitchedLaw, run: Trajectory) -> list[bool]:
-    """Return the samples at which a pair is at a jump of the force, where the input has two values."""
-    tiny = 1e-9 * run.scales.length
-    return [bool((law.margins(law.pieces(q), q).inside < tiny).any()) for q in run.q]

@@ -99,13 +99,7 @@ class Theorem:
         return erratum_of(self.id)
 
     def by(self, claim: str) -> By:
-        """Return the author of a claim.
-
-        Parameters
-        ----------
-        claim : str
-            Its name.
-        """
+        """Return the author of a claim."""
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
     def verdict(self, known: Known, used: Tolerances, on: str) -> Verdict:

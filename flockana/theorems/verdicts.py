@@ -59,13 +59,7 @@ class Verdicts(tuple[Verdict, ...]):
         return claim_table(self)
 
     def to_mat(self, path: str | os.PathLike[str]) -> Path:
-        """Write the table of claims as a MATLAB file with one struct, `claims`, and return its path.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write, such as ``verdicts.mat``.
-        """
+        """Write the table of claims as a MATLAB file with one struct, `claims`, and return its path."""
         from scipy.io import savemat
 
         table = self.to_dataframe()

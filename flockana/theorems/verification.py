@@ -108,11 +108,8 @@ def verify(
         parts: Any = {"basin": basin, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
         return Verdicts(verify(each, trajectory, tolerances=tol, subject=subject, **parts) for each in items)
     case = {"trajectory": trajectory, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
-    is_recording = _is("recording", trajectory)
-    if is_recording and any(each is not None for each in (basin, q0, p0, t_span, q)):
-        raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
     item = None if name is None else theorem(name)
-    evidence = _recording_evidence(case) if is_recording else _choose_evidence(item, case, basin)
+    evidence = _choose_evidence(item, case, basin)
     return evidence.judge_all(tol, subject) if item is None else evidence.judge(item, tol, subject)
 
 
@@ -124,15 +121,14 @@ def ensure_tolerances(tolerances: Any) -> Tolerances:
     return tolerances_used
 
 
-def _recording_evidence(case: dict[str, Any]) -> Evidence:
-    """Return the evidence of a recording, under a law or with the scale and range of nets."""
-    from flockana.theorems.on_recordings import RecordingEvidence  # which loads what fits and smooths
-
-    return RecordingEvidence(case["trajectory"], case["law"], case["d"], case["r"])
-
-
 def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> Evidence:
-    """Return the evidence of a run, a tube, a state, or none; raise on unsuitable arguments."""
+    """Return the evidence of a run, a recording, a tube, a state, or none; raise on unsuitable arguments."""
+    if _is("recording", case["trajectory"]):
+        from flockana.theorems.on_recordings import RecordingEvidence  # which loads what fits and smooths
+
+        if any(each is not None for each in (basin, *(case[name] for name in ("q0", "p0", "t_span", "q")))):
+            raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
+        return RecordingEvidence(case["trajectory"], case["law"], case["d"], case["r"])
     motion = [case[name] for name in ("trajectory", "law", "q0", "p0", "t_span")]
     if item is None:
         return RunEvidence(_run(*motion))
