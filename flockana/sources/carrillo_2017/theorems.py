@@ -111,8 +111,7 @@ def _meet(seen: Observed, needs: Needs, x: float, excess: float, factor: float) 
     excess = max(excess, 0.0)
     time = float(seen.t[0]) + _duration(excess, factor, seen.law.weight.decay, x)
     left = Enclosure.around(time - float(seen.t[-1]), _CONTACT * time)
-    return judged("meet", left, needs, about="all", proof=_PAIR).described(
-        computed=float(seen.t[-1]),
+    return judged("meet", left, needs, about="all", proof=_PAIR, computed=float(seen.t[-1])).described(
         stated=f"they meet at t = {time:.6g}, at a relative speed of {excess:.6g}",
         witness={"pair": (0, 1), "time": time},
         detail=f"the run ends at t = {seen.t[-1]:.6g}",
@@ -124,8 +123,7 @@ def _apart(seen: Observed, needs: Needs, x: float, level: float) -> Claim:
     limit = max(level, 0.0) ** (1.0 / (1.0 - seen.law.weight.decay))
     distance, end = least_distance(seen), float(np.ptp(seen.run.q[-1]))
     margin = distance / min(x, limit) - 1.0 if limit > 0.0 else distance
-    return judged("apart", margin, needs, proof=_PAIR).described(
-        computed=float(distance.mid),
+    return judged("apart", margin, needs, proof=_PAIR, computed=float(distance.mid)).described(
         stated=f"x never is below {min(x, limit):.6g}, and tends to {limit:.6g}",
         witness={"time": float(seen.t[-1])},
         detail=f"the least distance is {distance.mid:.6g}, the last {end:.6g}",

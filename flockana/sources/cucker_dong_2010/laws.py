@@ -85,12 +85,7 @@ class CuckerDong(Law):
         return u, float("nan")
 
     def functional(self, q: FloatArray, p: FloatArray) -> float:
-        """Return V + ½ Σ_{i<j} k δ³/(s_ij² − δ²), which never rises while all distances exceed δ.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-        """
+        """Return V + ½ Σ_{i<j} k δ³/(s_ij² − δ²), which never rises while all distances exceed δ."""
         square = self._squares(q)[np.triu_indices(len(q), 1)]
         store = 0.5 * self.repulsion * self.distance**3 * float(np.sum(1.0 / (square - self.distance**2)))
         return float(np.sqrt(np.sum((p - p.mean(axis=0)) ** 2))) + store

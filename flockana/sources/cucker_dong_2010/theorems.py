@@ -55,14 +55,12 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         judged("functional", 1.0 - level.max() / start, needs, proof=_PROOF).described(
             computed=float(level.mid.max()), stated=f"E never exceeds E(0) = {start.mid:.6g}"
         ),
-        judged("apart", distance / bound - 1.0, needs, proof=_PROOF).described(
-            computed=float(distance.mid),
+        judged("apart", distance / bound - 1.0, needs, proof=_PROOF, computed=float(distance.mid)).described(
             stated=f"no two agents are nearer than {bound.mid:.6g}, δ = {far:g}",
             detail=f"the least distance is {distance.mid:.6g}",
         ),
         *bounded,
-        limit_claim("flock", [*needs, slow], proof=_PROOF).described(
-            computed=float(v[-1]),
+        limit_claim("flock", [*needs, slow], proof=_PROOF, computed=float(v[-1])).described(
             stated="V -> 0, and every q_j - q_i has a limit",
             detail=f"V goes from {v[0]:.4g} to {v[-1]:.4g} at t = {seen.t[-1]:g}",
         ),

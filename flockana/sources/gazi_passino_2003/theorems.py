@@ -18,8 +18,7 @@ def _centroid(seen: Observed, size: float, tolerances: Tolerances) -> Claim:
     )
     off, allowed = off.clip(0.0) / size, tolerances.energy
     k = int(off.mid.argmax())
-    return judged("centroid", allowed - off, proof=_PROOF).described(
-        computed=float(off.mid[k]),
+    return judged("centroid", allowed - off, proof=_PROOF, computed=float(off.mid[k])).described(
         stated=f"the centroid stays, to {allowed:g} of the size",
         witness={"time": float(seen.t[k])},
         detail=f"the centroid moves by {off.mid[k]:.2g} of the size at most",
@@ -33,8 +32,7 @@ def _rate(seen: Observed, size: float, bound: float) -> Claim:
     limits = bound + left * np.exp(-law.attraction * seen.n * (seen.t - seen.t[0]))
     margin = (limits - seen.radius) / size
     k = margin.worst_index
-    return judged("rate", margin, proof=_PROOF).described(
-        computed=float(seen.radius.mid[k]),
+    return judged("rate", margin, proof=_PROOF, computed=float(seen.radius.mid[k])).described(
         stated=f"R <= {bound:.6g} + {left:.6g} exp(-{law.attraction * seen.n:g} t) at each sample",
         witness={"time": float(seen.t[k])},
         detail=f"R ends at {seen.radius.mid[-1]:.6g}",

@@ -29,10 +29,7 @@ def neighbour_lists(n, first, second):
 
 @kernel
 def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
-    """Overwrite q, p, u agent by agent: u_i from the current state, then q_i and p_i.
-
-    `near` are `neighbour_lists`, `gains` (c1α, c2α) and `goal` (c1γ, c2γ, q_r, p_r).
-    """
+    """Overwrite q, p, u agent by agent: u_i from the current state, then q_i and p_i."""
     m, (start, neighbour), (c1, c2), (pull, drag, q_r, p_r) = q.shape[1], near, gains, goal
     total = np.empty(m)
     for i in range(q.shape[0]):

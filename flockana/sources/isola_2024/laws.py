@@ -39,7 +39,6 @@ class MSNDiscretisation(DiscreteLaw):
     position_factor: float = PRINTED
 
     units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
     references = ("isola-2024", "olfati-saber-2006")
 
     def __post_init__(self) -> None:

@@ -77,22 +77,12 @@ class DistanceFormation(VelocityLaw):
         return i, j, q[j] - q[i]
 
     def errors(self, q: FloatArray) -> FloatArray:
-        """Return ‖q_j − q_i‖² − d_ij² of each link.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-        """
+        """Return ‖q_j − q_i‖² − d_ij² of each link."""
         z = self._links(q)[2]
         return np.asarray(np.einsum("ek,ek->e", z, z) - np.square(self.lengths))
 
     def rows(self, q: FloatArray) -> FloatArray:
-        """Return R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-        """
+        """Return R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors."""
         i, j, z = self._links(q)
         whole, agents = np.zeros((len(z), *q.shape)), np.arange(len(z))
         whole[agents, j], whole[agents, i] = z, -z

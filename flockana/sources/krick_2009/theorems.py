@@ -45,8 +45,7 @@ def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: T
     share = off.clip(0.0) / (float(np.max(seen.law.lengths)) + float(seen.radius.mid[0]))
     k = int(share.mid.argmax())
     needs = [_collinear(seen.run.q[0])] if name == "collinear" else []
-    return judged(name, tolerances.energy - share, needs, proof=_PROOF).described(
-        computed=float(share.mid[k]),
+    return judged(name, tolerances.energy - share, needs, proof=_PROOF, computed=float(share.mid[k])).described(
         stated=f"{stated}, to {tolerances.energy:g} of the size",
         witness={"time": float(seen.t[k])},
         detail=f"off by {share.mid[k]:.2g} of the size at most",
@@ -89,12 +88,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     ended = f"the largest error of a squared length is {left:.3g} at the end"
     claims = [
         _share("centroid", "the centroid stays", seen, off, tolerances),
-        limit_claim("rest", [], proof=_PROOF).described(
-            computed=left, stated="velocities tend to 0", detail=ended
-        ),
+        limit_claim("rest", [], proof=_PROOF, computed=left).described(stated="velocities tend to 0", detail=ended),
         _share("collinear", "agents stay on their line", seen, _off_line(seen), tolerances),
-        limit_claim("formation", [near], proof=_PROOF).described(
-            computed=left, stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=ended
+        limit_claim("formation", [near], proof=_PROOF, computed=left).described(
+            stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=ended
         ),
         judged(
             "nearby", (limit - moves) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),

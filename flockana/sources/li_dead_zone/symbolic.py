@@ -103,12 +103,7 @@ def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
 
 
 def saturated_energy_identity(m: int = 2) -> Derivation:
-    """Derive dH/dt = -k_2 p^T L p from one generic pair: psi' = F within r, and psi constant with F = a = 0 beyond.
-
-    H is a sum over pairs of psi(min(rho, r)) and over agents of |p_i|^2/2 (of the deviations from the mean: momentum
-    is conserved), so an identity for one pair is one for every n. It holds on either side of every switch, and psi is
-    continuous across them.
-    """
+    """Derive dH/dt = -k_2 p^T L p from one generic pair: psi' = F within r, and psi constant with F = a = 0 beyond."""
     q_i, q_j, p_i, p_j = (vector(name, ensure_dimension(m)) for name in ("q_i", "q_j", "p_i", "p_j"))
     delta, slip = q_j - q_i, p_j - p_i
     rho = sp.sqrt(delta.dot(delta))

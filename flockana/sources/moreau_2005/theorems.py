@@ -3,25 +3,10 @@
 import numpy as np
 
 from flockana.sources.moreau_2005.laws import NetAveraging
+from flockana.theorems.claims import by_count, judged, run_theorem, vacuous
 from flockana.theorems.net_roots import describe_groups, unheard_groups
-from flockana.theorems.toolkit import (
-    EPS,
-    Checked,
-    Claim,
-    Enclosure,
-    Hypothesis,
-    Needs,
-    Observed,
-    Tolerances,
-    by_count,
-    condition,
-    judged,
-    law_is,
-    limit_claim,
-    run_theorem,
-    unmet,
-    vacuous,
-)
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim
 
 _LAW = law_is("averaging over nets in turn", NetAveraging)
 _PROOF = "rooted-averaging"
@@ -57,8 +42,7 @@ def _hull(seen: Observed, needs: Needs) -> Claim:
     minimum, most = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
     out = np.flatnonzero(((np.diff(minimum, axis=0) < 0.0) | (np.diff(most, axis=0) > 0.0)).any(axis=1))
     spread = (most - minimum).max(axis=1)
-    return by_count("hull", out.size, needs, proof=_PROOF).described(
-        computed=float(spread[-1]),
+    return by_count("hull", out.size, needs, proof=_PROOF, computed=float(spread[-1])).described(
         stated="along no axis the greatest place ever rises, or the least falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
         detail=f"the extent goes from {spread[0]:.4g} to {spread[-1]:.4g}",
@@ -132,8 +116,7 @@ def growing(seen: Observed, tolerances: Tolerances) -> Checked:
     share = 1.0 - 2.0 ** (1 - length)
     error = 4.0 * EPS * float(np.abs(seen.run.q).max()) * (1.0 + (seen.t[-1] - seen.t[0]) / law.dt)
     room = Enclosure.around(float(apart.min()) - share * apart[0], error)
-    claim = judged("apart", room, needs, about="all", proof=_GROWS).described(
-        computed=float(apart.min() / apart[0]),
+    claim = judged("apart", room, needs, about="all", proof=_GROWS, computed=float(apart.min() / apart[0])).described(
         stated=f"above {share:g} of the first distance for ever",
         detail=f"the least seen is {apart.min() / apart[0]:.6g} of the first",
     )

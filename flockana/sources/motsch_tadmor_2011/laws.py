@@ -63,12 +63,7 @@ class MotschTadmor(Law):
         return (LawFunction("the influence", self.weight, 0.0, self.gain, mean=True),)
 
     def influences(self, q: FloatArray) -> FloatArray:
-        """Return a_ij, shape (n, n): each row sums to 1, including a_ii.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-        """
+        """Return a_ij, shape (n, n): each row sums to 1, including a_ii."""
         phi = self.weight.adjacency(np.linalg.norm(q[:, None] - q[None], axis=2))
         return np.asarray(phi / phi.sum(axis=1, keepdims=True))
 

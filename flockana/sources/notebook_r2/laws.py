@@ -99,7 +99,6 @@ class _Pushed(GainedLaw):
     factor: float
 
     units: ClassVar[Mapping[str, Powers]] = {"min_distance": (1, 0)}
-
     references: ClassVar[tuple[str, ...]] = ("notebook-r2", "olfati-saber-2006")
 
     def __post_init__(self) -> None:

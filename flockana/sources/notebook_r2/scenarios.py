@@ -13,17 +13,8 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
+from flockana.scenarios import findings
 from flockana.scenarios.entry import Report, Scenario, Status, refuted, vacuous, verified
-from flockana.scenarios.findings import (
-    ROUNDING,
-    component_count,
-    finding,
-    in_source_units,
-    limit_report,
-    report,
-    rerun,
-    same_accuracy,
-)
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.notebook_r2.laws import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.theorems import Claim, Tolerances
@@ -48,10 +39,10 @@ def _other(run: Trajectory) -> Trajectory:
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
-    return rerun(run, other, **(_integrator(other) or same_accuracy(run)))
+    return findings.rerun(run, other, **(_integrator(other) or findings.same_accuracy(run)))
 
 
-@report("push", "a tenfold push below 0.05 keeps agents apart")
+@findings.report("push", "a tenfold push below 0.05 keeps agents apart")
 def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the push keeps agents farther apart; vacuous where it never acts."""
     contact_times = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
@@ -64,16 +55,16 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
         runs.reverse()
     near = [r.closest_approach() for r in runs]
     plain, pushed = (each.distance for each in near)
-    blur = sum(each.distance - each.lower for each in near) + ROUNDING * float(np.abs(run.q).max())
+    blur = sum(each.distance - each.lower for each in near) + findings.ROUNDING * float(np.abs(run.q).max())
     apart = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
     detail = (
         f"{len(contact_times)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} "
         f"without the push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
     )
-    return finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
+    return findings.finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
 
 
-@report("follows", "agents take on the γ-agent's velocity")
+@findings.report("follows", "agents take on the γ-agent's velocity")
 def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report the printed fall of one agent's ‖u_γ‖ to below 0.001 by the last of 150 steps."""
     # With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
@@ -82,10 +73,10 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     middle = float(np.median(pull))
     certificate = Certificate(max(-1.0, 1.0 - middle / _FOLLOWS), "that is what counts as following")
     detail = f"‖u_γ‖ at the end is {middle:.2g} in the median and {pull.max():.2g} at most"
-    return limit_report(certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
+    return findings.limit_report(certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
 
 
-@report("unit-direction", "n_ij is a normalised direction")
+@findings.report("unit-direction", "n_ij is a normalised direction")
 def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that n_ij is a unit vector: its length ‖Δ‖/√(1 + ε‖Δ‖²) is below 1/√ε."""
     alpha = run.law.alpha
@@ -96,10 +87,10 @@ def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"‖n_ij‖ of the {n.size} links at the start is {n.min():.3g} to {n.max():.3g}; it is 0 at coincidence and "
         f"could come near 1/√ε = {1.0 / np.sqrt(alpha.eps):.3g}"
     )
-    return finding(-off, detail, computed=off, stated="‖n_ij‖ = 1")
+    return findings.finding(-off, detail, computed=off, stated="‖n_ij‖ = 1")
 
 
-@report("goal", "agents move toward the common goal")
+@findings.report("goal", "agents move toward the common goal")
 def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that agents move toward a common goal; with c1γ = 0 the law does not contain q_r."""
     place = run.law.target.position(0.0)
@@ -108,10 +99,10 @@ def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"the centre of mass is {first:.3g} from q_r at the start and {last:.3g} at the end: with c1γ = 0 nothing "
         "draws it there, and it drifts away with p_r"
     )
-    return finding((first - last) / run.scales.length, detail, computed=last, stated=f"below {first:.4g}")
+    return findings.finding((first - last) / run.scales.length, detail, computed=last, stated=f"below {first:.4g}")
 
 
-@report("relaxes", "‖u_α‖ shrinks to about a hundredth")
+@findings.report("relaxes", "‖u_α‖ shrinks to about a hundredth")
 def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report the printed fall of u_α from about 5 to about 0.03, as a mean over all agents."""
     law = run.law
@@ -120,25 +111,25 @@ def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
         for k in (0, -1)
     )
     detail = f"mean ‖u_α‖ falls from {first:.3g} to {last:.2g}"
-    return finding(_RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
+    return findings.finding(_RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
 
 
-@report("flow", "the notebook's own steps follow the flow")
+@findings.report("flow", "the notebook's own steps follow the flow")
 def _follows_flow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the notebook's steps follow the flow of the same law to 1 % of d."""
     law = run.law.law
-    flow = rerun(run, law, t_eval=run.t, **_integrator(law))
+    flow = findings.rerun(run, law, t_eval=run.t, **_integrator(law))
     apart = lengths(run.q - flow.q).max(axis=1) / law.alpha.d
     beyond = np.flatnonzero(apart > _FOLLOWED)
     since = f"from t = {run.t[beyond[0]]:.3g} on" if beyond.size else "at no time"
     energy, true = run.energy()[-1], flow.energy()[-1]
     detail = (
         f"an agent is more than {_FOLLOWED:.0%} of d from the flow's {since}, and up to "
-        f"{apart.max():.3g} d later; the run ends in {component_count(run)} components, the flow in "
-        f"{component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
+        f"{apart.max():.3g} d later; the run ends in {findings.component_count(run)} components, the flow in "
+        f"{findings.component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
     )
     worst = float(apart.max())
-    return finding(_FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
+    return findings.finding(_FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
 
 
 def _scenario(
@@ -154,7 +145,7 @@ def _scenario(
 ) -> Scenario:
     generator, references = np.random.default_rng(seed), ("notebook-r2", "olfati-saber-2006")
     q, p = generator.uniform(0.0, 13.0, (n, 2)), generator.standard_normal((n, 2))
-    judged, how, span = in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
+    judged, how, span = findings.in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
     return Scenario(name, *text, law, q, p, span, seed, expected, judged, how, references, shipped=shipped)
 
 
@@ -205,7 +196,7 @@ def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
         how = f"q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05."
         source = f"{item.source.rpartition('. ')[0]}. As published: {how}"
         item = replace(item, name=name, title=title, source=source, law=TaylorStep(law, dt), options={})
-        reports = in_source_units(lambda: law.scales, (_follows_flow,))
+        reports = findings.in_source_units(lambda: law.scales, (_follows_flow,))
         return replace(item, expected=refuted("source:flow"), shipped={}, reports=reports)
 
     return build

@@ -74,12 +74,6 @@ class CyclicPursuit(VelocityLaw):
         return csr_array(kron(np.roll(np.eye(len(q)), 1, axis=1) - np.eye(len(q)), self._turn))
 
     def eigenvalues(self, n: int) -> ComplexArray:
-        """Return λ_j = k e^{iθ} (e^{2πij/n} − 1), j = 0 … n − 1; with their conjugates all 2n poles.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+        """Return λ_j = k e^{iθ} (e^{2πij/n} − 1), j = 0 … n − 1; with their conjugates all 2n poles."""
         half = np.pi * np.arange(n) / n
         return np.asarray(2.0 * self.gain * np.sin(half) * np.exp(1j * (radians(self.angle) + half + 0.5 * np.pi)))

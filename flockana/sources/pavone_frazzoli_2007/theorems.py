@@ -46,8 +46,7 @@ def _motion(seen: Observed, tolerances: Tolerances) -> list[Claim]:
         share = series.clip(0.0) / size
         k = int(share.mid.argmax())
         claims.append(
-            judged(name, tolerances.energy - share, proof=_PROOF).described(
-                computed=float(share.mid[k]),
+            judged(name, tolerances.energy - share, proof=_PROOF, computed=float(share.mid[k])).described(
                 stated=f"{stated[name]}, to {tolerances.energy:g} of the size",
                 witness={"time": float(seen.t[k])},
                 detail=f"off by {share.mid[k]:.2g} of the size at most",

@@ -73,7 +73,6 @@ class HeadingAveraging(DiscreteLaw):
     seed: int = 0
 
     units: ClassVar[Mapping[str, Powers]] = {"range": (1, 0), "speed": (1, -1), "dt": (0, 1)}
-
     references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
 
     def __post_init__(self) -> None:

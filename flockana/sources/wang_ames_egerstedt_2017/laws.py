@@ -70,13 +70,7 @@ class SafetyFilter(WrappingLaw):
             raise ArgumentError(f"agents {i[same[0]]} and {j[same[0]]} are at one place: expected distinct places")
 
     def barriers(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return h, the unit vectors from j to i, and the lower bound of their product with u_i − u_j, for each i < j.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """Return h, the unit vectors from j to i, and the lower bound of their product with u_i − u_j, per i < j."""
         (i, j), c = np.triu_indices(len(q), 1), 2.0 * self.acceleration_limit
         x, v = q[i] - q[j], p[i] - p[j]
         r = np.linalg.norm(x, axis=1)

@@ -68,8 +68,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     k = int((level.mid - (start.mid - fall.mid * t)).argmax())
     text = f"v goes from {v.mid[0]:.6g} to {v.mid[-1]:.3g} at t = {seen.t[-1]:.6g}"
     return needs, [
-        judged("bound", margin, needs, proof=_PROOF).described(
-            computed=float(v.mid[k]),
+        judged("bound", margin, needs, proof=_PROOF, computed=float(v.mid[k])).described(
             stated=f"v^{rest:.3g} <= {start.mid:.6g} - {fall.mid:.6g} t",
             witness={"time": float(seen.t[k])},
             detail=text,

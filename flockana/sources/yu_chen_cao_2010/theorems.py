@@ -40,8 +40,7 @@ def threshold_exceeded(law: NetConsensus) -> Hypothesis:
 
 def _consensus(seen: Observed, needs: Needs) -> Claim:
     spreads = [float(np.ptp(series[-1], axis=0).max()) for series in (seen.run.q, seen.run.p)]
-    return limit_claim("consensus", needs, proof=_PROOF).described(
-        computed=spreads,
+    return limit_claim("consensus", needs, proof=_PROOF, computed=spreads).described(
         stated="q_i - q_j -> 0 and p_i - p_j -> 0 from every start",
         detail=f"at the end positions differ by {spreads[0]:.3g} and velocities by {spreads[1]:.3g}",
     )

@@ -38,8 +38,7 @@ def longest_link(seen: Observed) -> Enclosure:
 
 def _below(longest: Enclosure, r: float, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no link is longer than `most`; only a sample refutes it."""
-    return judged(name, (most - longest) / r, needs, proof=_PROOF).described(
-        computed=float(longest.mid),
+    return judged(name, (most - longest) / r, needs, proof=_PROOF, computed=float(longest.mid)).described(
         stated=stated,
         detail=f"the longest link is {longest.mid:.4g} at a sample and at most {longest.hi:.4g} between; r = {r:g}",
     )

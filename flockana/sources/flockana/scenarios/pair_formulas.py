@@ -15,13 +15,10 @@ _VERIFIED = verified("any-potential") | verified(*(f"any-potential:{claim}" for 
 
 def _morse() -> FormulaInteraction:
     """Return Morse's potential with its minimum near 7, brought to 0 at the range 14."""
+    text = "k*((1 - exp(-a*(s - d)))**2 - 1)*(1 - s**2/r**2)**2"
+    units = {"k": (2, -2), "a": (-1, 0)}
     return pair_law(
-        "k*((1 - exp(-a*(s - d)))**2 - 1)*(1 - s**2/r**2)**2",
-        adjacency="(1 - s/r)**2",
-        range=14.0,
-        length=7.0,
-        parameters={"k": 30.0, "a": 0.5},
-        units={"k": (2, -2), "a": (-1, 0)},
+        text, adjacency="(1 - s/r)**2", range=14.0, length=7.0, parameters={"k": 30.0, "a": 0.5}, units=units
     )
 
 

@@ -28,11 +28,9 @@ def _undirected() -> Claim:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
         each.append(float(np.abs(u - again).max() / np.abs(u).max()))
     off = float(np.max(each))
+    text = f"40 agents with one range for all: the input differs from that of Algorithms 1 to 3 by {off:.1g}"
     return of_state("undirected", _ROUNDING - off, 0.0).described(
-        computed=off,
-        stated=f"the same input to {_ROUNDING:g} of the largest",
-        witness={"agents": 40},
-        detail=f"40 agents with one range for all: the input differs from that of Algorithms 1 to 3 by {off:.1g}",
+        computed=off, stated=f"the same input to {_ROUNDING:g} of the largest", witness={"agents": 40}, detail=text
     )
 
 
@@ -45,8 +43,7 @@ def _momentum() -> Claim:
     law = _pair()
     u = law.acceleration(0.0, [[0.0], [7.5]], [[0.0], [0.0]])
     total = abs(float(u.sum())) / (law.law.gains.c1_alpha * law.alpha.strength)
-    return of_state("momentum-lost", total, _ROUNDING).described(
-        computed=total,
+    return of_state("momentum-lost", total, _ROUNDING, computed=total).described(
         stated="momentum is not conserved: Σ u_i ≠ 0 of a pair of which one sees the other",
         witness={"q": [0.0, 7.5], "u": u.ravel().tolist()},
         detail=f"one of two agents 7.5 apart is attracted by the other, which does not react: "
@@ -74,15 +71,12 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     slip = seen.series(lambda run: np.abs(run.p[:, 0, 0] - run.p[:, 1, 0]), floor=2.0 * seen.floors.speed)[-1]
     length = seen.distances([0], [1])[-1, 0] / law.alpha.d
     return [
-        judged("energy-rises", rise).described(
-            computed=float(rise.mid),
-            stated="H = V + ½Σ‖p_i‖² can rise",
+        judged("energy-rises", rise, computed=float(rise.mid), stated="H = V + ½Σ‖p_i‖² can rise").described(
             witness={"H": [float(energy.mid[0]), float(energy.mid[-1])]},
             detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: from start to end H changes by "
             f"{rise.mid:.6g}; ½v² = {0.5 * speed**2:g}",
         ),
-        judged("follower", _NUMERICAL * size - climbed).described(
-            computed=float(climbed.mid.max()),
+        judged("follower", _NUMERICAL * size - climbed, computed=float(climbed.mid.max())).described(
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own_energy.mid[-1])},

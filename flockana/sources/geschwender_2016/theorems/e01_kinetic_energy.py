@@ -14,9 +14,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
 
     falling = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))  # and the printed energy climbs
     return [
-        equal("printed", e1_identity(m=2).residual, disproof=PROOF).described(
-            stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p",
-            detail="with the printed H a term -dV/dt remains, which has no definite sign",
+        equal("printed", e1_identity(m=2).residual, disproof=PROOF, stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p").described(
+            detail="with the printed H a term -dV/dt remains, which has no definite sign"
         ),
         state_claim(e1_counterexample()),
         run_claim(falling, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents"),

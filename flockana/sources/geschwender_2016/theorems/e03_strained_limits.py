@@ -103,8 +103,7 @@ def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
     q, end = max(limit.parts, key=lambda part: part[1].strain)
     certain = end.coincident == 0
     margin = tolerances.lattice - _certain_strain(law, q) if certain else Enclosure.around(0.0, inf)
-    return judged("strained", margin, about="all").described(
-        computed=end.strain,
+    return judged("strained", margin, about="all", computed=end.strain).described(
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
         witness={"start": f"random_disc{_STRAINED}", "agents": len(q), "links": end.links},
         detail=f"{len(q)} distinct agents end in a strict minimum with links of {end.shortest:.4g} to "
@@ -133,8 +132,7 @@ def _compressed(tolerances: Tolerances) -> Claim:
     limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)
     margin = tolerances.lattice - _certain_strain(law, limit.q)
-    return judged("algorithm-2", margin, about="all", disproof="compressed-patches").described(
-        computed=end.strain,
+    return judged("algorithm-2", margin, about="all", disproof="compressed-patches", computed=end.strain).described(
         stated="Algorithm 2 converges to an α-lattice (slides' summary of Theorem 3)",
         witness={"links": [end.shortest, end.longest]},
         detail=f"a hexagon of 7 under Algorithm 2 rests with links of {end.shortest:.5g} to {end.longest:.5g}, not 7",

@@ -50,8 +50,7 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     off = (z - alpha.d_alpha) ** 2
     ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
     slope = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
-    return of_state("printed", slope, error, about="all", proof="collisions").described(
-        computed=slope,
+    return of_state("printed", slope, error, about="all", proof="collisions", computed=slope).described(
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
         witness="ψ_α/(z - d_α)² at 2001 lengths; the sign of ψ_α follows from that of φ_α",
         detail=f"the implication holds: ψ_α is at least {slope:.2g} (z - d_α)², and V does not rise",
@@ -63,8 +62,7 @@ def _reached(alpha: AlphaInteraction) -> Claim:
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
     margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)
-    return of_state("found", margin, error, about="all", proof="n-max").described(
-        computed=n,
+    return of_state("found", margin, error, about="all", proof="n-max", computed=n).described(
         stated="the best α-lattices have V < c* for n <= 14 only",
         witness={"V(n)": energies[0], "V(n + 1)": energies[1], "c*": alpha.c_star},
         detail=f"with the most links possible ({harborth(n)} at n = {n}), V = {energies[0]:.4g} < c* = "

@@ -112,8 +112,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     return [
         *_counterexample("13", fcc_star(_D), STAR, tolerances),
         *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
-        by_count("six", bad, about="all", proof=_PROOF).described(
-            computed={"fragments": total, "not planar": bad},
+        by_count("six", bad, about="all", proof=_PROOF, computed={"fragments": total, "not planar": bad}).described(
             stated="every fragment of six sites is planar",
             witness="every connected fragment, up to translation",
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",

@@ -29,11 +29,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     count, printed, _ = min((table[n] for n in range(3, _MOST + 1)), key=lambda row: row[1] - row[0])
     off = [n for n, (count, _, sharp) in table.items() if count != sharp]
     return [
-        by_count("printed", len(exceeding), about="all", disproof=_PROOF).described(
-            computed=table[2][0],
-            stated=table[2][1],
-            witness={"n": exceeding},
-            detail="two agents at distance d have 1 link; 3n - 6 is 0",
+        by_count("printed", len(exceeding), about="all", disproof=_PROOF, computed=table[2][0]).described(
+            stated=table[2][1], witness={"n": exceeding}, detail="two agents at distance d have 1 link; 3n - 6 is 0"
         ),
         counted("corrected", printed, count, count, about="all", proof=_PROOF).described(
             computed={n: (count, printed) for n, (count, printed, _) in table.items() if n >= 3},

@@ -19,11 +19,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     falling = taper(z, h=h)
     ends = [sp.simplify(f.subs(z, end)) for end in (h, 1) for f in (falling, falling.diff(z))]
     return [
-        exact("printed", jump == 0, disproof="smoothness").described(
-            computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}",
-            stated="differentiable at h = 1",
-            witness="z = 1",
-            detail=f"at h = 1 the function jumps by {jump} at z = 1",
+        exact("printed", jump == 0, disproof="smoothness", computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}").described(
+            stated="differentiable at h = 1", witness="z = 1", detail=f"at h = 1 the function jumps by {jump} at z = 1"
         ),
         exact("corrected", ends == [1, 0, 0, 0], proof="smoothness").described(
             computed="ρ_h(h) = {}, ρ_h'(h) = {}, ρ_h(1) = {}, ρ_h'(1) = {}".format(*ends),

@@ -73,8 +73,7 @@ def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolera
 
 
 def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Claim:
-    return limit_claim("minimum", needs, [final_basin(seen).certificate]).described(
-        computed=end.curvature,
+    return limit_claim("minimum", needs, [final_basin(seen).certificate], computed=end.curvature).described(
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
         witness={"force": end.force, "K̃": end.mismatch},
         detail=f"least curvature {end.curvature:.3g} of the largest, residual force {end.force:.1g}",

@@ -48,11 +48,9 @@ def _state() -> Claim:
     bound = 64.0 * EPS * (1.0 + _SHIFT) * alpha.strength * 2.0
     states = [q + w for w in (0.0, _SHIFT * alpha.d)]
     worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in states]))
+    text = f"the corrected form is the force that the law computes, to {worst:.2g}"
     return of_state("state", bound - worst, 0.0).described(
-        computed=worst,
-        stated=f"the law's own force, to rounding ({bound:.2g})",
-        witness={"q": q.tolist()},
-        detail=f"the corrected form is the force that the law computes, to {worst:.2g}",
+        computed=worst, stated=f"the law's own force, to rounding ({bound:.2g})", witness={"q": q.tolist()}, detail=text
     )
 
 
@@ -68,9 +66,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
 
     printed, true = reynolds_form(printed=True), reynolds_form()
     return [
-        equal("printed", list(printed.residuals)).described(
-            stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
-            detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
+        equal("printed", list(printed.residuals), stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻").described(
+            detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w"
         ),
         _example(),
         equal("corrected", list(true.residuals)).described(

@@ -73,16 +73,11 @@ def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding(margin, text, computed=float(speed.max()), stated="about 200, to one digit")
 
 
-def _last_apart(run: Trajectory) -> float:
-    """Return the iteration of the last disconnected sample; -1 without one."""
-    apart = run.t[run.metric("connectivity") < 1.0]
-    return float(apart[-1]) / DT if apart.size else -1.0
-
-
 def _connected_from(text: str, iteration: float, stated: str) -> Report:
     @report("connected", text)
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
-        last = _last_apart(run)
+        apart = run.t[run.metric("connectivity") < 1.0]
+        last = float(apart[-1]) / DT if apart.size else -1.0
         when = "connected at every sample" if last < 0.0 else f"last not connected at iteration {last:.1f}"
         return finding(iteration - last, when, computed=last, stated=stated)
 

@@ -38,11 +38,9 @@ def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
     """Return the claim that a step equals exact motion under constant u, with old or new velocity."""
     text, zero = _symbolic_excess(v)
     measured, swept = _step(factor)
+    detail = f"with the velocity at the {v} of the step, the displacement exceeds p dt + ½ u dt² by {text}"
     return exact(name, zero, **proof).described(
-        computed=text,
-        stated="0",
-        witness={"u dt²": swept, "excess of one step of the map": measured},
-        detail=f"with the velocity at the {v} of the step, the displacement exceeds p dt + ½ u dt² by {text}",
+        computed=text, stated="0", witness={"u dt²": swept, "excess of one step of the map": measured}, detail=detail
     )
 
 

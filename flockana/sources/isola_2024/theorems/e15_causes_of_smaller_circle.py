@@ -80,8 +80,7 @@ def _values(ratios: list[Enclosure]) -> list[float]:
 
 def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) -> Claim:
     off = stacked([abs(ratio / gain - 1.0) for ratio, gain in zip(ratios, gains, strict=True)])
-    return judged("predicted", tolerances.agreement - off).described(
-        computed=_values(ratios),
+    return judged("predicted", tolerances.agreement - off, computed=_values(ratios)).described(
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
         detail="the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
         f"{off.mid.max():.1g} at most",
@@ -92,15 +91,13 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
     """Return the project's claim that an outside start, or another speed, keeps the circle from shrinking."""
     largest = stacked(others).max()
     return [
-        judged("printed-start", outside - 1.0, about="all", disproof=_PROOF).described(
-            computed=float(outside.mid),
+        judged("printed-start", outside - 1.0, about="all", disproof=_PROOF, computed=float(outside.mid)).described(
             stated="from outside the circle the flock's is not smaller",
             witness={"inside": float(inside.mid), "outside": float(outside.mid)},
             detail=f"the flock describes {outside.mid:.4f} of the γ-agent's circle from {_AWAY:g} radii away, "
             f"{inside.mid:.4f} from its centre: smaller from both starts",
         ),
-        judged("printed-speed", largest - 1.0, about="all", disproof=_PROOF).described(
-            computed=_values(others),
+        judged("printed-speed", largest - 1.0, about="all", disproof=_PROOF, computed=_values(others)).described(
             stated="at some other speed the flock's circle is not smaller",
             detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed the circle is "
             f"{largest.mid:.4f} of the γ-agent's at most: smaller at each speed",

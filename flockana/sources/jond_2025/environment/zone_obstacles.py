@@ -48,9 +48,6 @@ class Box:
             raise ArgumentError(f"low = {low.tolist()}, high = {high.tolist()}: expected low < high on every axis")
 
     def clearance(self, q: Any) -> FloatArray:
-        """Return distances of points from the nearest wall; negative outside the box.
-
-        On a straight way it is least at one of the ends.
-        """
+        """Return distances of points from the nearest wall; negative outside the box."""
         q = ensure_points("q", q)
         return np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

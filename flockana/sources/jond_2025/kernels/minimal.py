@@ -58,10 +58,8 @@ def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.i
 
 @kernel
 def edge_forces(q, p, head, tail, mu, rho, align, u):
-    """Add μ (1 − ρ/‖x‖) x + a (p_j − p_i) of each edge, x = q_j − q_i, to u_i; return Σ a ‖p_j − p_i‖² over edges.
-
-    Coincident agents have no bearing: their edge contributes the alignment only.
-    """
+    """Add μ (1 − ρ/‖x‖) x + a (p_j − p_i) of each edge, x = q_j − q_i, to u_i; return Σ a ‖p_j − p_i‖² over edges."""
+    # coincident agents have no bearing: their edge contributes the alignment only
     dissipated = 0.0
     m = q.shape[1]
     for e in range(head.size):
@@ -156,10 +154,8 @@ def _pull_along(here, there, now, then, s2, square, w, align, u):
 
 @kernel
 def _pull_all(x, v, square, mu, rho, align, s2, w, u):
-    """Add edge forces of all pairs (`_pull`), perceived agent by perceived agent.
-
-    So each agent's sum is in the order in which `_pull` adds to it, and loops over agents are compiled to SIMD.
-    """
+    """Add edge forces of all pairs (`_pull`), perceived agent by perceived agent."""
+    # in the order in which `_pull` adds to each agent's sum; loops over agents are compiled to SIMD
     u[:] = 0.0
     for j in range(s2.size):
         _squares(x, j, s2)
@@ -196,10 +192,7 @@ def _many_steps(x, v, square, edges, dt, steps):
 def semi_implicit_steps(
     q: FloatArray, p: FloatArray, edges: EqualEdges, dt: float, steps: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return semi-implicit Euler steps of few agents: q, p after each and u before, (steps, n, m).
-
-    All pairs are looked at in each step. Up to `AT_ONCE` agents it is what steps one by one are, to the bit.
-    """
+    """Return semi-implicit Euler steps of few agents: q, p after each and u before, (steps, n, m)."""
     reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter
     square = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))

@@ -70,10 +70,7 @@ def _in_zone(along, across, depth, half):
 
 @kernel
 def _crosses(zone, edge, literal):
-    """Return whether a side of a triangular zone meets a segment; `literal` tests the sides at the agent only.
-
-    The zone is (x, y, hx, hy, depth, half): its agent's place and unit heading, its altitude and half base.
-    """
+    """Return whether a side of a triangular zone meets a segment; `literal` tests the sides at the agent only."""
     (x, y, hx, hy, depth, half), (cx, cy, dx, dy) = zone, edge
     ax, ay = x + depth * hx, y + depth * hy
     rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx

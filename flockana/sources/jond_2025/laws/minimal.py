@@ -10,16 +10,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    PerAgent,
-    ensure_flag,
-    ensure_kind,
-    ensure_points,
-    ensure_positive,
-    normalise,
-    per_agent,
-)
+from flockana.base import checks
+from flockana.base.checks import FloatArray, PerAgent, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.override_checks import overrides_consistently
 from flockana.base.scales import Scales
@@ -94,8 +86,10 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        normalise(self, ensure_flag, "normalised")
-        normalise(self, per_agent, "radius", *(name for name in ("beta", "spacing") if getattr(self, name) is not None))
+        normalise(self, checks.ensure_flag, "normalised")
+        normalise(
+            self, checks.per_agent, "radius", *(name for name in ("beta", "spacing") if getattr(self, name) is not None)
+        )
         normalise(self, per_pair, "mu", "sigma")
         if self.edges is not None:
             object.__setattr__(self, "edges", ensure_edges(self.edges))
@@ -205,17 +199,16 @@ class MinimalFlocking(Law):
         >>> MinimalFlocking((3.0, 1.0)).perceived([[0.0], [2.0]])
         ((1, 0),)
         """
-        q = ensure_points("q", q)
+        q = checks.ensure_points("q", q)
         self.check_agents(len(q))
         data = self.edge_data(q)
         return tuple(zip(data.tail.tolist(), data.head.tolist(), strict=True))
 
     @cached_property
     def reciprocal(self) -> bool:
-        """Whether the graph is frozen and every edge has an equal reverse edge.
-
-        Equal but for rounding: a spacing β_i r_i |N_i| is a product, and so is all that is given in other units.
-        """
+        """Whether the graph is frozen and every edge has an equal reverse edge."""
+        # Equal but for rounding: a spacing β_i r_i |N_i| is a product, and so is all that is given in other
+        # units.
         if self.edges is None:
             return False
         what = dict(zip(self.edges, np.array(self._frozen[2:]).T, strict=True))
@@ -236,13 +229,7 @@ class MinimalFlocking(Law):
         return kernel.EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
 
     def block(self, solver: Any) -> Block | None:
-        """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used.
-
-        Parameters
-        ----------
-        solver : FixedStep
-            Method and step.
-        """
+        """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used."""
         if solver.position_factor != 1.0:
             return None
 
@@ -262,15 +249,7 @@ class MinimalFlocking(Law):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop.
-
-        Only where `steps_many` says so.
-
-        Parameters
-        ----------
-        steps : int
-            How many.
-        """
+        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop."""
         return kernel.semi_implicit_steps(q, p, self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -379,14 +358,13 @@ class DiscreteMinimalFlocking(DiscreteLaw):
     dt: float = 0.1
 
     units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
     references = ("jond-2025",)
     position_factor = 1.0
     steps_at_once = 4096
 
     def __post_init__(self) -> None:
-        ensure_kind("law", self.law, MinimalFlocking, "MinimalFlocking(...)")
-        normalise(self, ensure_positive, "dt")
+        checks.ensure_kind("law", self.law, MinimalFlocking, "MinimalFlocking(...)")
+        normalise(self, checks.ensure_positive, "dt")
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         u = self.law.flow(t, q, p)[0]

@@ -145,7 +145,6 @@ class ZoneFlocking(DiscreteLaw):
         "growth": (1, -1),
         "dt": (0, 1),
     }
-
     references = ("jond-2025",)
     derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"iterate": ("step",)}
     extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "reach": (1, 0), "alien": (1, 0)}
@@ -169,8 +168,6 @@ class ZoneFlocking(DiscreteLaw):
             Those of section 5.1 by default.
         weights : ZoneWeights, optional
             Those of section 5.1 by default.
-        **options
-            Other parameters of the law by name.
 
         Examples
         --------
@@ -215,10 +212,7 @@ class ZoneFlocking(DiscreteLaw):
         self.world.check_start(q)
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the initial memory: headings along velocities, exact velocity estimates, aliens at their starts.
-
-        With `growth` the radii of attraction as given, with `noise` step 0.
-        """
+        """Return the initial memory: headings along velocities, exact velocity estimates, aliens at their starts."""
         speed = np.linalg.norm(p, axis=1, keepdims=True)
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
         memory = {"heading": heading, "estimate": np.array(p)}

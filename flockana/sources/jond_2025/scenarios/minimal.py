@@ -15,14 +15,7 @@ from flockana.measures.perception import both_ways, random_out_tree
 from flockana.scenarios.entry import Builder, Scenario, entry, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, in_source_units, report
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.sources.jond_2025.theorems.j11_minimal_model_runs import (
-    ALIGNED,
-    DT,
-    DURATION,
-    LONGER,
-    RECOMMENDED,
-    minimal_start,
-)
+from flockana.sources.jond_2025.theorems import j11_minimal_model_runs as j11
 
 _SETTLED = 0.1  # largest relative change of a distance over the last tenth of the run that counts as at rest
 _REFERENCES = ("jond-2025",)
@@ -43,7 +36,7 @@ def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _aligned(run: Trajectory, tolerances: Tolerances) -> Claim:
     C = coordination(run.p[-1])
     detail = f"the mean cosine between two velocities goes from {coordination(run.p[0]):.2f} to {C:.4f}"
-    return finding(C - ALIGNED, detail, computed=C, stated=f">= {ALIGNED:g}")
+    return finding(C - j11.ALIGNED, detail, computed=C, stated=f">= {j11.ALIGNED:g}")
 
 
 @report("collision-free", "no two agents collide")
@@ -65,8 +58,8 @@ def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _flock(m: int, *, printed: bool) -> Builder:
-    law = MinimalFlocking() if printed else MinimalFlocking(**RECOMMENDED)
-    duration = DURATION[m] if printed else LONGER
+    law = MinimalFlocking() if printed else MinimalFlocking(**j11.RECOMMENDED)
+    duration = j11.DURATION[m] if printed else j11.LONGER
     how = (
         f"r = 10 m, β = 1/r, σ = μ = 1, {duration:g} s in steps of 0.1 s"
         if printed
@@ -78,7 +71,6 @@ def _flock(m: int, *, printed: bool) -> Builder:
         expected |= inconclusive("source", "source:collision-free", "source:aligned")
     else:  # what holds at every seed (all of 260); for the others the report gives shares of seeds
         expected |= verified("source:cohesive", "source:collision-free", *(["source:stable"] if m == 3 else []))
-
     kind = "printed" if printed else "recommended"
     name = f"minimal-{m}d{'-printed' if printed else ''}"
     title = f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}"
@@ -88,8 +80,8 @@ def _flock(m: int, *, printed: bool) -> Builder:
     )
     reports = in_source_units(lambda: law.scales, (_cohesive, _collision_free, _aligned, _stable))
     more: dict[str, Any] = {"references": _REFERENCES, "seeds": 200, "settings": f"{kind} settings"}
-    draw = partial(minimal_start, m)
-    return entry(name, title, source, law.discrete(DT), draw, duration, expected, reports, **more)
+    draw = partial(j11.minimal_start, m)
+    return entry(name, title, source, law.discrete(j11.DT), draw, duration, expected, reports, **more)
 
 
 def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
@@ -125,6 +117,6 @@ def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
 
 SCENARIOS: dict[str, Builder] = {
     f"minimal-{m}d{'-printed' if printed else ''}": _flock(m, printed=printed)
-    for m in DURATION
+    for m in j11.DURATION
     for printed in (False, True)
 } | {"zone-tree": _zone_tree, "zone-path": _zone_path}

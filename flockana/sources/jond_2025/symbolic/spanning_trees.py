@@ -54,12 +54,8 @@ def stacked_form(edges: Edges) -> Derivation:
 
 
 def separation_forms(edges: Edges) -> dict[str, Derivation]:
-    """Derive the separation from its sums, compared with the paper's matrix forms, printed and corrected.
-
-    With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1). The printed
-    (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used
-    together (34) comes out right.
-    """
+    """Derive the separation from its sums, compared with the paper's matrix forms, printed and corrected."""
+    # With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1).
     D, D_in = incidence_matrix(edges), receiver_matrix(edges)
     p, factors = _column("p", D.rows), sp.diag(*sp.symbols(f"k_0:{len(edges)}"))
     x = -D.T * p
@@ -82,10 +78,9 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
 
 
 def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return A^s = D^T D_in W^s and A^a = D^T D_in W^a of the edge dynamics x'' = -A^a x' - A^s x.
-
-    On a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its mean.
-    """
+    """Return A^s = D^T D_in W^s and A^a = D^T D_in W^a of the edge dynamics x'' = -A^a x' - A^s x."""
+    # on a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its
+    # mean
     D, D_in = incidence_matrix(edges), receiver_matrix(edges)
     shares = sp.diag(*(sp.Rational(1, sum(i == head for _, head in edges)) for _, i in edges))
     return D.T * D_in * _weights("w", edges), D.T * D_in * shares

@@ -60,10 +60,8 @@ def derive_equivalence(m: int = 2) -> Derivation:
 
 
 def estimate_gap() -> sp.Expr:
-    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation.
-
-    (17) adds δ u^aux, the input without the global speed term u^ga, so that Remark 3's equivalence fails (J8).
-    """
+    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation."""
+    # (17) adds δ u^aux, the input without the global speed term: Remark 3's equivalence fails (J8)
     aux = sp.Symbol("u^aux", real=True)
     drive = GAIN * (SPEED * sp.sign(OWN) - OWN)
     return sp.factor(sp.expand(OWN + STEP * (aux + drive) - (OWN + STEP * aux)), STEP, GAIN)
@@ -90,10 +88,8 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr = DRIVE, weight:
 
 
 def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repulsion: sp.Expr = LEAST) -> sp.Expr:
-    """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15).
-
-    Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
-    """
+    """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15)."""
+    # cohesion is off at r and nearer: where the balance would be there, the pair slides at r
     d = sp.Symbol("d", positive=True)
     balance = exact("separation", separation) * (d - C) + exact("cohesion", cohesion) * d
     return sp.Max(exact("repulsion", repulsion), sp.factor(sp.solve(balance, d)[0]))

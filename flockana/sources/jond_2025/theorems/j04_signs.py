@@ -29,8 +29,7 @@ def _loop() -> Claim:
     u = law.acceleration(0.0, q, p)
     # W^a = I on a tree
     error, undirected = (float(np.abs(-L * w @ D.T @ q - L @ D.T @ p - u).max()) for L in (D_in, D))
-    return of_state("loop", _SAME - error / float(np.abs(u).max()), _ROUNDING).described(
-        computed=error,
+    return of_state("loop", _SAME - error / float(np.abs(u).max()), _ROUNDING, computed=error).described(
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",
         witness={"with D in place of D_in": undirected},
         detail=f"(35) with D_in agrees with the law to {error:.1g}; with D, as L = D Dᵀ would have it, it is off by "

@@ -36,25 +36,20 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     clip = ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
     clipped = _late_speeds(clip)
     near = 0.05 * law.desired_speed
+    speed_text = "with (10) on the state the mean speed is about 3"
     return [
-        of_map("step", _SAME - off, _ROUNDING, proof="speed-bound").described(
-            computed=step,
-            stated=4.0 * tanh(0.75),
+        of_map("step", _SAME - off, _ROUNDING, proof="speed-bound", computed=step, stated=4.0 * tanh(0.75)).described(
             witness="one agent at the desired speed, no input",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
-        spectral("reachable", shortfall, _ROUNDING, disproof="speed-bound").described(
-            computed=bound,
+        spectral("reachable", shortfall, _ROUNDING, disproof="speed-bound", computed=bound).described(
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps the limit is lower",
         ),
         always(
-            "speed",
-            [abs(v - law.desired_speed) <= near for v in printed],
-            "with (10) on the state the mean speed is about 3",
-            "mean speed about 3 m/s",
+            "speed", [abs(v - law.desired_speed) <= near for v in printed], speed_text, "mean speed about 3 m/s"
         ).described(witness={"mean speed over seeds": float(np.mean(printed))}),
         mostly(
             "clip",

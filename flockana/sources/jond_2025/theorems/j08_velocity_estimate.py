@@ -18,8 +18,7 @@ def _forms(tolerances: Tolerances) -> Claim:
         position, bearing = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
         largest = max(float(np.abs(term).max()) for term in position.values())
         worst = max(worst, *(float(np.abs(position[name] - bearing[name]).max()) / largest for name in position))
-    return of_state("forms", _SAME - worst, _ROUNDING).described(
-        computed=worst,
+    return of_state("forms", _SAME - worst, _ROUNDING, computed=worst).described(
         stated="with the true velocity both forms of all six behaviours are equal",
         witness={"starts": SEEDS},
         detail=f"with the true velocity position and bearing form agree to {worst:.1g}: (12)-(15) are right",

@@ -41,9 +41,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
-        of_map("corrected", 1e-3 - abs(gap / stand_off - 1.0), _ROUNDING).described(
-            computed=gap,
-            stated=stand_off,
+        of_map("corrected", 1e-3 - abs(gap / stand_off - 1.0), _ROUNDING, computed=gap, stated=stand_off).described(
             witness="the same agent and alien, 0 < d <= s_i",
             detail=f"with 0 < d <= s_i the agent stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),

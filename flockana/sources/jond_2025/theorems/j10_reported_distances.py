@@ -5,12 +5,7 @@ import numpy as np
 from flockana.measures.metrics import coordination, min_distance
 from flockana.sources.jond_2025.interactions.zones import ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.sources.jond_2025.theorems.random_starts import (
-    SEEDS,
-    runs_from_random_starts,
-    separated_start,
-    zone_start,
-)
+from flockana.sources.jond_2025.theorems import random_starts
 from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, erratum, mostly, of_state
 
 _STARTS = 2000
@@ -30,15 +25,14 @@ def _weights_cancel() -> Claim:
         ZoneFlocking.printed(weights=ZoneWeights(cohesion=c, alignment=a, cohesion_gain=1.0, alignment_gain=1.0))
         for c, a in ((0.75, 0.25), (40.0, 7.0))
     )
-    for seed in range(SEEDS):
-        q, p = zone_start(seed)
+    for seed in range(random_starts.SEEDS):
+        q, p = random_starts.zone_start(seed)
         forces, other_forces = (law.behaviours(q, p) for law in (printed, other))
         pairs = [(forces[name], other_forces[name]) for name in ("cohesion", "alignment")]
         worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
-    return of_state("weights", worst - _SAME, _ROUNDING).described(
-        computed=worst,
+    return of_state("weights", worst - _SAME, _ROUNDING, computed=worst).described(
         stated="w^lc = 0.75 and w^la = 0.25 weigh cohesion against alignment",
-        witness={"(w^lc, w^la)": [(0.75, 0.25), (40.0, 7.0)], "starts": SEEDS},
+        witness={"(w^lc, w^la)": [(0.75, 0.25), (40.0, 7.0)], "starts": random_starts.SEEDS},
         detail=f"with weights of 40 and 7 for 0.75 and 0.25 cohesion and alignment stay the same to {worst:.1g}: "
         "uniform weights cancel in (3), (4)",
     )
@@ -54,13 +48,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     always violate the first at once; with the printed parameters the second never happens, and the uniform weights 0.75
     and 0.25 cancel. With gains in front of the means and separated, connected starts both hold.
     """
-    printed = [_least_coordination(run) for run in runs_from_random_starts(ZoneFlocking.printed())]
+    printed = [_least_coordination(run) for run in random_starts.runs_from_random_starts(ZoneFlocking.printed())]
     mended_law = ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
-    mended = [_least_coordination(run) for run in runs_from_random_starts(mended_law)]
-    recommended = runs_from_random_starts(ZoneFlocking(), separated_start)
+    mended = [_least_coordination(run) for run in random_starts.runs_from_random_starts(mended_law)]
+    recommended = random_starts.runs_from_random_starts(ZoneFlocking(), random_starts.separated_start)
     C = [_least_coordination(run) for run in recommended]
     D = [min(map(min_distance, run.q)) for run in recommended]
-    separated = [min_distance(zone_start(seed)[0]) > _SAFE for seed in range(_STARTS)]
+    separated = [min_distance(random_starts.zone_start(seed)[0]) > _SAFE for seed in range(_STARTS)]
     order = f"C >= {_IN_ORDER:g} from {_FROM:g} s on"
     return [
         always("distances", separated, "agents start more than 1.5 m apart", "distances above 1.5 m throughout"),

@@ -69,13 +69,11 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from agent to agent and jumps. With one constant spacing and mutual forces they do.
     """
     printed = {m: _ends(MinimalFlocking(), m, DURATION[m], _SEEDS) for m in (2, 3)}
+    cohesive_2d_text = f"2-D as printed: one component at the end ({np.median(printed[2][:, 1]):g} in the median)"
     return [
         *(_aligned(m, printed[m][:, 0]) for m in (2, 3)),
-        always(
-            "cohesive-2d",
-            printed[2][:, 1] == 1,
-            f"2-D as printed: one component at the end ({np.median(printed[2][:, 1]):g} in the median)",
-            "cohesive at the end",
-        ).described(witness={"components by seed": printed[2][:, 1].astype(int).tolist()}),
+        always("cohesive-2d", printed[2][:, 1] == 1, cohesive_2d_text, "cohesive at the end").described(
+            witness={"components by seed": printed[2][:, 1].astype(int).tolist()}
+        ),
         *(_recommended(m) for m in DURATION),
     ]

@@ -46,8 +46,7 @@ def _head_on(law: ZoneFlocking) -> FloatArray:
 def _letter() -> Claim:
     between = 0.5 * (_C + _A)
     braking = _braking(_law("attraction", "literal"), between, _DESIRED)
-    return of_state("letter", braking, _ROUNDING).described(
-        computed=braking,
+    return of_state("letter", braking, _ROUNDING, computed=braking).described(
         stated="with an altitude of a_i an agent is repelled by what comes within it",
         witness={"distance from the wall": between, "c": _C, "a": _A},
         detail=f"(8) is w (d - c): at d = {between:g}, beyond c = {_C:g}, it attracts, by {-braking:.3g} w c",
@@ -92,8 +91,7 @@ def _slow() -> Claim:
     """Return the claim that an agent at rest has the short zone and stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated = _R - _DESIRED * _DRIVE / _WEIGHT
-    return of_map("stand-off", 1e-6 - abs(measured - stated) / _C, _ROUNDING).described(
-        computed=measured,
+    return of_map("stand-off", 1e-6 - abs(measured - stated) / _C, _ROUNDING, computed=measured).described(
         stated=stated,
         witness={"w^ga": _DRIVE, "w^oa": _WEIGHT, "v^d": _DESIRED},
         detail=f"braked, the zone contracts to r: the agent stops {measured:.4f} m from the wall, at "

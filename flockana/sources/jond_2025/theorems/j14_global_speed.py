@@ -45,9 +45,7 @@ def _informed_or_not() -> list[Claim]:
             detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
             f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
-        of_map("none-informed", _SAME - spread, _ROUNDING).described(
-            computed=alone[-1].tolist(),
-            stated=1.5,
+        of_map("none-informed", _SAME - spread, _ROUNDING, computed=alone[-1].tolist(), stated=1.5).described(
             witness={"informed": "none", "p(0)": (1.0, 2.0)},
             detail="two uninformed agents at 1 and 2 m/s agree on 1.5 m/s: alignment alone preserves the mean",
         ),

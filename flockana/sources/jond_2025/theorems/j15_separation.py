@@ -35,8 +35,7 @@ def _sliding() -> Claim:
     """Return the claim that strong cohesion, off below r, makes a pair chatter at the distance r."""
     late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
     off = float(np.abs(late / r - 1.0).max())
-    return of_map("sliding", _SLIDES - off, _ROUNDING).described(
-        computed=[float(late.min()), float(late.max())],
+    return of_map("sliding", _SLIDES - off, _ROUNDING, computed=[float(late.min()), float(late.max())]).described(
         stated=f"beyond g_c = w^ls (c/r - 1) a pair slides at r = {r:g}",
         witness={"w^ls": _STRONG[0], "g_c": _STRONG[1], "dt": _FINE},
         detail=f"with g_c = {_STRONG[1]:g} the balance would be at {_C * _STRONG[0] / sum(_STRONG):.3g} m, nearer "
@@ -49,8 +48,7 @@ def _pair() -> list[Claim]:
     error = float(np.max([abs(stated - value) for stated, value in rows.values()]))
     printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
-        of_map("printed", printed / _C - 1.0, _ROUNDING).described(
-            computed=printed,
+        of_map("printed", printed / _C - 1.0, _ROUNDING, computed=printed).described(
             stated=f"a separation of at least c = {_C:g} m is maintained",
             witness={"w^ls": 5.0, "w^lc": "any, as it cancels", "c": _C},
             detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed:.4g} "
@@ -64,9 +62,7 @@ def _pair() -> list[Claim]:
             "m): below c for any cohesion",
         ),
         _sliding(),
-        of_map("alone", _SAME - abs(alone / _C - 1.0), _ROUNDING).described(
-            computed=alone,
-            stated=_C,
+        of_map("alone", _SAME - abs(alone / _C - 1.0), _ROUNDING, computed=alone, stated=_C).described(
             witness={"g_c": 0.0, "q(0)": "2 m apart"},
             detail="without cohesion (6) drives a pair towards c, where it vanishes, as the paper says",
         ),

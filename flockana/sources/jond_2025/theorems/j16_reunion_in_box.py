@@ -61,8 +61,7 @@ def _circling() -> Claim:
         path = _positions(law, q, _SPEED * np.column_stack([np.cos(angle), np.sin(angle)]), _STEPS)
         nearest.append(float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min()))
     meetings = sum(distance <= _A for distance in nearest)
-    return limit_claim("circling", []).described(
-        computed={"meet": meetings, "of": _SEEDS},
+    return limit_claim("circling", [], computed={"meet": meetings, "of": _SEEDS}).described(
         stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
         detail=f"from {meetings} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
@@ -97,8 +96,7 @@ def _pairs() -> Claim:
     gap = _positions(law, q, p, 600)[-1]
     parted = float(gap[2, 0] - gap[0, 0])
     straight = 20.0 + 2.0 * _SPEED * 60.0
-    return of_map("fragments", 0.5 - parted / straight, _ROUNDING).described(
-        computed=parted,
+    return of_map("fragments", 0.5 - parted / straight, _ROUNDING, computed=parted).described(
         stated="growing radii of attraction keep the flock one",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {parted:.4g} m "

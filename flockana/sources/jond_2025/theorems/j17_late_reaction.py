@@ -40,16 +40,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     delay, none = heeded - hunted, at_once - hunted_too
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
     return [
-        of_map("delay", 1.75 * step - abs(delay - predicted), _ROUNDING).described(
-            computed=delay,
-            stated=predicted,
+        of_map("delay", 1.75 * step - abs(delay - predicted), _ROUNDING, computed=delay, stated=predicted).described(
             witness={"s": _SHORT, "detection": _DETECTION, "approach": _SPEED + _PURSUIT},
             detail=f"head on, an agent that sees {_SHORT:g} m reacts {delay:.2g} s after it was detected: "
             f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
         ),
-        of_map("none", 1.75 * step - abs(none), _ROUNDING).described(
-            computed=none,
-            stated=0.0,
+        of_map("none", 1.75 * step - abs(none), _ROUNDING, computed=none, stated=0.0).described(
             witness={"s": _DETECTION, "detection": _DETECTION},
             detail=f"with s = {_DETECTION:g}, the alien's range, agents react within {abs(none):.2g} s: the next step",
         ),

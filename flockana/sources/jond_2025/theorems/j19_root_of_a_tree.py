@@ -35,19 +35,16 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     star = next(tree for tree in trees if tree.out_degree(0) == _NODES - 1)
     from_root = sum(globally_reachable(tree.reverse()) == {0} for tree in trees)
     return [
-        exact("root", roots == len(trees)).described(
-            computed=roots,
+        exact("root", roots == len(trees), computed=roots).described(
             stated=f"the root of each of the {len(trees)} trees on {_NODES} nodes is globally reachable",
             detail=f"the root is globally reachable in {roots} of {len(trees)}",
         ),
-        exact("star", connected == len(trees)).described(
-            computed=connected,
+        exact("star", connected == len(trees), computed=connected).described(
             stated="a graph with a spanning tree is connected as defined",
             witness=sorted(star.edges),
             detail=f"{connected} of {len(trees)} have a globally reachable node: the paths; a star has none",
         ),
-        exact("corrected", from_root == len(trees)).described(
-            computed=from_root,
+        exact("corrected", from_root == len(trees), computed=from_root).described(
             stated="from the root edges lead to every other node",
             detail=f"so it is in all {len(trees)}, and from no other node",
         ),

@@ -89,8 +89,7 @@ def _close_encounter() -> Claim:
     q, p = np.array([[0.0], [1.0]]), np.array([[2.0], [-2.0]])
     seen = observed(law, q, p, (0.0, 2.0), **_TIGHT)
     gap = Enclosure.around(seen.run.q[:, 1, 0] - seen.run.q[:, 0, 0], seen.shape_error.sum(axis=1)).min()
-    return judged("close-encounters", gap, about="all").described(
-        computed=float(gap.mid),
+    return judged("close-encounters", gap, about="all", computed=float(gap.mid)).described(
         stated="with alignment agents avoid close encounters (separation > 0)",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail="two agents at the desired spacing, closing in by four of it per time unit, pass through each other",

@@ -142,10 +142,8 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
 
 @register_jitable
 def _moved_beyond(x, then, drift, passed, square, squares):
-    """Return whether an agent's displacement relative to the drift exceeds √square, or is NaN.
-
-    Where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none: new lists.
-    """
+    """Return whether an agent's displacement relative to the drift exceeds √square, or is NaN."""
+    # where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none
     squares[:] = 0.0
     for c in range(len(x)):
         x_c, then_c, drift_passed = x[c], then[c], passed * drift[c]
@@ -173,10 +171,7 @@ def _spread(v, drift):
 
 @kernel
 def _listed(x, par, skin, near, degree, first, second, inside, ends):
-    """List pairs within a skin of the distances at which their force changes.
-
-    Who is in range of whom goes to `near`, of how many to `degree`, and where each agent's pairs end to `ends`.
-    """
+    """List pairs within a skin of the distances at which their force changes."""
     m, n = x.shape
     low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
     listed = 0

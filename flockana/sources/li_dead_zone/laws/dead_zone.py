@@ -58,7 +58,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     k2: float = 1.0
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
-
     references = ("li-dead-zone",)
     moving = True
     slide = ": the force of one zone drives them into the other and back; give the interaction a ramp to go on"
@@ -106,13 +105,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, rows)
 
     def block(self, solver: Any) -> Block | None:
-        """Return `semi_implicit` for semi-implicit Euler steps of this law; None for subclasses.
-
-        Parameters
-        ----------
-        solver : FixedStep
-            Method and step.
-        """
+        """Return `semi_implicit` for semi-implicit Euler steps of this law; None for subclasses."""
         is_plain = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
         if not is_plain or solver.position_factor != 1.0:
             return None

@@ -78,7 +78,6 @@ class LedDeadZoneFlocking(SumOfTerms):
     feedforward: bool = True
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1), "c1": (0, -2), "c2": (0, -1)}
-
     references = ("li-dead-zone",)
 
     def __post_init__(self) -> None:

@@ -87,13 +87,8 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
     q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
     q[group == 1, 0] += shift
     start = [(0.5 * _BOX + number * shift, 0.5 * _BOX) for number in (0, 1)]
-    law = LedDeadZoneFlocking(
-        leaders=[LinearTarget(at, (way * _SPEED, 0.0)) for at, way in zip(start, (-1.0, 1.0), strict=True)],
-        group=group.tolist(),
-        pinned=range(_PINNED),
-        c1=2.0,
-        c2=3.0,
-    )
+    leaders = [LinearTarget(at, (way * _SPEED, 0.0)) for at, way in zip(start, (-1.0, 1.0), strict=True)]
+    law = LedDeadZoneFlocking(leaders=leaders, group=group.tolist(), pinned=range(_PINNED), c1=2.0, c2=3.0)
     expected = verified("source:pinned", "source:parts")
     if shift == 0.0:
         expected |= refuted("source:same-leader", "source:different-leaders", "source", "source:within-r")

@@ -95,9 +95,7 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
         margin = (distance / bound).log()
     else:
         margin = distance / unit if distance.lo > 0.0 else Enclosure(-inf, distance.mid / unit, inf)
+    text = f"no two agents come closer than {distance.lo:.4g} {where}; the bound is {bound.mid:.3g}"
     return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
-        computed=float(distance.lo),
-        stated=f"every distance > {bound.mid:.4g}",
-        witness={"time": time},
-        detail=f"no two agents come closer than {distance.lo:.4g} {where}; the bound is {bound.mid:.3g}",
+        computed=float(distance.lo), stated=f"every distance > {bound.mid:.4g}", witness={"time": time}, detail=text
     )

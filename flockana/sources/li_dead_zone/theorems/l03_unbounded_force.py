@@ -17,8 +17,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     growth = sp.limit(RHO**2 * repulsion(), RHO, 0, "+")
     potential = derive_potential()
     return [
-        exact("printed", growth != 2 * K_R, disproof=PROOF).described(
-            computed=str(growth),
+        exact("printed", growth != 2 * K_R, disproof=PROOF, computed=str(growth)).described(
             stated="φ_z is a bounded, positive definite potential",
             witness="limit of ρ² |f| at 0",
             detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",

@@ -28,8 +28,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     rise = float(np.diff(energy.mid).max())
     identities = [saturated_energy_identity(m) for m in (1, 2, 3)]
     return [
-        judged("printed", (energy[:-1] - energy[1:]) / far, disproof=PROOF).described(
-            computed=rise,
+        judged("printed", (energy[:-1] - energy[1:]) / far, disproof=PROOF, computed=rise).described(
             stated="H never rises",
             detail=f"as two agents come into range, H of neighbours rises by {rise:.4g}, and ψ(r) = {far:.4g}",
         ),

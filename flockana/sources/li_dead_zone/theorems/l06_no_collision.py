@@ -31,14 +31,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     gap = abs(gaps / bound - 1.0)
     distances = ", ".join(f"{a:.3g}" for a in gaps.mid)
     return [
-        judged("printed", gaps / law.scales.length, about="all", proof=PROOF).described(
-            computed=gaps.mid.tolist(),
+        judged("printed", gaps / law.scales.length, about="all", proof=PROOF, computed=gaps.mid.tolist()).described(
             stated="no collision",
             detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
             "and never meet",
         ),
-        judged("bound", _ATTAINED - gap, proof=PROOF).described(
-            computed=bound.mid.tolist(),
+        judged("bound", _ATTAINED - gap, proof=PROOF, computed=bound.mid.tolist()).described(
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
             detail=f"without damping distances attain the explicit bound, to "
             f"{gap.mid.max():.1g}, and it falls exponentially with the energy",

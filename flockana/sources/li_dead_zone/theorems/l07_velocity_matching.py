@@ -45,13 +45,11 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     ramped = hold(law, q, p, 0.01).certificate
     state = observed(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
     return [
-        limit_claim("printed", [], escape=end.separation).described(
-            stated="all velocities match",
-            detail=f"two agents that separate keep the velocity mismatch {end.drift:.4g} permanently",
+        limit_claim("printed", [], escape=end.separation, stated="all velocities match").described(
+            detail=f"two agents that separate keep the velocity mismatch {end.drift:.4g} permanently"
         ),
         limit_claim("components", [], [settling(end)], detail="each of the two components is one agent"),
-        of_map("chatter", 1.0 - fine / coarse, _SPREAD).described(
-            computed=[coarse, fine],
+        of_map("chatter", 1.0 - fine / coarse, _SPREAD, computed=[coarse, fine]).described(
             stated="the scheme chatters, the less the shorter its step",
             detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),

@@ -21,19 +21,14 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     contact = float(brentq(pair.force, pair.d1 - pair.ramp, pair.d1))
     off_r_b, off_d1 = (abs(contact - at) / pair.ramp for at in (pair.r_b, pair.d1))
     return [
-        exact("printed", rank <= 2, disproof=PROOF).described(
-            computed=rank,
+        exact("printed", rank <= 2, disproof=PROOF, computed=rank).described(
             stated="all pairs of a flock at distance d",
             detail=f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
         ),
-        spectral("balance-distance", 1.0 - off_r_b, _ROUNDING / pair.ramp, disproof=PROOF).described(
-            computed=contact,
-            stated="r_b",
-            detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
+        spectral("balance-distance", 1.0 - off_r_b, _ROUNDING / pair.ramp, disproof=PROOF, computed=contact).described(
+            stated="r_b", detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}"
         ),
-        spectral("contact", 1.0 - off_d1, _ROUNDING / pair.ramp).described(
-            computed=contact,
-            stated="r_b - δ",
-            detail=f"two agents rest {pair.d1 - contact:.2g} below r_b - δ = {pair.d1:g}, on the ramp of repulsion",
+        spectral("contact", 1.0 - off_d1, _ROUNDING / pair.ramp, computed=contact, stated="r_b - δ").described(
+            detail=f"two agents rest {pair.d1 - contact:.2g} below r_b - δ = {pair.d1:g}, on the ramp of repulsion"
         ),
     ]

@@ -78,8 +78,7 @@ def _apart(seen: Observed) -> Claim:
     group = np.array(seen.law.continuous.group)
     first, second = (seen.end.p[group == leader].mean(axis=0) for leader in (0, 1))
     difference = float(np.linalg.norm(first - second))
-    return of_map("different-leaders", difference / 2.0 - (1.0 - _CLOSE), _ROUNDING).described(
-        computed=difference,
+    return of_map("different-leaders", difference / 2.0 - (1.0 - _CLOSE), _ROUNDING, computed=difference).described(
         stated=f"at t = {seen.t[-1]:g} agents with different leaders do not match, under the law with leaders",
         detail=f"two groups {_APART:g} m apart whose leaders separate at 2 m/s separate at {difference:.4g} m/s; in "
         "groups that start mixed, some unpinned agents follow the wrong leader (scenario dead-zone-leaders)",
@@ -132,8 +131,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
         _apart(runs["two"]),
         _fraction(),
         _follow("acceleration", runs["known"], f"{turning}, its acceleration known", "with feedforward"),
-        of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING).described(
-            computed=deaf,
+        of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING, computed=deaf).described(
             stated="not all follow a leader that turns if its acceleration is not known",
             detail=f"without feedforward a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} "
             f"and {late[1]:g}",

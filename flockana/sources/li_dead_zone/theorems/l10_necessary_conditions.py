@@ -79,8 +79,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             "neither stay together nor match velocities (L4, L7)",
         ),
         _necessary(),
-        limit_claim("sufficient", [], [calm.bond]).described(
-            computed=energy_share(law, x, 0.1 * v),
+        limit_claim("sufficient", [], [calm.bond], computed=energy_share(law, x, 0.1 * v)).described(
             stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
             detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s",
         ),

@@ -28,8 +28,7 @@ def _balance(seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) ->
 
 def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
     """Return the claim that velocities match within each component in the limit."""
-    return limit_claim("components", needs, [case.settling(end)]).described(
-        computed=end.mismatch,
+    return limit_claim("components", needs, [case.settling(end)], computed=end.mismatch).described(
         stated="velocities match within each component: K̃ of each -> 0",
         witness={"components": end.count},
         detail=f"at t = {seen.t[-1]:g} the largest K̃ of {end.count} component(s) is {end.mismatch:.3g}",

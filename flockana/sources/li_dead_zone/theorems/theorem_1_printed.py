@@ -54,8 +54,7 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
         detail = "the potential of a pair is 0 at r: nothing jumps"
     elif entry.unsure:
         detail = "between the samples, or within the run's error, a pair may come into range"
-    return counted("energy", 0, int(enters), possible, needs).described(
-        computed=jump if enters else 0.0,
+    return counted("energy", 0, int(enters), possible, needs, computed=jump if enters else 0.0).described(
         stated="H, summed over neighbours, never rises",
         witness={"agents": entry.pair, "time": entry.time},
         detail=detail,

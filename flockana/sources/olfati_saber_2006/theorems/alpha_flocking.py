@@ -44,8 +44,7 @@ def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: 
     values = value[part.first :]
     largest = Enclosure(values.lo.max(), values.mid.max(), max(values.hi.max(), over.hi.max()))
     worst = int(np.argmax(values.mid))
-    return judged(name, bound - largest).described(
-        computed=float(values.mid[worst]),
+    return judged(name, bound - largest, computed=float(values.mid[worst])).described(
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},
         detail=f"{what} {symbol}: {values.mid[worst]:.4g} at worst, at t = {t[worst]:.4g}",
@@ -67,8 +66,7 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
     possible = max(float(largest.max()), between)
     open_ = smallest[worst] <= most < possible
     near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
-    return counted(name, most, int(smallest[worst]), int(possible)).described(
-        computed=int(smallest[worst]),
+    return counted(name, most, int(smallest[worst]), int(possible), computed=int(smallest[worst])).described(
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
         detail=f"{what}: {int(smallest[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"

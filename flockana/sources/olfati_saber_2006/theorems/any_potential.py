@@ -130,8 +130,7 @@ def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str =
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
     """Return the claim that R stays below a bound."""
     worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
-    return judged(name, bound - radius_over(seen).max(), needs, proof=proof).described(
-        computed=largest,
+    return judged(name, bound - radius_over(seen).max(), needs, proof=proof, computed=largest).described(
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
         detail=f"cohesion radius R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",

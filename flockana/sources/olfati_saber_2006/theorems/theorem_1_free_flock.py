@@ -14,12 +14,6 @@ from flockana.theorems.search_objectives import strained
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
-def _barrier_proof(seen: Observed) -> str | None:
-    """Return the id of the proof of the barrier's bound, for up to 60 agents of the default law in the plane."""
-    counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
-    return proved(seen, "barrier") if counted else None
-
-
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
     """Return claim (ii), matching velocities: by the proof if all its hypotheses are met, else by a basin."""
     caught = [final_basin(seen).certificate]
@@ -51,10 +45,13 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     low, barrier = any_potential.never_meets(seen), below_the_barrier(seen, energy_at_start(seen))
     needs, bounded = [*needs, any_potential.stays_together(seen)], any_potential.bounded_at_contact(seen, low)
     excluded = proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF
+    # the proof of the barrier's bound counts up to 60 agents of the default law in the plane
+    counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
+    barrier_proof = proved(seen, "barrier") if counted else None
     claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
-        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
+        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=barrier_proof),
     ]
     return [*needs, *bounded, low, barrier], any_potential.attribute_claims(seen, claims)

@@ -22,8 +22,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
     """Return claim (ii), that the limit is a local minimum of U_λ, strict up to rotations."""
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
-    return limit_claim("ii", needs, [final_basin(seen).certificate]).described(
-        computed=end.curvature,
+    return limit_claim("ii", needs, [final_basin(seen).certificate], computed=end.curvature).described(
         stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
         detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; {kind}, {links}",

@@ -103,8 +103,7 @@ def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
         margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
         which = None if gap.links is None else net.agents(gap.links)
         near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
-    return of_state(name, margin, error, needs, proof=_CROSSINGS).described(
-        computed=count,
+    return of_state(name, margin, error, needs, proof=_CROSSINGS, computed=count).described(
         stated="no two links cross",
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
         detail=f"{net.crossing_text}{near}",
@@ -117,8 +116,7 @@ def _graph(net: Net, needs: Needs) -> Claim:
     planar = is_drawn or is_planar(net.n, net.links)
     witness = kuratowski(net.n, net.links) if not planar and len(net.links) <= _WITNESS_LIMIT else None
     remark = "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
-    return by_count("i-graph", 0 if planar else 1, needs).described(
-        computed="planar" if planar else "not planar",
+    return by_count("i-graph", 0 if planar else 1, needs, computed="planar" if planar else "not planar").described(
         stated="the graph of the net is planar (as printed)",
         witness=None if witness is None else vars(witness),
         detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{remark}; "
@@ -128,8 +126,7 @@ def _graph(net: Net, needs: Needs) -> Claim:
 
 def _bound(net: Net, needs: Needs, name: str, bound: int, text: str, *, proof: str | None = _COUNTS) -> Claim:
     count = len(net.links)
-    return counted(name, bound, count, count, needs, proof=proof).described(
-        computed=count,
+    return counted(name, bound, count, count, needs, proof=proof, computed=count).described(
         stated=f"at most {bound} links",
         detail=f"{count} links, {text} = {bound} (Harborth's number is {harborth(net.n)})",
     )
@@ -137,8 +134,7 @@ def _bound(net: Net, needs: Needs, name: str, bound: int, text: str, *, proof: s
 
 def _incomplete(net: Net, needs: Needs) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
-    return by_count("iii", 0 if missing else 1, needs, proof=_COUNTS).described(
-        computed=missing,
+    return by_count("iii", 0 if missing else 1, needs, proof=_COUNTS, computed=missing).described(
         stated="at least one pair is not linked",
         witness=_unlinked(net) if missing else None,
         detail=f"{missing} of {net.n * (net.n - 1) // 2} pairs of agents are not linked",

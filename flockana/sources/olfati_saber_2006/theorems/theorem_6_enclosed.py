@@ -12,7 +12,7 @@ from flockana.certified.series import Piece
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, up
 from flockana.theorems.energy import proved
-from flockana.theorems.from_tube import decided
+from flockana.theorems.from_tube import certain, decided
 from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
 
@@ -36,17 +36,13 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         pulls = [pull.power(p[i : i + m], p[i : i + m], Piece.CORE) for i in range(0, half, m)]
         slack.append(-sum(pulls, arb(0)))
     if not _declared_velocity(tube).any() or all(x >= 0 for x in slack):
-        return condition(name, True, detail="at all times of the tube", decided="enclosed"), 0
+        return certain(name, True, detail="at all times of the tube"), 0
     doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
     since = doubtful + 1
     if since < len(slack) and tube.t[-1] - tube.t[since] >= tube.law.scales.time:
-        return condition(
-            name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube", decided="enclosed"
-        ), since
+        return certain(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
     if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
-        return condition(
-            name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end", decided="enclosed"
-        ), 0
+        return certain(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
     return Hypothesis(name, "assumed", detail="the tube is too wide or too short to decide"), 0
 
 
@@ -58,9 +54,7 @@ def _stays_outside(tube: Tube) -> Hypothesis:
     room = tube.min_clearance()
     where = f"(agent {room.agent} at obstacles[{room.obstacle}], about t = {room.time:.4g})"
     if room.lower > 0.0:
-        return Hypothesis(
-            name, "met", room.lower, f"clearance at least {room.lower:.6g} {where}, proved", decided="enclosed"
-        )
+        return certain(name, True, room.lower, f"clearance at least {room.lower:.6g} {where}, proved")
     inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
     text = "certainly inside" if inside else "the tube is too wide to tell"
     return Hypothesis(name, "unmet" if inside else "assumed", room.lower, f"{text} {where}", decided="enclosed")

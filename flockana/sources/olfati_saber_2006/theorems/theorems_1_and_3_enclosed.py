@@ -43,11 +43,11 @@ def _below_barrier(tube: Tube) -> Hypothesis:
         low = gain(tube.law) * coincident_floor(alpha, tube.n, tube.m)
         text = f"H(0) is at most {up(energy.upper()):.6g}; the minimum is at least {down(low.lower()):.5g}"
         if energy < low:
-            return condition(name, True, down((low - energy).lower()), text, decided="enclosed")
+            return from_tube.certain(name, True, down((low - energy).lower()), text)
         high = gain(tube.law) * coincident_state(alpha, tube.n, tube.m)
         text = f"H(0) = {float(energy):.6g}; the minimum is at least {float(low):.5g} and at most {float(high):.5g}"
         if energy > high:
-            return condition(name, False, up((high - energy).upper()), text, decided="enclosed")
+            return from_tube.certain(name, False, up((high - energy).upper()), text)
     return Hypothesis(name, "assumed", down((low - energy).lower()), text)
 
 
@@ -58,25 +58,16 @@ def _stays_together(tube: Tube) -> Hypothesis:
     for k, t in enumerate(tube.t[:-1]):
         possible = from_tube.certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
         if len(from_tube.groups(tube.n, possible)) > 1:
-            return condition(
-                name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}", decided="enclosed"
-            )
+            return from_tube.certain(name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}")
     with ctx.workprec(BITS):
         apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
         excess = arb(0) if apart is None else tube.energy(0) - gain(tube.law) * apart
         room = gain(tube.law) * (tube.n - 1) * PairNumbers.of_alpha(tube.law.alpha).far - tube.energy(0)
     if excess > 0:
-        return condition(
-            name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest", decided="enclosed"
-        )
+        return from_tube.certain(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
     if room > 0:
-        return condition(
-            name,
-            True,
-            down(room.lower()),
-            "H(0) < (n-1) c1α ψ_α(r_α), which a disconnected state has",
-            decided="enclosed",
-        )
+        text = "H(0) < (n-1) c1α ψ_α(r_α), which a disconnected state has"
+        return from_tube.certain(name, True, down(room.lower()), text)
     return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; other starts are not known")
 
 

@@ -5,25 +5,10 @@ import numpy as np
 from flockana.certified.balls import exact
 from flockana.certified.second_order import laplacian_of, moving_eigenvalues
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
+from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.net_roots import has_root, unheard_groups
-from flockana.theorems.toolkit import (
-    EPS,
-    Checked,
-    Claim,
-    Enclosure,
-    FloatArray,
-    Hypothesis,
-    Needs,
-    Observed,
-    Tolerances,
-    condition,
-    judged,
-    law_is,
-    limit_claim,
-    run_theorem,
-    unmet,
-    vacuous,
-)
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
 _PROOF = "average-consensus"
 Rows = tuple[tuple[float, ...], ...]
@@ -55,10 +40,8 @@ def _agreement(seen: Observed, root: Hypothesis) -> Claim:
 def average(seen: Observed, needs: Needs) -> Claim:
     """Return the claim that all agents tend to the average of the start."""
     off = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
-    return limit_claim("average", needs, proof=_PROOF).described(
-        computed=float(off),
-        stated="all tend to the average of the start",
-        detail=f"at the end agents are up to {off:.3g} from it",
+    return limit_claim("average", needs, proof=_PROOF, computed=float(off)).described(
+        stated="all tend to the average of the start", detail=f"at the end agents are up to {off:.3g} from it"
     )
 
 

@@ -53,8 +53,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         margin = delay_margin(system)
         listed[name] = margin.delay
         off = max(off, abs(margin.delay * 2.0 * largest / pi - 1.0), abs(margin.frequency / largest - 1.0))
-    return spectral("margin", _SWEEP - off, 0.0).described(
-        computed=listed,
+    return spectral("margin", _SWEEP - off, 0.0, computed=listed).described(
         stated="π/(2 λ_n), where the net swings at the frequency λ_n",
         detail=f"of {len(nets)} nets the delay margin that a sweep over frequency finds is π/(2 λ_n), to {off:.1g}",
     )
@@ -74,8 +73,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
             margin, error = sign * root.real / largest, sharp / largest
     words, side = ("grows", "right") if sign > 0 else ("decays", "left")
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
-    return spectral(name, margin, error).described(
-        computed=listed,
+    return spectral(name, margin, error, computed=listed).described(
         stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
         detail=f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
         f"the imaginary axis{closed}",
@@ -110,8 +108,7 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Return the claim that the agreed value is the mean of the start for any delay."""
     off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
     size = max(len(system.late[1]) for system, _ in nets.values())
-    return of_state("average", size * EPS - off, 0.0, proof=_PROOF).described(
-        computed=off,
+    return of_state("average", size * EPS - off, 0.0, proof=_PROOF, computed=off).described(
         stated="the sum over the agents never changes, so that they agree on the average of the start",
         detail=f"the columns of L sum to 0, to within {off:.1g} λ_n",
     )

@@ -67,8 +67,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
     off = (Enclosure.around(np.abs((centre - predicted) * units), error).max(axis=1) / size).clip(0.0)
     worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
-    return judged("centre", _AGREES - off, needs, proof=PROOF).described(
-        computed=float(off.mid[worst]),
+    return judged("centre", _AGREES - off, needs, proof=PROOF, computed=float(off.mid[worst])).described(
         stated=f"q_c − q_r solves z'' = −c1 z − c2 z', and dies out as exp(−{rate:.4g} t)",
         witness={"time": float(run.t[worst])},
         detail=f"q_c − q_r and p_c − p_r are off the solution of z'' = −c1 z − c2 z' by {off.mid[worst]:.2g} of its "

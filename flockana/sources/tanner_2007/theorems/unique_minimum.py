@@ -41,8 +41,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     middle = 2 * potential.subs(s, sp.sqrt(spacing**2 + y**2))
     hill = sp.simplify(sp.limit(sp.diff(middle, y, 2), y, 0))
     return [
-        exact("printed", bool(hill >= 0)).described(
-            computed=str(hill),
+        exact("printed", bool(hill >= 0), computed=str(hill)).described(
             stated="the potentials of all agents are minimised",
             witness="three agents, all joined, at rest on a line, √3/2 d apart",
             detail=f"the second derivative of the middle agent's potential to the side is {hill} k/d² < 0; the total "

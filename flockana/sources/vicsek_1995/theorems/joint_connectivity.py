@@ -44,8 +44,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no heading leaves the span of the previous headings."""
     lower, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(lower) < 0.0) | (np.diff(most) > 0.0))
-    return by_count("hull", out.size, needs, proof=_PROOF).described(
-        computed=float(most[-1] - lower[-1]),
+    return by_count("hull", out.size, needs, proof=_PROOF, computed=float(most[-1] - lower[-1])).described(
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
         detail=f"the headings' span goes from {most[0] - lower[0]:.4g} to {most[-1] - lower[-1]:.4g} radians",
@@ -62,8 +61,7 @@ def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...]
     slowest = max((b.factor for b in found), default=float("nan"))
     first = (missed[0].start, missed[0].stop) if missed else None
     text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
-    return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF).described(
-        computed=slowest,
+    return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF, computed=slowest).described(
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
         witness={"blocks": len(found), "steps of the first missed": first},
         detail=text if found else does_not_hold(name),
@@ -72,8 +70,7 @@ def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...]
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
     weights = heading_averages.neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
-    return limit_claim("agreement", needs, [connected], proof=_PROOF).described(
-        computed=float(np.ptp(heading)),
+    return limit_claim("agreement", needs, [connected], proof=_PROOF, computed=float(np.ptp(heading))).described(
         stated="all headings tend to a common one",
         witness={"heading": heading_averages.final_heading(heading, weights)} if connected.certain else None,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",

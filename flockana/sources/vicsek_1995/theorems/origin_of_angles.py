@@ -19,8 +19,7 @@ def _turned() -> Claim:
     pair = (_AWAY, -_AWAY)
     differ = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
     turned_round = averaged(pair)
-    return exact("frame-bound", bool(differ)).described(
-        computed=str(turned_round),
+    return exact("frame-bound", bool(differ), computed=str(turned_round)).described(
         stated="turning the whole flock need not turn the mean headings with it",
         witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
         detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_round} of a turn: "
