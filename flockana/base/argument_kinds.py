@@ -30,6 +30,7 @@ _EXAMPLES = {
     "Mode": "one of the modes of linearise(...)",
     "Obstacle": "an obstacle, such as Sphere(centre, radius)",
     "Outcome": "one of what scenarios.one_start.compare() gives",
+    "Numbers": "a sequence",
     "NormTable": "what stability.norms_against_size(...) gives",
     "Reynolds": "what reynolds.reynolds(...) gives",
     "SampledBasin": "what sample_basin(...) gives",
@@ -40,7 +41,8 @@ _EXAMPLES = {
 }
 _ARRAYS = ("ArrayLike", "FloatArray")
 _SYMBOLIC = ("Expr", "Matrix", "IndexedBase")  # of sympy; numbers will do
-_PROTOCOLS: dict[str, Any] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": (Sequence, np.ndarray)}
+_SERIES = (Sequence, np.ndarray)
+_PROTOCOLS: dict[str, Any] = {"Iterable": Iterable, "Mapping": Mapping, "Numbers": _SERIES, "Sequence": _SERIES}
 
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:

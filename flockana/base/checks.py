@@ -11,7 +11,8 @@ import numpy.typing as npt
 from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, format_value
 
 FloatArray = npt.NDArray[np.float64]
-TimeSpan = Sequence[float] | npt.NDArray[Any]  # two times, as a user gives them
+Numbers = Sequence[float] | npt.NDArray[Any]  # several, as a user gives them
+TimeSpan = Numbers  # two times
 ComplexArray = npt.NDArray[np.complex128]
 PerAgent = float | tuple[float, ...]
 

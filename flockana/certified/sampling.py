@@ -1,13 +1,12 @@
 """Estimate of an equilibrium's true basin by random runs, beside the certified one."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive, ensure_seed, ensure_series
+from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_positive, ensure_seed, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.certified.basin import Basin
 from flockana.dynamics.predicates import ensure_uninterrupted
@@ -35,7 +34,7 @@ class SampledBasin:
 
 
 def sample_basin(
-    basin: Basin, distances: Sequence[float], *, runs: int = 20, seed: int = 0, t_end: float = 20.0
+    basin: Basin, distances: Numbers, *, runs: int = 20, seed: int = 0, t_end: float = 20.0
 ) -> SampledBasin:
     """Run starts at rest at given distances from the orbit in random directions, and count those that return.
 

@@ -1,13 +1,16 @@
 """Minima of U_λ reached from a lattice, against its size and the ratio c1γ/c1α."""
 
-from collections.abc import Callable, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_positive
+from flockana.base.argument_kinds import check_kinds
+from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.environment import StaticTarget
 from flockana.equilibria.solve import Equilibrium, find_equilibrium
@@ -53,7 +56,8 @@ def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
     return find_equilibrium(pulled_law(alpha, ratio), perturbed(hexagonal_spiral(n, alpha.d), alpha.d))
 
 
-def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
+@check_kinds
+def collapse_diagram(alpha: AlphaInteraction, sizes: Numbers, ratios: Numbers) -> CollapseDiagram:
     """Return shortest distance and coincident pairs of the minima of U_λ over sizes and ratios."""
     counts, rising = [ensure_count("sizes", n) for n in sizes], np.array([ensure_positive("ratios", x) for x in ratios])
     if np.any(np.diff(rising) <= 0.0):

@@ -1,18 +1,17 @@
 """Quantiles of all pair distances over time, for any number of agents."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_numbers
+from flockana.base.checks import FloatArray, Numbers, ensure_numbers
 from flockana.base.errors import ArgumentError
 
 _DISTANCES = 2**17  # that are held at once, at most, unless those of one instant are more
 QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
-def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
+def pair_distance_profile(q: Any, shares: Numbers = QUARTERS) -> FloatArray:
     """Return quantiles of all pair distances at each instant, shape (T, number of shares); NaN for one agent."""
     from scipy.spatial.distance import pdist
 

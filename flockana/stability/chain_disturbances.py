@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log, nan
@@ -10,7 +10,7 @@ from math import log, nan
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind
+from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError, format_value
 from flockana.stability.estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
@@ -140,7 +140,7 @@ class StringStability:
 
 
 @check_kinds
-def string_stability(chain: Callable[[int], LinearFlock], sizes: Sequence[int] = (3, 5, 9, 17)) -> StringStability:
+def string_stability(chain: Callable[[int], LinearFlock], sizes: Numbers = (3, 5, 9, 17)) -> StringStability:
     """Return whether a disturbance of the first agent grows along the chain, from several chain lengths.
 
     Where each agent hears the one before alone, with equal K and D, the gain over k links is at most the k-th power of

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_count, ensure_points
+from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
@@ -184,7 +183,7 @@ class NormTable:
 
 
 @check_kinds
-def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
+def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Numbers) -> NormTable:
     """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 
     Parameters
