@@ -74,7 +74,7 @@ class UnknownNameError(ArgumentError):
         names = sorted(map(str, known)) if isinstance(known, Iterable) else [str(known)]
         folded = {known_name.casefold(): known_name for known_name in names}
         text = name if isinstance(name, str) else format_value(name)
-        rest = f"known: {', '.join(names)}"
+        rest = f"known: {', '.join(names) or 'none'}"
         if len(names) > _FEW:
             nearest = get_close_matches(text.casefold(), folded, n=_NEAREST, cutoff=0.0)
             rest = f"the nearest of {len(names)}: {', '.join(folded[one] for one in nearest)}"

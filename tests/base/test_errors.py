@@ -28,6 +28,7 @@ def test_unknown_name_suggests_and_lists():
     assert str(error) == "unknown theorem 'os-11'; did you mean 'os-1'? Known: os-1, os-3"
     assert str(UnknownNameError("scenario", "zzz", ["collapse"])) == "unknown scenario 'zzz'; known: collapse"
     assert str(UnknownNameError("scenario", None, 3)) == "unknown scenario None; known: 3"
+    assert str(UnknownNameError("flock", "f", [])) == "unknown flock 'f'; known: none"
 
 
 @pytest.mark.parametrize(
