@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
@@ -69,8 +70,8 @@ def pair_law(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),
         adjacency_formula=_as_text("adjacency", adjacency),
-        r=range,
-        d=length,
+        r=ensure_positive("range", range),
+        d=ensure_positive("length", length),
         parameters=tuple((parameters or {}).items()),
         powers=tuple((name, *both) for name, both in (units or {}).items()),
     )

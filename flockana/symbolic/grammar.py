@@ -134,7 +134,7 @@ class _Reader:
             return self._number(node.value)
         if isinstance(node, ast.Name):
             if node.id not in self.names:
-                names, remedy = ", ".join(sorted(self.names)), f"parameters={{{node.id!r}: ...}}"
+                names, remedy = ", ".join(sorted({*self.names} - {"True"})), f"parameters={{{node.id!r}: ...}}"
                 fault = f"{self.where} has the unknown name {node.id!r}: expected one of {names}"
                 raise ArgumentError(f"{fault}; give a parameter its value, {remedy}")
             return self.names[node.id]
