@@ -67,7 +67,10 @@ def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another 
     except FileError:  # reported already
         raise
     except OSError as error:
-        raise FileError(f"cannot write {str(path)!r}: {error.strerror or error}; {remedy}") from error
+        reason = (
+            error if target.parent.is_dir() else f"there is no folder {target.parent}"
+        )  # a writer of its own may say less
+        raise FileError(f"cannot write {str(path)!r}: {error.strerror or reason}; {remedy}") from error
     finally:
         with suppress(OSError, ValueError):  # one that could not be written cannot be removed either
             partial.unlink(missing_ok=True)

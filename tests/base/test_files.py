@@ -51,3 +51,11 @@ test_a_device_is_neither_read_nor_written = refused(
     (lambda: ensure_target(os.devnull), "it is no regular file; choose another file", FileError),
     (lambda: read_text_file(os.devnull), "it is no regular file; expected a file", FileError),
 )
+
+
+def test_a_missing_folder_is_named_where_the_writer_says_something_else(tmp_path):
+    with (
+        pytest.raises(FileError, match=r"there is no folder .*nowhere; choose"),
+        atomic_write(tmp_path / "nowhere/a.mat"),
+    ):
+        raise OSError("Reader needs file name or open file-like object")
