@@ -61,9 +61,9 @@ class Engine(Integrator):
             self._unsorted = len(self.block.t) - 1
             if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
                 self._sort()
-        judged = checks.judged(self.order)
-        lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
         with self._pace as steps, several_threads(self._threads) as several:
+            judged = checks.judged(self.order, several=several)
+            lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
             ahead = Advanced(
                 *advance(

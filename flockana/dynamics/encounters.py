@@ -92,10 +92,12 @@ class Encounters:
             crowd, near = share == TOO_MANY, with_room(near) or near
         return share
 
-    def compiled(self, *, crowd: bool) -> Kernel:
+    def compiled(self, *, crowd: bool, several: bool = False) -> Kernel:
         """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
         bodies, poles, pairs = self.bodies is not None, self.poles.size > 0, self.radii.size > 0
         flags = {"BODIES": bodies, "PAIRS": pairs or poles, "POLES": poles, "CROWD": crowd}
+        if len(self.radii) >= LARGE:
+            flags |= {"LARGE": True, "SEVERAL": several}
         kernel: Kernel = bound("flockana.kernels.step_shares", **flags).share_of_step
         return kernel
 
@@ -139,16 +141,22 @@ class StepChecks:
         """Whether the energy balance of the steps is still checked."""
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
-    def judged(self, order: npt.NDArray[Any], *, compiled: bool = True) -> Judged:
-        """Return the numbers for compiled step checks, with agents in the given order."""
+    def judged(self, order: npt.NDArray[Any], *, compiled: bool = True, several: bool = False) -> Judged:
+        """Return the numbers against which code for one thread or several checks steps, agents in the given order."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
-            around, share = self._encounters.around(order, self._toward), self._encounters.compiled(crowd=self._crowd)
+            self._judged: dict[bool, Judged] = {}
+            self._around = self._encounters.around(order, self._toward)
+        if several not in self._judged:
+            around, share = self._around, self._encounters.compiled(crowd=self._crowd, several=several)
+            if several:
+                listed = as_callback(lister(large=True, several=True))
+                around = around._replace(listed=listed, covers=covering(several=True))
             if compiled:
                 ends = Ends(0.0, *6 * (np.empty((0, self._shape[1])),))
                 share = callback_like(share, 0.0, 0.0, ends, around, self._view, self.near, self.near)
-            self._judged = Judged(around, self._rules, self._ledger, share)
-        return self._judged
+            self._judged[several] = Judged(around, self._rules, self._ledger, share)
+        return self._judged[several]
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole)."""

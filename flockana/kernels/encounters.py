@@ -167,21 +167,28 @@ def steepest(slope):
 
 
 @inlined
-def common_way(ends):
-    """Return (mean, slope, centre) of all agents' control points relative to the first: 6 × 3, 6 × 3, and 3.
+def means_of(ends):
+    """Return the means of all agents' positions, velocities and accelerations at both ends, 6 × m."""
+    _, q0, p0, u0, q1, p1, u1 = ends
+    means = np.empty((6, q0.shape[1]))
+    for c in range(q0.shape[1]):
+        means[0, c], means[1, c], means[2, c] = column_mean(q0, c), column_mean(p0, c), column_mean(u0, c)
+        means[3, c], means[4, c], means[5, c] = column_mean(q1, c), column_mean(p1, c), column_mean(u1, c)
+    return means
 
-    The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
-    steep.
-    """
+
+@inlined
+def way_of_means(ends, means):
+    """Return `common_way` from the means of all agents."""
     h, q0, p0, u0, q1, p1, u1 = ends
     mean, slope, centre, s, z = np.empty((6, 3)), np.empty((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
     for k in range(6):
         for c in range(3):
             mean[k, c] = slope[k, c] = 0.0
     for c in range(q0.shape[1]):
-        centre[c] = column_mean(q0, c)
-        out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
-        ways = polygon(0.0, column_mean(q1, c) - centre[c], s * out, s * back, z * bend0, z * bend1)
+        centre[c], out, bend0 = means[0, c], means[1, c], means[2, c]
+        back, bend1 = means[4, c], means[5, c]
+        ways = polygon(0.0, means[3, c] - centre[c], s * out, s * back, z * bend0, z * bend1)
         _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = ways
         out, back = slope_along(q0, p0, c, 0.0), slope_along(q0, p1, c, 0.0)
         bend0, bend1 = slope_along(q0, u0, c, 0.0), slope_along(q0, u1, c, 0.0)
@@ -195,13 +202,23 @@ def common_way(ends):
 
 
 @inlined
-def farthest_ways(ends, common):
-    """Return bounds of the longest agent path relative to the common one, and of its rounding allowance."""
+def common_way(ends):
+    """Return (mean, slope, centre) of all agents' control points relative to the first: 6 × 3, 6 × 3, and 3.
+
+    The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
+    steep.
+    """
+    return way_of_means(ends, means_of(ends))
+
+
+@inlined
+def squares_beside(ends, common, begin, end):
+    """Return the largest squares of some agents' ways relative to the common one, and of their allowances' parts."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
-    n, m = q0.shape
+    m = q0.shape[1]
     way2 = most2 = most3 = 0.0
     s, z = h / 5.0, h * h / 20.0
-    for i in range(n):
+    for i in range(begin, end):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
             past, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
@@ -215,6 +232,19 @@ def farthest_ways(ends, common):
             off2 += (out + 0.5 * back + bend0 - 0.3 * past) ** 2
             off3 += (0.3 * past - back - 0.5 * out + bend1) ** 2
         way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
+    return way2, most2, most3
+
+
+@inlined
+def farthest_ways(ends, common):
+    """Return bounds of the longest agent path relative to the common one, and of its rounding allowance."""
+    way2, most2, most3 = squares_beside(ends, common, 0, len(ends.q0))
+    return bounds_of(way2, most2, most3)
+
+
+@inlined
+def bounds_of(way2, most2, most3):
+    """Return `farthest_ways` from the largest squares."""
     blur = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
     return np.sqrt(way2) + blur, blur
 

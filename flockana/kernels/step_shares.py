@@ -3,25 +3,40 @@
 A template (`flockana.kernels.bound_templates`): a run compiles only the checks that its law needs.
 """
 
+from zlib import crc32
+
 import numpy as np
 
-from flockana.jit import inlined, kernel
-from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest
+from flockana.jit import inlined, kernel, parallel, prange, register_jitable
+from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest, way_of_means
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import fill_from_grid
 from flockana.kernels.pole_crossings import crossing_listed
 from flockana.kernels.quintic_paths import bernstein
 from flockana.kernels.runge_kutta import frame_at
+from flockana.kernels.slab_checks import (
+    PARTS,
+    Reaches,
+    begin_of,
+    means_in_parts,
+    parallel_means_in_parts,
+    parallel_ways_in_parts,
+    ways_in_parts,
+)
 from flockana.kernels.verlet import COUNT, CROWDED, SKIN
 
-# Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list.
+# Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list; whether the flock is
+# large, and then looked at in parts, and whether by several threads.
 BODIES = True  # bound
 PAIRS = True  # bound
 POLES = True  # bound
 CROWD = True  # bound
+LARGE = False  # bound
+SEVERAL = False  # bound
 
 POLE, TOO_MANY, NO_ROOM = -0.5, -2.0, -3.0  # a step that crossed a pole is halved; pairs are too many for any list
 _BLOCK = 2**16  # pairs looked at together where a list of all would not fit into memory
+OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")  # as in `flockana.kernels.pair_sums`
 
 
 @inlined
@@ -50,6 +65,53 @@ def _share_of(ends, whole, around, first, second, share):
         if around.radii.size
         else share
     )
+
+
+@register_jitable
+def _look_at_part(own, ends, common, numbers, reaches, first, second, part, shares):
+    """Write the share of a step that a part of the listed pairs allow."""
+    begin, end = begin_of(part, first.size), begin_of(part + 1, first.size)
+    whole = common, (numbers[0], numbers[1]), (numbers[2], numbers[3])
+    around = Reaches(*reaches[:2], (numbers[4], numbers[5]), *reaches[2:])
+    shares[part] = _share_of(ends, whole, around, first[begin:end], second[begin:end], 1.0)
+
+
+@kernel
+def share_in_parts(ends, common, numbers, reaches, first, second):
+    """Return `_share_of` over the parts of a list of pairs; `numbers` are ways, band and edges."""
+    shares, marker, share = np.empty(PARTS), OWN[:0], 1.0
+    for part in prange(PARTS):
+        _look_at_part(marker, ends, common, numbers, reaches, first, second, np.int64(part), shares)
+    for part in range(PARTS):
+        share = min(share, shares[part])
+    return share
+
+
+parallel_share_in_parts = parallel(share_in_parts)
+
+
+@inlined
+def _ways_of(ends):
+    """Return `common_way` and `farthest_ways`."""
+    if not LARGE:
+        common = common_way(ends)
+        return common, farthest_ways(ends, common)
+    means = parallel_means_in_parts(ends) if SEVERAL else means_in_parts(ends)
+    common = way_of_means(ends, means)
+    return common, (parallel_ways_in_parts(ends, *common) if SEVERAL else ways_in_parts(ends, *common))
+
+
+@inlined
+def _share_of_list(ends, whole, around, first, second, share):
+    """Return `_share_of` over a list of pairs, of a large flock in parts."""
+    if not LARGE:
+        return _share_of(ends, whole, around, first, second, share)
+    common, ways, between = whole
+    numbers = ways[0], ways[1], between[0], between[1], around.edges[0], around.edges[1]
+    reaches = around.radii, around.far, around.poles, around.toward, around.few
+    if SEVERAL:
+        return min(share, parallel_share_in_parts(ends, common, numbers, reaches, first, second))
+    return min(share, share_in_parts(ends, common, numbers, reaches, first, second))
 
 
 @inlined
@@ -81,8 +143,7 @@ def share_of_step(t, ends, around, view, kept, near):
         places = _at_rest(t, ends.h, points, view)
         share = around.guard(places, allowance, around.numbers, around.starts, around.shell[0], around.shell[1], share)
     if PAIRS and len(ends.q0) > 1:
-        common = common_way(ends)
-        ways = farthest_ways(ends, common)
+        common, ways = _ways_of(ends)
         between = band(common, ways, around.edges, around.far)
         if POLES and around.few:
             beside = steepest(common[1]), ways[0] + ways[1]
@@ -98,7 +159,7 @@ def share_of_step(t, ends, around, view, kept, near):
         count = rows_kept.counts[COUNT]
         if count >= 0:
             first, second = rows_kept.first[:count], rows_kept.second[:count]
-            share = _share_of(ends, (common, ways, between), around, first, second, share)
+            share = _share_of_list(ends, (common, ways, between), around, first, second, share)
         elif count < CROWDED:
             share = NO_ROOM
         elif CROWD:

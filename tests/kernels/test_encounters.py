@@ -11,6 +11,7 @@ from flockana.kernels.encounters import (
     band,
     common_way,
     farthest_ways,
+    means_of,
     pair_room,
     share_of_listed,
     share_of_pair,
@@ -19,6 +20,7 @@ from flockana.kernels.encounters import (
 from flockana.kernels.grid import empty_cuts
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.quintic_paths import bernstein, centred
+from flockana.kernels.slab_checks import means_in_parts, ways_in_parts
 from flockana.kernels.verlet import Pairs, listed_anew, no_pairs
 
 H, R, FAR = 0.7, 8.4, 3.5
@@ -82,6 +84,15 @@ def test_bounds_of_ways_and_allowances_are_those_of_the_control_points(n, m, fac
     assert (way, slack) == pytest.approx((beside.max() + blur, blur), rel=1e-12)
     assert way >= (beside + allowance).max() * (1.0 - 1e-12)
     assert slack >= allowance.max() * (1.0 - 1e-12)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("n", [3, 250])
+def test_parts_of_the_agents_have_the_means_and_bounds_of_all(n, m):
+    states = ends(n, m, 1.5)
+    common = common_way(states)
+    assert means_in_parts.py_func(states) == pytest.approx(means_of(states), rel=1e-12)
+    assert ways_in_parts.py_func(states, *common) == farthest_ways(states, common)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
@@ -154,10 +165,14 @@ def test_pairs_of_a_list_cut_a_step_as_they_do_with_all_control_points(m, speed,
     assert cut > 0 or speed * bend < 1.0
 
 
+@pytest.mark.parametrize("large", [False, True])
 @pytest.mark.parametrize("listed", ["all", "none yet", "too few", "too many for memory"])
 @pytest.mark.parametrize("m", [1, 2, 3])
-def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch):
-    """Pairs are searched for unless the list holds all that may meet; of too many to list, some at a time."""
+def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, large, monkeypatch):
+    """Pairs are searched for unless the list holds all that may meet; of too many to list, some at a time.
+
+    A large flock is looked at in parts.
+    """
     states, radii, view = ends(40, m, 12.0), np.full((40, 2), [R / 2, R]), (0.0, np.zeros(m), np.zeros(m))
     i, j = (each.astype(np.uint32) for each in pair_list(states.q0, 1e6))
     searched = []
@@ -171,6 +186,9 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
     monkeypatch.setattr(step_shares, "_BLOCK", 50)
     monkeypatch.setattr(step_shares, "BODIES", False)
     monkeypatch.setattr(step_shares, "POLES", False)
+    monkeypatch.setattr(step_shares, "LARGE", large)
+    for name in ("means_in_parts", "ways_in_parts", "share_in_parts"):
+        monkeypatch.setattr(step_shares, name, getattr(step_shares, name).py_func)
     kept, near = no_pairs(40, m), no_pairs(200, m)._replace(places=np.empty((40, m)))
     if listed in ("all", "too few"):
         count, reach = (i.size, 1e6) if listed == "all" else (0, R)
