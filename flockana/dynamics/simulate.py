@@ -100,8 +100,8 @@ def simulate(
     threads : int, optional
         Cores for a flock of 10,000 agents or more, with the same bits for any number; by default NUMBA_NUM_THREADS, or
         all, and one in worker processes. What threads are pair forces within a range and their energies, lists of
-        pairs, and the stages of compiled methods; alignment alone, links, obstacles, directed nets, maps, zone flocking
-        and the checks of steps run on one.
+        pairs, and of compiled methods the stages, the checks of pairs and the writing of states; alignment alone,
+        links, obstacles, directed nets, maps and zone flocking run on one.
     progress : bool
         Show a progress bar on the terminal.
     watch : callable, optional

@@ -12,7 +12,9 @@ from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.sample import Samples, Start
 from flockana.kernels.adaptive_steps import Block
-from flockana.kernels.many_steps import record
+from flockana.kernels.grid import LARGE
+from flockana.kernels.many_steps import parallel_record, record
+from flockana.kernels.threads import several_threads
 from flockana.laws.law import LawOfMotion
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run
@@ -79,7 +81,9 @@ class Integrator(Stepper):
     def states(self, count: int) -> tuple[FloatArray, FloatArray]:
         """(states of shape (count, 3, n, m), work) at the ends of the steps."""
         states, work = np.empty((count, 3, *self.frame.shape)), np.empty(count)
-        record(self.block, self.order, self.frame.view, states, work)
+        with several_threads(self.plan.threads if self.frame.shape[0] >= LARGE else 1) as several:
+            write = parallel_record if several else record
+            write(self.block, self.order, self.frame.view, states, work)
         return states, work
 
     def _samples_of(self, t: FloatArray, states: FloatArray, work: FloatArray) -> Samples:

@@ -182,11 +182,14 @@ class PairInteraction(DistanceFunction):
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""
-        near, pairs = 0.0, 0
-        for i, j in pair_blocks(q, self.range):
-            near += self.kernels.potential(q, i, j, self.par, self.panels)
-            pairs += i.size
-        n = q.shape[0]
+        n, near, pairs = q.shape[0], 0.0, 0
+        if n < LARGE:
+            for i, j in pair_blocks(q, self.range):
+                near += self.kernels.potential(q, i, j, self.par, self.panels)
+                pairs += i.size
+        else:
+            with several_threads() as several:
+                near, pairs = self.kernels.energy_in_slabs(several=several)(q, self.range, self.par, self.panels)
         beyond = n * (n - 1) // 2 - pairs
         return float(near + beyond * self.far_potential if beyond else near)  # it may be infinite there
 

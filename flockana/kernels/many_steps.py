@@ -4,13 +4,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined, kernel, parallel, prange
 from flockana.kernels.adaptive_steps import FULL, RUNNING, SINGULAR, UNLISTED, march, step_of
+from flockana.kernels.grid import LARGE
 from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.step_checks import IN_VAIN, PATIENCE, checked
 from flockana.kernels.verlet import COUNT
 
 AT_ONCE = 50_000_000  # agents and pairs in all evaluations of one call, some tenths of a second: then signals are heard
+_PARTS = 64  # of a large flock, whose states are written by all threads
 
 
 class Advanced(NamedTuple):
@@ -25,16 +27,21 @@ class Advanced(NamedTuple):
 
 
 @inlined
-def _record(y, f, order, frame, out):
-    """Write positions, velocities and accelerations in the original order of agents; return the work."""
+def _write_states(y, f, order, frame, begin, end, out):
+    """Write positions, velocities and accelerations of some agents, under the agents' own numbers."""
     n, m = order.size, frame.shape[1]
-    for i in range(n):
+    for i in range(begin, end):
         agent = np.int64(order[i])
         for c in range(m):
             out[0, agent, c] = y[i * m + c] + frame[0, c]
             out[1, agent, c] = y[n * m + i * m + c] + frame[1, c]
             out[2, agent, c] = f[n * m + i * m + c]
-    return y[2 * n * m] if y.size > 2 * n * m else np.nan
+
+
+@inlined
+def _work_of(y, size):
+    """Return the work, which is the vector's last number if it has one beside positions and velocities."""
+    return y[size] if y.size > size else np.nan
 
 
 @kernel
@@ -43,10 +50,17 @@ def record(block, order, view, states, work):
 
     The room is numpy's, for large pages (`flockana.kernels.pair_sums.forces`).
     """
-    frame = np.empty((2, view[1].size))
+    frame, n, m = np.empty((2, view[1].size)), order.size, view[1].size
+    parts = _PARTS if n >= LARGE else 1
     for k in range(work.size):
         frame_at(block.t[k + 1], view, frame)
-        work[k] = _record(block.y[k + 1], block.f[k + 1], order, frame, states[k])
+        y, f, out = block.y[k + 1], block.f[k + 1], states[k]
+        for part in prange(parts):
+            _write_states(y, f, order, frame, np.int64(part) * n // parts, (np.int64(part) + 1) * n // parts, out)
+        work[k] = _work_of(y, 2 * n * m)
+
+
+parallel_record = parallel(record)
 
 
 @inlined
@@ -57,7 +71,9 @@ def _sampled(step, due, method, states, work, system, pairs):
     for k in range(due.size):
         interpolated((due[k] - step.t) / step.h, step, method, system.work.combine)
         rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
-        work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
+        n, m = system.order.size, system.frame.shape[1]
+        _write_states(step.trial, slope, system.order, system.frame, 0, n, states[k])
+        work[k] = _work_of(step.trial, 2 * n * m)
 
 
 @kernel

@@ -1,15 +1,22 @@
-"""Potential and derivatives of a pair law over a block of pairs: a template (`flockana.kernels.bound_templates`)."""
+"""Potential and derivatives of a pair law over a block of pairs: a template (`flockana.kernels.bound_templates`).
+
+The potential of a large flock is summed slab by slab, by one thread or by several.
+"""
+
+from zlib import crc32
 
 import numpy as np
 
-from flockana.jit import kernel
+from flockana.jit import kernel, parallel, prange, register_jitable
 from flockana.kernels.agent_sums import square_between
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
+from flockana.kernels.grid import cut_into_slabs, empty_cuts, sort_into_grid
 
 NORMED = True  # bound
+OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")  # as in `flockana.kernels.pair_sums`
 
 
 @kernel
@@ -19,6 +26,51 @@ def energy(q, i, j, par, panels):
     for k in range(i.size):
         total += potential(square_between(q, i[k], j[k]), par, panels)
     return total
+
+
+@register_jitable
+def _put_agent(own, q, order, k, x):
+    """Write the position of an agent of a sorted flock."""
+    for c in range(q.shape[1]):
+        x[k, c] = q[order[k], c]
+
+
+@register_jitable
+def _energy_in_slab(own, low, high, start, rows, x, limit, par, panels, sums):
+    """Write Σ ψ between the agents in some cells and later ones within range, and the number of pairs."""
+    total, pairs = 0.0, 0
+    for cell in range(low, high):
+        for i in range(start[cell], start[cell + 1]):
+            for row in range(-1, np.int64(rows.size)):
+                begin, end = i + np.uint64(1), start[cell + 2]
+                if row >= 0:
+                    there = np.int64(cell) + np.int64(rows[row])
+                    begin, end = start[there - 1], start[there + 2]
+                for j in range(begin, end):
+                    square = square_between(x, i, j)
+                    if square < limit:
+                        total += potential(square, par, panels)
+                        pairs += 1
+    sums[0], sums[1] = total, pairs
+
+
+@kernel
+def energy_in_slabs(q, r, par, panels):
+    """Return the potential Σ ψ over all pairs of a large flock within r, and their number."""
+    order, start, rows = sort_into_grid(q, r)
+    x, cuts, marker, limit = np.empty(q.shape), empty_cuts(q.shape[0]), OWN[:0], max(r * r, 5e-324)
+    slabs, total, pairs = cut_into_slabs(start, rows, cuts), 0.0, np.int64(0)
+    sums = np.empty((slabs, 2))
+    for k in prange(order.size):
+        _put_agent(marker, q, order, np.int64(k), x)
+    for s in prange(slabs):
+        _energy_in_slab(marker, cuts[s + 1], cuts[s + 2], start, rows, x, limit, par, panels, sums[s])
+    for s in range(slabs):
+        total, pairs = total + sums[s, 0], pairs + np.int64(sums[s, 1])
+    return total, pairs
+
+
+parallel_energy_in_slabs = parallel(energy_in_slabs)
 
 
 @kernel

@@ -48,6 +48,11 @@ class PairKernels:
         """``potential(q, i, j, par, panels)``: Σ ψ over the block."""
         return self._blocks.energy
 
+    def energy_in_slabs(self, *, several: bool) -> Callable[..., tuple[float, int]]:
+        """``(q, r, par, panels)``: Σ ψ over all pairs of a large flock within r, and their number."""
+        energy: Kernel = self._blocks.parallel_energy_in_slabs if several else self._blocks.energy_in_slabs
+        return energy
+
     @property
     def terms(self) -> Callable[..., Any]:
         """``terms(q, i, j, par)``: per pair the weight w, the adjacency a and dw/d(s²)."""

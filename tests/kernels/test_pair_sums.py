@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from flockana import AlphaInteraction, DeadZoneInteraction
 from flockana.jit import register_jitable
-from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.grid import LARGE, sort_into_grid
+from flockana.kernels.neighbours import pair_list
 from flockana.kernels.pair_lift import lift
 
 ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
@@ -50,6 +51,16 @@ def test_forces_are_added_and_their_sum_is_kept():
     u, _ = ALPHA.forces(q, p, stiffness=1.0, damping=1.0)
     np.testing.assert_array_equal(ALPHA.forces(q, p, stiffness=1.0, damping=1.0, out=given_before)[0], u + 1.0)
     np.testing.assert_allclose(u.sum(axis=0), 0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_potential_of_a_large_flock_is_that_of_its_pairs(m):
+    q, _ = flock(2, LARGE, m, LARGE ** (1.0 / m))
+    q[0], q[1] = q[2], np.nan  # two at one place, and one at none
+    potential, pairs = ALPHA.kernels.energy_in_slabs(several=False)(q, ALPHA.r, ALPHA.par, ALPHA.panels)
+    i, j = pair_list(q, ALPHA.r)
+    assert pairs == i.size
+    assert potential == pytest.approx(ALPHA.kernels.potential(q, i, j, ALPHA.par, ALPHA.panels), rel=1e-12)
 
 
 def test_a_pair_at_the_range_feels_nothing_and_one_inside_does():

@@ -44,8 +44,9 @@ def fast(threads):
     return run(threads, m=3, speed=150.0)
 
 def forces(threads, n=10_001):
+    law, flocks = LAWS["alpha"], [flock(n, m) for m in (1, 2, 3)]
     with limited_threads(threads):
-        return told(*(x for m in (1, 2, 3) for x in LAWS["alpha"].flow(0.0, *flock(n, m))))
+        return told(*(x for each in flocks for x in (*law.flow(0.0, *each), law.energy(0.0, *each))))
 
 def rate(name, threads, n=10_001, m=2):
     q, p = flock(n, m)
@@ -81,6 +82,17 @@ for told_by in (run, fast, forces, lambda k: rate("alpha", k, m=3)):
     print(*(told_by(k) for k in (1, 2, 3, 8)))
 """
 
+SMALL = """
+from flockana.jit import Kernel
+
+made = fl.simulate(LAWS["alpha"], *flock(12, 2), (0.0, 0.02), method="RK4", dt=0.01)
+for name, module in [each for each in sys.modules.items() if each[0].startswith("flockana")]:
+    for key, value in vars(module).items():
+        if isinstance(value, Kernel) and any(part in key for part in ("parallel", "threads", "parts", "slab")):
+            assert "dispatcher" not in vars(value), (name, key)
+print("none", "none")
+"""
+
 
 def same(body, *arguments, layer="default", before=(), **environment):
     """Run a script in a new process; each of its lines must be of equal words. Return the first of each."""
@@ -114,6 +126,10 @@ def test_laws_compiled_by_two_processes_are_loaded_by_a_third(tmp_path):
     assert len(set(apart)) == 2
     assert same(RATES.format("2, 1, 8"), "dead zone", "alpha", **cold) == apart[::-1]
     assert same(RATES.format("2, 1, 8"), "alpha", "dead zone", layer="workqueue", **cold) == apart
+
+
+def test_a_small_flock_compiles_nothing_for_threads_or_slabs():
+    same(SMALL)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
