@@ -55,6 +55,9 @@ def observe_command(
         float | None,
         typer.Option(help="Largest acceleration, to interpolate agents sampled at other times; 0 leaves gaps."),
     ] = None,
+    missing: Annotated[
+        str | None, typer.Option(metavar="X[,X..]", help="Numbers that stand for 'not seen', such as -9999; or none.")
+    ] = None,
     window: Annotated[str | None, typer.Option(metavar="T0,T1", help="First and last time that count.")] = None,
     clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
     page: Annotated[Path | None, output("HTML page to write, with a player.")] = None,
@@ -84,6 +87,7 @@ def observe_command(
             m=m,
             jitter=jitter,
             interpolate=interpolate or (None if interpolate is None else False),
+            missing=None if missing is None else [] if missing == "none" else _numbers("--missing", missing),
             dt=dt,
             clock=clock,
             bound=bound,
@@ -127,7 +131,8 @@ def _with_options(text: str) -> str:
         )
 
     text = re.sub(r"columns={(.*?)}", option, text)
-    return re.sub(r"\b(axes|bound|box|clock|dt|interpolate|jitter|m|sd)=,?", r"--\1 ", text)
+    text = text.replace("missing=()", "--missing none")
+    return re.sub(r"\b(axes|bound|box|clock|columns|dt|interpolate|jitter|m|missing|sd)=,?", r"--\1 ", text)
 
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:

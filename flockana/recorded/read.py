@@ -12,7 +12,8 @@ from flockana.recorded.boxes import unwrapped
 from flockana.recorded.clocks import ensure_one_clock, interpolated
 from flockana.recorded.reading.arrays import dataset_arrays, mat_arrays, named_arrays, netcdf_arrays, npz_arrays
 from flockana.recorded.reading.lammps import read_dump
-from flockana.recorded.reading.names import Columns
+from flockana.recorded.reading.missing import without_missing
+from flockana.recorded.reading.names import Columns, renaming_note
 from flockana.recorded.reading.table import AGENTS, table_arrays
 from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
@@ -34,6 +35,7 @@ def read_recording(
     jitter: float | None = None,
     box: Any = None,
     interpolate: float | bool | None = None,
+    missing: Any = None,
     bound: Any = None,
     sd: Any = None,
     p_bound: Any = None,
@@ -70,6 +72,9 @@ def read_recording(
         Largest acceleration of an agent, by which agents of a table that were sampled at other times are interpolated
         to common instants, each position with an error that covers every such motion; False leaves gaps instead. By
         default such a table is refused.
+    missing : float or sequence of float, optional
+        Numbers that stand for a position not seen, such as -9999, and become gaps; () if none does. By default numbers
+        that look so are refused: returning ones far from all others, or to which agents leap.
     bound, sd, p_bound, p_sd : float or array_like, optional
         Accuracy, as in `Recording`; by default what a file of `Recording.save` states.
 
@@ -85,22 +90,30 @@ def read_recording(
     >>> read_recording({"t": [0.0, 0.1], "q": [[[0.0], [7.0]], [[0.1], [7.0]]]}, bound=1e-3).n
     2
     """
+    if isinstance(columns, str):
+        raise ArgumentError(f'columns = {columns!r}: expected names in order, or by meaning, such as {{"t": "when"}}')
     accuracy = {"bound": bound, "sd": sd, "p_bound": p_bound, "p_sd": p_sd}
     dt = None if dt is None else ensure_positive("dt", dt)
-    how = _How(columns, dt, clock, m, axes, jitter, box is not None)
+    how = _How(columns, dt, clock, m, axes, jitter, missing, box is not None)
     if isinstance(source, str | os.PathLike):
         rec = _of_file(ensure_path(source), how, accuracy)
     elif hasattr(source, "data_vars"):
-        rec = Recording(**_of_arrays(dataset_arrays(source, "the dataset"), "the dataset", how), **accuracy)
+        arrays = _of_arrays(dataset_arrays(source, "the dataset"), "the dataset", how)
+        rec = Recording(**without_missing(arrays, missing, "the dataset"), **accuracy)
     elif isinstance(source, Mapping):
-        rec = Recording(**_of_arrays(source, "the mapping", how), **accuracy)
+        arrays = _of_arrays(source, "the mapping", how)
+        rec = Recording(**without_missing(arrays, missing, "the mapping"), **accuracy)
     elif hasattr(source, "columns") and hasattr(source, "iloc"):
-        rec = Recording(**_of_frame(source, how), source="a frame", **accuracy)
+        arrays = without_missing(_of_frame(source, how), missing, "the frame")
+        rec = Recording(**arrays, source="a frame", **accuracy)
     else:
         raise ArgumentError(
             f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, an xarray "
             "dataset, or arrays by name"
         )
+    for name, value, text in (("axes", axes, "arrays"), ("clock", clock, "times that are dates")):
+        if value is not None and not any(each.startswith(("axes in", "dates count")) for each in rec.read_as):
+            raise ArgumentError(f"{name} = {value!r} is for {text}, and there are none: expected no {name}=")
     rec = rec if box is None else unwrapped(rec, box)
     if interpolate is not None and interpolate is not False:
         return interpolated(rec, ensure_positive("interpolate", interpolate))
@@ -118,12 +131,15 @@ class _How(NamedTuple):
     m: int | None
     axes: Any
     jitter: float | None
+    missing: Any
     wrapped: bool
 
 
 def _of_arrays(arrays: Mapping[str, Any], where: str, how: _How) -> dict[str, Any]:
-    by_name = how.columns if isinstance(how.columns, Mapping) else None
-    named = named_arrays(arrays, where, columns=by_name, dt=how.dt, axes=how.axes, clock=how.clock)
+    if how.columns is not None and not isinstance(how.columns, Mapping):
+        raise ArgumentError(f'columns = {how.columns!r}: {where} has arrays by name: expected {{"t": ..., "q": ...}}')
+    stated = {key: value for key, value in how._asdict().items() if key not in ("missing", "wrapped")}
+    named = named_arrays(arrays, where, **stated)
     ids = arrays.get("ids") if isinstance(arrays.get("ids"), tuple) else None
     return named if ids is None else named | {"ids": ids}
 
@@ -133,9 +149,9 @@ def _of_frame(frame: Any, how: _How) -> dict[str, Any]:
     if any(name is not None and name not in frame.columns for name in frame.index.names):
         frame = frame.reset_index()  # times or agents are the index
     if columns is not None and not isinstance(columns, Mapping):
-        if len(columns) != len(frame.columns):
-            raise ArgumentError(f"columns has {len(columns)} names: expected {len(frame.columns)}, as the frame has")
+        note = renaming_note(list(frame.columns), columns, "the frame")
         frame = frame.set_axis(list(columns), axis=1)
+        frame.attrs["notes"] = (note,) if note else ()
     return table_arrays(frame, columns, how.dt, how.clock, how.m, how.jitter)
 
 
@@ -145,6 +161,8 @@ def _of_file(path: Path, how: _How, accuracy: Mapping[str, Any]) -> Recording:
     try:
         stated = {name: value for name, value in accuracy.items() if value is not None}
         contents = _contents(path, how)
+        if how.missing is not None or "estimated" not in contents:  # Recording.save has written NaN
+            contents = without_missing(contents, how.missing, str(path))
         arrays = {name: value for name, value in contents.items() if not stated or name not in _ACCURACY}
         return Recording(**({"source": path.name} | arrays | stated))
     except FileError:

@@ -76,6 +76,23 @@ def test_refusals_name_the_options_of_the_command(refused, tmp_path):
     refused("name them by --columns t=NAME,id=NAME,q=NAME+NAME,p=NAME+NAME", "odd.csv")
     (tmp_path / "frames.csv").write_text("frame,id,x,y\n0,0,0,0\n0,1,7,0\n1,0,0,1\n1,1,7,1\n", encoding="utf-8")
     refused("--dt ", "frames.csv", "--d", "7")
+    refused("--columns has 2 names", "frames.csv", "--columns", "t,x")
+
+
+def test_numbers_that_stand_for_not_seen_and_names_in_order_are_options(call, refused, tmp_path):
+    rows = [
+        f"{k},{i},{7 * i + 0.01 * k},{-9999 if (k, i) == (3, 1) else 0.02 * k}" for k in range(12) for i in range(2)
+    ]
+    rows = [row.replace("7.03,-9999", "-9999,-9999") for row in rows]
+    (tmp_path / "it.csv").write_text("when,kite,east,north\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    options = ("it.csv", "--columns", "t,id,x,y", "--d", "7", "--bound", "0.01")
+    refused("--missing -9999, or --missing none if", *options)
+    code, out, err = call(*options, "--missing", "-9999")
+    assert (code, err) == (0, "")
+    assert "1 positions that are -9999 are gaps" in out
+    assert "columns= replaces the header: 'when' is 't'" in out
+    assert call(*options, "--missing", "none")[0] == 0
+    refused("--missing 1,a: expected numbers", *options, "--missing", "1,a")
 
 
 def test_a_law_of_a_file(call, tracks, refused, tmp_path):

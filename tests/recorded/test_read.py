@@ -97,6 +97,26 @@ def test_headers_are_respected_and_columns_may_be_named(tmp_path):
     assert fl.read_recording(path, columns=["t", "id", "x", "y"]).q[1, 0].tolist() == [2.0, 4.0]
 
 
+def test_names_in_order_replace_a_header_that_says_the_same_or_nothing(tmp_path):
+    path = tmp_path / "it.csv"
+    path.write_text("when,kite,east,north\n0,a,1,2\n1,a,2,b\n")
+    with pytest.raises(FileError, match="line 3, column 'y': 'b'"):
+        fl.read_recording(path, columns=["t", "id", "x", "y"])
+    path.write_text("when,kite,east,north\n0,a,1,2\n1,a,2,3\n")
+    rec = fl.read_recording(path, columns=["t", "id", "x", "y"])
+    assert rec.q[:, 0].tolist() == [[1.0, 2.0], [2.0, 3.0]]
+    assert "columns= replaces the header: 'when' is 't', 'kite' is 'id', 'east' is 'x', 'north' is 'y'" in rec.read_as
+    with pytest.raises(ArgumentError, match=r"line 1 has 4 columns, 'when', .* and columns= has 3 names"):
+        fl.read_recording(path, columns=["t", "x", "y"])
+    path.write_text("time,px,py,robot\n0,1,2,a\n1,2,3,a\n")
+    with pytest.raises(ArgumentError, match="the header says 'robot' where columns= says 'vx': expected names in the"):
+        fl.read_recording(path, columns=["t", "x", "y", "vx"])
+    assert fl.read_recording(path, columns=["t", "x", "y", "id"]).ids == ("a",)
+    path.write_text("0,a,,\n1,a,2,3\n")  # a gap, no header
+    rec = fl.read_recording(path, columns=["t", "id", "x", "y"])
+    assert (rec.gaps, "there is no header: columns= names the columns" in rec.read_as) == (1, True)
+
+
 def test_frames_need_a_step_and_dates_a_unit(tmp_path):
     path = tmp_path / "it.csv"
     path.write_text("frame,id,x\n0,a,1\n4,a,2\n")
@@ -145,7 +165,8 @@ def test_wrong_tables_are_refused_with_row_column_and_remedy(tmp_path, text, mes
         (long_table().set_axis(["t", "id", "x", "x", "y", "vx"], axis=1), {}, "the column 'x' is given twice"),
         (long_table().iloc[:0], {}, "the frame has no rows"),
         (long_table().assign(vx=1j), {}, "row 0, column 'vx': '1j'; expected a finite number"),
-        (long_table(), {"columns": ["t", "id"]}, "columns has 2 names: expected 6"),
+        (long_table(), {"columns": ["t", "id"]}, "the frame has 6 columns, .* and columns= has 2 names"),
+        (long_table(), {"columns": "t,id"}, "columns = 't,id': expected names in order, or by meaning"),
         (long_table(), {"columns": {"t": "Time (s)", "q": None}}, "the frame has no column None"),
         (pd.DataFrame({"t": pd.to_datetime(["2024-05-01", None]), "x": [0.0, 1.0]}), {"clock": 1.0}, "row 1.*no time"),
         ({"q": Q}, {"dt": 0.0}, "dt = 0: expected a number > 0"),

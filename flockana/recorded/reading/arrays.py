@@ -19,6 +19,7 @@ from flockana.recorded.reading.axes import (
     turned,
     with_joined_axes,
 )
+from flockana.recorded.reading.names import is_header
 from flockana.recorded.reading.table import table_arrays
 from flockana.recorded.reading.words import coordinate, is_agent, is_frame, is_time, words_of
 
@@ -53,13 +54,15 @@ def named_arrays(
     dt: float | None = None,
     axes: Any = None,
     clock: float | None = None,
+    m: int | None = None,
+    jitter: float | None = None,
 ) -> dict[str, Any]:
     """Return t, q, p, u and read_as from arrays by name, or from the columns of a long table."""
     arrays = _without_shells(arrays)
     stated = {} if columns is None else dict(columns)
     if (frame := _long_table(arrays, stated, dt)) is not None:
         frame.attrs["where"] = where
-        return table_arrays(frame, stated or None, dt, clock)
+        return table_arrays(frame, stated or None, dt, clock, m, jitter)
     order = None if axes is None else order_of(axes)
     arrays, joined = with_joined_axes(arrays, stated, order, where)
     stated = {kind: name for kind, name in stated.items() if kind not in joined}
@@ -76,7 +79,8 @@ def named_arrays(
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
             filed[kind] = real_array(arrays[name], kind, where)
-            read_as.append(f"{kind} from {joined.get(name, repr(name))} {filed[kind].shape}")
+            by_default = " as (time, agent, axis)" if filed[kind].ndim == 3 and order is None else ""
+            read_as.append(f"{kind} from {joined.get(name, repr(name))} {filed[kind].shape}{by_default}")
     listing = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in filed:
         raise ArgumentError(
@@ -96,9 +100,12 @@ def named_arrays(
         raise ArgumentError(f"{where} holds {listing} and no times: expected t, or dt=, the interval between samples")
     if "t" in filed and dt is not None:
         raise ArgumentError(f"{where} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
-    t = filed["t"].reshape(-1) if "t" in filed else (step or 0.0) * np.arange(len(q))  # MATLAB has no vectors
+    sizes = {x: np.size(array) if rank(array) else 0 for x, array in arrays.items()}
+    frame = next((x for x in arrays if is_frame(words_of(x)[0]) and sizes[x] == len(q)), None)
+    count = np.arange(len(q)) if frame is None else real_array(arrays[frame], "frame", where)
+    t = (filed["t"] if "t" in filed else (step or 0.0) * count).reshape(-1)  # MATLAB has no vectors
     if "t" not in filed:
-        read_as.append(rate or "t from the samples times dt")
+        read_as.append(f"t from {'the samples' if frame is None else repr(frame)} {rate or 'times dt'}")
     if len(t) != len(q):
         orders = [] if joined else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
         hint = f"; expected (T, n, m), or axes={' or axes='.join(orders or ['...'])}, which decides"
@@ -115,9 +122,14 @@ def named_arrays(
             f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
             f"be the time or the agent: expected axes={choice}, which decides"
         )
-    read = {stated.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed}
-    idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and rank(arrays[x]) > 1]
+    read = {stated.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
+    idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and sizes[x] > 1]
     read_as += [f"not read: {', '.join(idle)}"] if idle else []
+    if m is not None and m not in range(1, q.shape[2] + 1):
+        raise ArgumentError(f"m = {m!r}: expected 1 to {q.shape[2]}, of which {where} has positions")
+    if m is not None:
+        filed |= {kind: filed[kind][..., :m] for kind in "qpu" if kind in filed}
+        read_as.append(f"the first {m} of {q.shape[2]} axes, as m = {m}")
     return filed | {"t": t, "read_as": tuple(read_as)}
 
 
@@ -129,7 +141,7 @@ def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | N
         return dt, ""
     if dt is not None and abs(dt * float(rate[0]) - 1.0) > 1e-6:
         raise ArgumentError(f"{where} has {name} = {rate[0]:g}, and dt = {dt:g} is given: expected one of them")
-    return 1.0 / float(rate[0]), f"t from the samples over {name} = {rate[0]:g}"
+    return 1.0 / float(rate[0]), f"over {name} = {rate[0]:g}"
 
 
 def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -173,6 +185,7 @@ def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
             elif is_agent(words_of(name)[0]) and array.size == 1:
                 columns[str(name)] = array.reshape(-1)
         rows = max((len(x) for x in columns.values()), default=0)
+        columns = {name: x for name, x in columns.items() if len(x) in (1, rows) or is_header(name)}
         names = [name for name in columns if is_agent(words_of(name)[0])] or ["id"]
         columns.setdefault(names[0], np.array([k]))
         columns = {name: np.repeat(x, rows) if len(x) == 1 else x for name, x in columns.items()}
@@ -291,6 +304,8 @@ def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
                 f"ds.sel({keys}={names[0]!r}), or ds.mean({keys!r}), the mean of all"
             )
         dataset = dataset.isel({keys: 0})
+    if "space" in dataset.coords and {*dataset["space"].values.tolist()} <= {*"xyz"}:
+        dataset = dataset.sortby("space")
     arrays: dict[str, Any] = {}
     for name in (*dataset.coords, *dataset.data_vars):
         array = dataset[name]
@@ -302,7 +317,8 @@ def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
                 "coordinates) alone; ds.rename(...) names a dimension, ds.sel(...) takes a part"
             )
         if -1 not in order and 0 in order and array.ndim in (2, 3):
-            arrays[str(name)] = turned(np.asarray(array), order, str(name), where)
+            x = turned(np.asarray(array), order, str(name), where)
+            arrays[str(name)] = x[..., 0] if 2 not in order and coordinate(*words_of(name)) is not None else x
         elif array.dtype.kind in "fiu" and not {"space"} & {*array.dims}:
             arrays[str(name)] = np.asarray(array)
     if "space" not in dataset.sizes:

@@ -94,7 +94,7 @@ def is_smoother_along_second(q: Any) -> bool:
 def real_array(value: Any, kind: str, where: str) -> Any:
     """Return an array of real numbers, or raise."""
     try:
-        array = np.asarray(value)
+        array = np.asarray(np.ma.filled(value.astype(np.float64), np.nan) if np.ma.isMaskedArray(value) else value)
     except ValueError:
         raise ArgumentError(f"{where}: {kind} has rows of different lengths: expected an array of numbers") from None
     if array.dtype.kind not in "fiu":

@@ -54,6 +54,29 @@ def is_header(name: Any) -> bool:
     return is_time(words) or is_agent(words) or coordinate(words, unit) is not None
 
 
+def renaming_note(header: Sequence[Any], names: Sequence[str], where: str) -> str:
+    """Return what is said of names that replace a header; raise where they are not as many, or contradict it."""
+    if len(names) != len(header):
+        text = f"{len(header)} columns, {', '.join(map(repr, header[:12]))}, and columns= has {len(names)} names"
+        raise ArgumentError(f"{where} has {text}: expected one for each; or {_NAMED}")
+    for old, new in zip(header, names, strict=True):
+        if None not in (meanings := [_meaning(x) for x in (old, new)]) and meanings[0] != meanings[1]:
+            raise ArgumentError(
+                f"{where}: the header says {old!r} where columns= says {new!r}: expected names in the order of the "
+                f"header; to choose among its columns, {_NAMED}; to replace it, drop its line"
+            )
+    pairs = [f"{old!r} is {new!r}" for old, new in zip(header, names, strict=True) if str(old) != str(new)]
+    return f"columns= replaces the header: {', '.join(pairs)}" if pairs else ""
+
+
+def _meaning(name: Any) -> tuple[str, ...] | None:
+    words, unit = words_of(name)
+    word = coordinate(words, unit)
+    if is_time(words) or is_frame(words) or is_agent(words):
+        return ("id",) if is_agent(words) else ("t",)
+    return None if word is None or "?" in word.kind else (word.kind, word.axis)
+
+
 def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | None = None) -> Layout:
     """Return the layout of a table from its header and the user's names.
 
@@ -229,6 +252,9 @@ def _arranged(
         owners = [_joined(owner) for owner in placed]
         remedy = f'columns={{"agents": {owners}}} or columns={{"q": [...]}}'
         raise _two_readings(where, listed, "agents", "vectors of one agent, such as a goal", remedy)
+    if _are_pairs(placed):
+        remedy = f'columns={{"agents": {["_".join(owner) for owner in placed]}}}, or names such as x1, y1'
+        raise _two_readings(where, listed, "agents on a line", "axes of agents, both by number", remedy)
     return Layout(None, None, None, {}, _alike({_joined(x): kinds for x, kinds in placed.items()}, where, shown))
 
 
@@ -240,6 +266,16 @@ def _are_agents(owners: list[tuple[str, ...]]) -> bool:
     """Return whether names differ only in a number or letter, or all begin with a word for agents."""
     stems = {tuple(word for word in owner if not word.isdigit() and len(word) > 1) for owner in owners}
     return len(stems) == 1 or all(is_agents_word(owner[0]) and len(owner) > 1 for owner in owners)
+
+
+def _are_pairs(placed: Mapping[tuple[str, ...], Kinds]) -> bool:
+    """Return whether owners on a line are all pairs of some first digits and two or three second ones."""
+    names, last = {"".join(owner) for owner in placed}, {"".join(owner)[1:] for owner in placed}
+    pairs = {name[:1] + digit for name in names for digit in last}
+    on_a_line = all({*kinds["q"]} == {"x"} for kinds in placed.values())
+    return (
+        on_a_line and names == pairs and len(names) > len(last) and "".join(sorted(last)) in ("01", "12", "012", "123")
+    )
 
 
 def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:

@@ -44,6 +44,11 @@ def table_arrays(
     layout = _with_agents(frame, layout, t, where)
     factors, texts = _factors(layout, where)
     notes = [*remark, *frame.attrs.get("notes", ()), *texts]
+    if t is not None:
+        owners = np.zeros(len(t)) if layout.agent is None else frame[layout.agent].factorize()[0]
+        order = np.argsort(owners, kind="stable")
+        falls = int(((np.diff(t[order]) < 0.0) & (np.diff(owners[order]) == 0)).sum())
+        notes += [f"rows are sorted by time, which falls {falls} times"] if falls else []
     if layout.wide:
         arrays = _wide(frame, layout.wide, _counted(frame, t, dt, layout, where))
     elif layout.agent is not None and t is not None:
@@ -53,6 +58,8 @@ def table_arrays(
     elif layout.agent is not None:
         arrays = _one_instant(frame, layout)
     else:
+        if t is None and not (isinstance(columns, Mapping) and "q" in columns):
+            _ensure_one_agent(frame, layout, where)
         t = _counted(frame, t, dt, layout, where)
         if len(np.unique(t)) < len(t):
             rest = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
@@ -64,6 +71,18 @@ def table_arrays(
     for kind, factor in factors.items():
         arrays[kind] = arrays[kind] * factor
     return arrays | {"read_as": (*_described(layout, dt), *notes, *layout.notes, *_flat_axis(arrays))}
+
+
+def _ensure_one_agent(frame: Any, layout: Layout, where: str) -> None:
+    """Raise if a column that is not read may name the agents of rows without times."""
+    read = {x for names in layout.long.values() for x in names}
+    for name in (x for x in frame.columns if x not in read and frame[x].dtype.kind not in "fbc"):
+        if 1 < frame[name].nunique() <= len(frame) // 2:
+            decided = f'columns={{"id": {name!r}}}, or columns={{"q": {list(layout.long["q"])}}}'
+            raise ArgumentError(
+                f"{where} has no times, and {name!r} repeats: it may name the agent of each row, or all rows are of "
+                f"one agent: expected {decided}, which decides"
+            )
 
 
 def _counted(frame: Any, t: FloatArray | None, dt: float | None, layout: Layout, where: str) -> FloatArray:
@@ -142,9 +161,12 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
     factors, texts = {}, []
     for kind, power in (("p", 1), ("u", 2)):
         if kind in by_name and "q" in by_name and by_name[kind].power == power:
-            if (by_name[kind].length == "px") != (by_name["q"].length == "px"):
-                continue
             text = by_name[kind].text
+            if (by_name[kind].length == "px") != (by_name["q"].length == "px"):
+                raise ArgumentError(
+                    f"{where}: positions are in {by_name['q'].text}, and {kind} in {text}: expected one "
+                    f'unit of length; convert them, or read positions alone by columns={{"q": {[*kinds[0]["q"]]}}}'
+                )
             clock = Unit(f"the time of {text}", "", by_name[kind].second, 0) if time is None else time
             factor = by_name[kind].factor / by_name["q"].factor * clock.factor**power
             if abs(factor - 1.0) > 1e-9:
@@ -194,19 +216,20 @@ def _times(
         return (whole - whole[0]) + 1e-9 * parts, ["seconds and nanoseconds are added, from the first second on"]
     if layout.time is not None:
         series = frame[layout.time]
-        if series.dtype.kind == "M" or (series.dtype.kind not in "fiu" and _is_date(series.iloc[0])):
+        if series.dtype.kind in "mM" or (series.dtype.kind not in "fiu" and _is_date(series.iloc[0])):
             t = _read_dates(series, clock, where, layout.time)
+            notes = [f"dates count from the first, in units of {clock} s"]
         else:
-            t = numbers(frame, layout.time)
+            t, notes = numbers(frame, layout.time), []
         if np.isnan(t).any():
             k = int(np.argmax(np.isnan(t)))
             raise FileError(f"{row_name(frame, k)}, column {layout.time!r}: no time; expected one in every row")
         unit = (layout.units or {}).get(layout.time)
         for smallest, factor, text in _EPOCHS if unit is None else ():
-            if smallest <= t.min() <= t.max() < 1e3 * smallest and series.dtype.kind in "iu":
+            if smallest <= t.min() <= t.max() < 1e3 * smallest and series.dtype.kind in "iuf":
                 exact = series.to_numpy()
                 return (exact - exact.min()) * factor, [f"t counts {text} since 1970: in seconds from the first"]
-        return t, []
+        return t, notes
     if layout.frame is None:
         return None, []
     if dt is None:
@@ -235,7 +258,7 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
             "the law (1 for seconds); times then count from the first"
         )
     try:
-        stamps = pd.to_datetime(series, format="ISO8601", utc=True)
+        stamps = series if series.dtype.kind == "m" else pd.to_datetime(series, format="ISO8601", utc=True)
     except (ValueError, TypeError) as error:
         raise FileError(f"{where}, column {name!r}: {error}; expected dates such as 2024-05-01T12:00:00") from None
     seconds: FloatArray = (stamps - stamps.min()).dt.total_seconds().to_numpy(dtype=np.float64)

@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.base.errors import FileError
 from flockana.recorded.reading import opened
+from flockana.recorded.reading.names import renaming_note
 
 _GAPS = ("", "nan", "NaN", "NA", "N/A", "null", "None", "-")
 _SHOWN = 40  # characters of a cell or a line that a message repeats
@@ -48,9 +49,14 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
     if first.count('"') % 2:
         raise FileError(f"{path}, line 1: {first.strip()[:_SHOWN]!r} has an open quote; expected a header in one line")
     data, notes = _cleaned(data, delimiter)
-    width = len(cells)
-    if names is not None and len(names) != width:
-        raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
+    width, has_header = len(cells), not any(x[:1].isdigit() or _is_number(x) for x in cells if x) and any(cells)
+    if names is not None and has_header:
+        notes += filter(None, [renaming_note(cells, names, f"{path}, line 1")])
+    elif names is not None:
+        if len(names) != width:
+            raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
+        notes.append("there is no header: columns= names the columns")
+    has_header |= names is None
     if _QUOTE not in data:
         data = _ensure_rectangular(data, ord(delimiter), width, path, above)
     lines = (
@@ -60,7 +66,7 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         frame = pd.read_csv(
             io.BytesIO(data),
             sep=delimiter,
-            header=0 if names is None else None,
+            header=0 if has_header else None,
             names=[cell or f"column {k}" for k, cell in enumerate(cells, 1)] if names is None else list(names),
             na_values=list(_GAPS),
             keep_default_na=False,
@@ -73,9 +79,9 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         raise FileError(f"{path} has a header and no rows: expected one for each sample of an agent")
     if empty := [x for k, x in enumerate(frame) if not cells[k] and names is None and frame[x].isna().all()]:
         frame, notes = frame.drop(columns=empty), [*notes, f"{len(empty)} columns without a name are empty"]
-    frame.attrs |= {"where": str(path), "first": above + (1 if names is not None else 2), "notes": tuple(notes)}
+    frame.attrs |= {"where": str(path), "first": above + 1 + has_header, "notes": tuple(notes)}
     if lines is not None:  # pandas leaves out empty ones
-        frame.attrs["lines"] = lines[1:] if names is None else lines
+        frame.attrs["lines"] = lines[has_header:]
     return frame
 
 

@@ -19,7 +19,7 @@ _FUSED = {
 } | {axis + last: (kind, axis) for axis in AXES for last, kind in _SUFFIXES.items()}
 
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "um": 1e-6, "nm": 1e-9, "ft": 0.3048}
-_LENGTHS |= {"px": 0.0, "bl": 0.0}
+_LENGTHS |= {"in": 0.0254, "mi": 1609.344, "px": 0.0, "bl": 0.0}
 _DURATIONS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _SPELLINGS = {
     spelling: key.removeprefix("unit ") for key in _WORDS if key.startswith("unit ") for spelling in _WORDS[key]
@@ -82,7 +82,7 @@ def words_of(name: Any) -> tuple[list[str], Unit | None]:
     mixed = text != text.upper()  # the A of robotA is a name, that of AX an acceleration
     words = [x if mixed and len(x) == 1 and x.isupper() and x not in "XYZWT" else x.lower() for x in pieces]
     last = _SPELLINGS.get(words[-1], words[-1]) if words else ""
-    if unit is None and len(words) > 1 and (last in _LENGTHS or last in _DURATIONS or "/" in last):
+    if unit is None and len(words) > 1 and last != "in" and (last in _LENGTHS or last in _DURATIONS or "/" in last):
         unit, words = unit_of(last), words[:-1]
     return words, unit
 
@@ -94,7 +94,7 @@ def _known(word: str, kind: set[str]) -> bool:
 def is_time(words: list[str]) -> bool:
     """Return whether words denote the time of a row."""
     rest = [word for word in words if word not in _FILLERS and word not in _ROLES["q"]]
-    return bool({*rest} & _TIMES) and all(word in _TIMES or word in ("frame", "start") for word in rest)
+    return bool({*rest} & _TIMES) and all(word in _TIMES or word in ("frame", "timestep", "start") for word in rest)
 
 
 def is_frame(words: list[str]) -> bool:
@@ -109,7 +109,7 @@ def is_agent(words: list[str]) -> bool:
     return (
         bool(rest)
         and all(_known(word, _AGENTS) or word in _NUMBERS for word in rest)
-        and rest[0] not in ("no", "count")
+        and rest[0] not in ("no", "n", "count")
     )
 
 

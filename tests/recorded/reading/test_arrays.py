@@ -61,6 +61,22 @@ def test_arrays_of_single_axes_are_joined_and_others_are_said():
             fl.read_recording(arrays)
 
 
+def test_masks_dimensions_frames_and_names_beside_arrays():
+    rec = fl.read_recording({"q": np.ma.masked_where(Q > 0.9, Q)}, dt=0.1)
+    assert rec.gaps == (Q > 0.9).any(axis=2).sum()
+    rec = fl.read_recording({"q": Q, "v": Q, "frames": np.arange(0, 14, 2), "fps": 10.0, "time_ms": np.arange(7)}, m=1)
+    np.testing.assert_array_equal(rec.p, Q[..., :1])
+    assert rec.t.tolist() == pytest.approx(0.2 * np.arange(7))
+    assert "t from 'frames' over fps = 10; not read: 'time_ms'; the first 1 of 2 axes, as m = 1" in repr(rec)
+    assert "q from 'q' (7, 4, 2) as (time, agent, axis)" in rec.read_as
+    columns = {"time": np.array([0.0, 0.0, 1.001, 1.003, 2.0, 2.0]), "id": [1, 2] * 3, "x": np.arange(6.0)}
+    columns["y"] = columns["x"]
+    assert fl.read_recording(columns, jitter=0.01, m=1).q[:, :, 0].tolist() == [[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]]
+    for how, message in (({"m": 3}, "m = 3: expected 1 to 2"), ({"columns": ["t", "q"]}, "has arrays by name")):
+        with pytest.raises(FlockanaError, match=message):
+            fl.read_recording({"q": Q}, dt=0.1, **how)
+
+
 def test_a_second_axis_that_looks_like_the_time_is_asked_for():
     """Without times nothing but smoothness tells (agent, time, axis) from (time, agent, axis)."""
     steps = np.linspace(0.0, 1.0, 30)[:, None, None]
@@ -104,7 +120,8 @@ def test_files_of_arrays_hold_long_tables_and_structures_too(tmp_path):
     savemat(tmp_path / "it.mat", columns)
     for name in ("it.npz", "it.mat"):
         assert fl.read_recording(tmp_path / name).q[2, 1].tolist() == [5.0, 5.0]
-    tracks = [{"t": [0.0, 1.0, 2.0], "x": [1.0, 2.0, 3.0]}, {"t": [1.0, 2.0], "x": [5.0, 6.0]}]
+    tracks = [{"t": [0.0, 1.0, 2.0], "x": [1.0, 2.0, 3.0], "dt": [1.0, 1.0]}, {"t": [1.0, 2.0], "x": [5.0, 6.0]}]
+    tracks[1]["dt"] = [1.0]
     savemat(tmp_path / "s.mat", {"tracks": tracks})
     rec = fl.read_recording(tmp_path / "s.mat")
     assert rec.q[:, :, 0].tolist() == [[1.0, pytest.approx(np.nan, nan_ok=True)], [2.0, 5.0], [3.0, 6.0]]
@@ -138,6 +155,10 @@ def test_datasets_of_movement_are_read_and_given_back(tmp_path):
     with pytest.raises(FlockanaError, match="no times: expected t, or dt="):
         fl.read_recording(frames)
     assert fl.read_recording(frames, dt=0.5).t[-1] == 2.0
+    for ds in (poses().sortby("space", ascending=False), poses().isel(keypoints=0).transpose("space", ...)):
+        np.testing.assert_array_equal(fl.read_recording(ds).q, rec.q)  # y before x, and space before time
+    axes = {name: (("id", "time"), rec.q[:, :, k].T) for k, name in enumerate("xy")}
+    np.testing.assert_array_equal(fl.read_recording(xr.Dataset(axes, {"time": rec.t})).q, rec.q)
     back = fl.read_recording(rec.to_xarray())
     np.testing.assert_array_equal(back.q, rec.q)
     assert rec.to_xarray().position.dims == ("time", "space", "individuals")

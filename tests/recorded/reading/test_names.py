@@ -1,6 +1,7 @@
 """Columns of tables by their names, as tools of the field write them: one reading, which is stated, or a refusal."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flockana as fl
@@ -69,6 +70,9 @@ REFUSED = [
     ("timestamp,bird,latitude,longitude", "are angles: expected positions in a length"),
     ("Frame,X,Y,X,Y", r"'X' is given twice.*pandas.read_csv\(file, header="),
     ("time (s),x [mm],y [m]", "positions are in mm, m, or others: expected one unit"),
+    ("t,x (px),y (px),vx (mm/s),vy (mm/s)", r"positions are in px, and p in mm/s: .* columns=.\"q\": \['x \(px\)'"),
+    ("t,x11,x12,x21,x22", r"agents on a line, or axes of agents.*'11', '12', '21', '22'"),
+    ("t,x_in,y_in,x_out,y_out", "agents, or vectors of one agent"),
 ]
 
 
@@ -111,6 +115,32 @@ def test_the_argument_that_a_message_names_decides(tmp_path):
     assert fl.read_recording(path, columns={"t": "when", "id": "kite"}).ids == ("a", "b")
     with pytest.raises(FlockanaError, match=r"has times in 'time' and dt = 0\.1 is given"):
         fl.read_recording(table(tmp_path / "it.csv", "time,x,y"), dt=0.1)
+
+
+def test_rows_without_times_are_of_one_agent_only_where_no_column_may_name_others(tmp_path):
+    path = table(tmp_path / "it.csv", "swan,x,y", "a,1,2", "a,2,3", "b,7,8", "b,8,9")
+    with pytest.raises(FlockanaError, match=r"'swan' repeats: .*\"id\": 'swan'.*, or columns={\"q\": \['x', 'y'\]}"):
+        fl.read_recording(path, dt=0.1)
+    assert len(fl.read_recording(path, dt=0.1, columns={"q": ["x", "y"]}).t) == 4
+    path = table(tmp_path / "it.csv", "Track n°,Slice n°,X,Y", "1,1,1,2", "1,2,2,3", "2,1,7,8", "2,2,8,9")
+    assert fl.read_recording(path, dt=0.1).q[:, 1, 0].tolist() == [7.0, 8.0]
+    assert fl.read_recording(table(path, "score,x", "1,3", "2,4", "3,5"), dt=0.1).n == 1
+
+
+def test_numbers_of_agents_and_axes_are_no_agents_on_a_line_unless_stated(tmp_path):
+    path = table(tmp_path / "it.csv", "t,x_1_1,x_1_2,x_2_1,x_2_2")
+    assert fl.read_recording(path, columns={"agents": ["1_1", "1_2", "2_1", "2_2"]}).q.shape == (2, 4, 1)
+    assert fl.read_recording(table(path, "t," + ",".join(f"x{k}" for k in range(1, 13)))).n == 12
+
+
+def test_rows_that_are_sorted_and_arguments_that_say_nothing_are_told(tmp_path):
+    again = table(tmp_path / "it.csv", "t,id,x", "0,1,1", "1,1,2", "0.5,1,9", "1.5,1,8")
+    assert "rows are sorted by time, which falls 1 times" in fl.read_recording(again).read_as
+    by_agent = table(again, "t,id,x", "0,1,1", "1,1,2", "0,2,9", "1,2,8")
+    assert "sorted" not in repr(fl.read_recording(by_agent))
+    for how, text in (({"axes": "time agent"}, "for arrays"), ({"clock": 60.0}, "for times that are dates")):
+        with pytest.raises(FlockanaError, match=f"= .* is {text}, and there are none"):
+            fl.read_recording(by_agent, **how)
 
 
 def test_the_column_of_agents_is_the_one_whose_values_return(tmp_path):
@@ -158,6 +188,8 @@ def test_velocities_come_into_the_units_of_positions_and_times(tmp_path):
     rec = fl.read_recording(table(tmp_path / "it.csv", "t,x [m],vx [cm/s]", "0,1,300", "1,4,300"))
     assert rec.p[:, 0, 0].tolist() == pytest.approx([3.0, 3.0])  # times without a unit are in that of velocities
     assert "p times 0.01, from cm/s to m and the time of cm/s" in repr(rec)
+    rec = fl.read_recording(table(tmp_path / "it.csv", "t (s),x (in),vx (mph)", "0,1,1", "1,4,1"))
+    assert rec.p[0, 0, 0] == pytest.approx(1609.344 / 3600.0 / 0.0254)
     assert (unit_of("mm/s^2").factor, unit_of("stones")) == (1e-3, None)
     assert words_of("posX_mm")[0] == ["pos", "x"]
 
@@ -169,6 +201,10 @@ def test_seconds_and_nanoseconds_and_counts_since_1970(tmp_path):
     rec = fl.read_recording(counted)
     assert rec.t.tolist() == [0.0, 0.25]
     assert "t counts nanoseconds since 1970" in repr(rec)
+    spans = pd.DataFrame({"t": pd.to_timedelta([5.0, 7.0], unit="s"), "x": [1.0, 2.0]})
+    assert fl.read_recording(spans, clock=0.5).t.tolist() == [0.0, 4.0]
+    with pytest.raises(FlockanaError, match="expected clock="):
+        fl.read_recording(spans)
 
 
 def test_stamps_that_differ_by_rounding_or_within_a_jitter_are_one_instant(tmp_path):
