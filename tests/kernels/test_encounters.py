@@ -21,7 +21,7 @@ from flockana.kernels.grid import empty_cuts
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.quintic_paths import bernstein, centred
 from flockana.kernels.slab_checks import means_in_parts, ways_in_parts
-from flockana.kernels.verlet import Pairs, listed_anew, no_pairs
+from flockana.kernels.verlet import Pairs, covers, listed_anew, no_pairs
 
 H, R, FAR = 0.7, 8.4, 3.5
 
@@ -48,9 +48,9 @@ def share_of_pairs(states, radii):
 
 def around(radii):
     """No poles and no obstacles."""
-    none, edges = np.empty(0, np.uint32), (float(radii.min()), float(radii.max()))
+    none, edges, kinds = np.empty(0, np.uint32), (float(radii.min()), float(radii.max())), np.zeros(1, int)
     return Around(
-        radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0), None, None
+        radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), kinds, (0.0, 0.0), None, covers
     )
 
 
