@@ -27,9 +27,7 @@ def progress_bar(
         yield _lines(total) if enabled else lambda done, text: None
         return
     with _bar(console, counted, steady) as bar:
-        task = bar.add_task("starting", total=total)
-
-        shown = ""
+        task, shown = bar.add_task("starting", total=total), ""
 
         def advance(done: float, text: str) -> None:
             nonlocal shown

@@ -19,7 +19,8 @@ def kept_data(name: str, compute: Callable[[], Any]) -> Any:
     """Return a function's result, read from the user's cache folder until a file of the package changes."""
     path = None
     with suppress(OSError, ValueError, RuntimeError):  # RuntimeError: there is no home folder
-        path = _folder() / f"{name}-{_installation()}.json"
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "lists"
+        path = folder / f"{name}-{_installation()}.json"
         return json.loads(path.read_text("utf-8"))
     data = compute()
     if path is not None:
@@ -29,10 +30,6 @@ def kept_data(name: str, compute: Callable[[], Any]) -> Any:
                 other.unlink(missing_ok=True)
             write_atomic(path, json.dumps(data))
     return data
-
-
-def _folder() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "lists"
 
 
 def _installation() -> str:

@@ -98,16 +98,13 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     if isfinite(proof):
         return GainBox("verified", moved=proof)
     for share in product((1.0 - spread, 1.0 + spread), repeat=3):
-        gains = dict(zip(GAINS, _corner(law, *share, 1.0 - spread), strict=True))
+        shares = zip(GAINS, (*share, 1.0 - spread), strict=True)
+        gains: dict[str, Any] = {name: factor * np.asarray(getattr(law.gains, name))[()] for name, factor in shares}
         other = replace(law, gains=replace(law.gains, **gains))
         there = find_equilibrium(other, rest.q)
         if there.success and any(mode.decay_rate < -mode.error for mode in linearise(other, there).modes):
             return GainBox("refuted", tuple(float(np.min(x)) for x in gains.values()))
     return GainBox("inconclusive")
-
-
-def _corner(law: Algorithm2, *shares: float) -> list[Any]:
-    return [share * np.asarray(getattr(law.gains, name))[()] for share, name in zip(shares, GAINS, strict=True)]
 
 
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
@@ -184,7 +181,7 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
     products = arb_mat(
         [[sum((float(turns[i, j]) * t[i] for i in range(size)), arb(0)) for j in range(k)] for t in tangents]
     )
-    if k and not _has_full_rank(products):
+    if k and least_eigenvalue(products.transpose() * products) is None:  # its columns may be dependent
         return None
     return solution[:size]
 
@@ -205,11 +202,6 @@ def _grow_box(equations: Any, slope: Any, centre: list[arb]) -> list[arb] | None
     return None
 
 
-def _has_full_rank(matrix: arb_mat) -> bool:
-    """Return whether a matrix with at least as many rows as columns certainly has independent columns."""
-    return least_eigenvalue(matrix.transpose() * matrix) is not None
-
-
 def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
     """Return whether the form ∇²V + κ (1 − 11ᵀ/n), agent 0 left out, is certainly positive apart from rotations."""
     # A pair's block in the ball is at least its middle less its radius ρ: the form is at least one of numbers. With
@@ -223,13 +215,8 @@ def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
         block = outer(gap, tension, (structure.stiffness(s) - tension) / s)
         loss = sum((entry.rad() ** 2 for row in block for entry in row), arb(0)).sqrt()
         loss = arb(loss.upper())
-        blocks.append(
-            (
-                i,
-                j,
-                [[entry.mid() - (loss if a == b else 0) for b, entry in enumerate(row)] for a, row in enumerate(block)],
-            )
-        )
+        rows = enumerate(block)
+        blocks.append((i, j, [[x.mid() - (loss if a == b else 0) for b, x in enumerate(row)] for a, row in rows]))
     whole = structure.assembled(blocks).tolist()
     form = arb_mat(
         [

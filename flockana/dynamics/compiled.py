@@ -15,7 +15,7 @@ from flockana.kernels.adaptive_steps import FULL, NOT_FINITE, SINGULAR, TOO_SMAL
 from flockana.kernels.grid import LARGE
 from flockana.kernels.large import fill
 from flockana.kernels.many_steps import Advanced, advance
-from flockana.kernels.runge_kutta import Method, System
+from flockana.kernels.runge_kutta import Method
 from flockana.kernels.threads import several_threads
 from flockana.kernels.verlet import COUNT, MADE, no_pairs, spatial_order, with_room
 from flockana.laws.law import Law
@@ -65,25 +65,13 @@ class Engine(Integrator):
             judged = checks.judged(self.order, several=several)
             lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
-            ahead = Advanced(
-                *advance(
-                    self._system_for(several),
-                    self._method,
-                    block,
-                    self._room,
-                    self._h,
-                    lists,
-                    self.stops,
-                    samples,
-                    judged,
-                )
-            )
+            system = self._form.in_threads(self._system) if several else self._system  # both give the same bits
+            stages = system, self._method, block, self._room, self._h
+            ahead = Advanced(*advance(*stages, lists, self.stops, samples, judged))
         self._unsorted -= ahead.steps
         self._h, self._sampled = ahead.h, ahead.samples if ahead.steps else 0
-        self.evaluations, self.notes["redone"] = (
-            self.evaluations + ahead.evaluations,
-            self.notes["redone"] + ahead.redone,
-        )
+        self.evaluations += ahead.evaluations
+        self.notes["redone"] += ahead.redone
         t = float(self.block.t[ahead.steps])
         if ahead.status == FULL and not ahead.steps:
             self._samples = self._room_for(ahead.samples)
@@ -105,10 +93,6 @@ class Engine(Integrator):
             with several_threads(self._threads) as several:
                 self.pairs = fill(self.pairs, self._places, self._reach, several)
         return bool(self.pairs.counts[COUNT] >= 0)
-
-    def _system_for(self, several: bool) -> System:
-        """Return the compiled system of a law, for one or several threads with equal bits."""
-        return self._form.in_threads(self._system) if several else self._system
 
     @property
     def _places(self) -> FloatArray:

@@ -104,7 +104,9 @@ class Interpreter(Integrator):
     def step(self) -> bool:
         """Try one step into the second row; return whether it succeeds, with the reason in `failure` if not."""
         if self._solver.status == "finished":  # a stop, or a step that was made again ended here
-            self._open(self.stops[0], self._next_step())
+            h = getattr(self._solver, "h_abs", None)  # the next step, unless the last one only led across a switch
+            across = h is None or h < _ACROSS * np.spacing(abs(float(self.block.t[0])))
+            self._open(self.stops[0], None if across else h)
         self._course, start = None, float(self.block.t[0])
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # such a state ends the run, in words
@@ -121,11 +123,6 @@ class Interpreter(Integrator):
             why = str(error)
         self.failure = self.plan.describe_failure(float(self._solver.t), why)
         return False
-
-    def _next_step(self) -> float | None:
-        """Return the solver's next step; None if the last step only crossed a switch."""
-        h, t = getattr(self._solver, "h_abs", None), float(self.block.t[0])
-        return None if h is None or h < _ACROSS * np.spacing(abs(t)) else h
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (times, states, work) of the samples due within the step."""

@@ -47,15 +47,8 @@ class Motion:
 
         ends = np.array([len(pieces), len(pieces) + 1]) * (self._piece if ahead else -self._piece)
         start = pieces[-1](ends[0]) if pieces else self._start
-        solution = solve_ivp(
-            lambda _, y: self._rate(y),
-            tuple(ends.tolist()),
-            start,
-            method="DOP853",
-            dense_output=True,
-            rtol=_RTOL,
-            atol=1e-13 * self._units,
-        )
+        how: Any = {"method": "DOP853", "dense_output": True, "rtol": _RTOL, "atol": 1e-13 * self._units}
+        solution = solve_ivp(lambda _, y: self._rate(y), tuple(ends.tolist()), start, **how)
         if not (solution.success and np.isfinite(solution.y).all()):
             raise SolverError(
                 f"the γ-agent's own motion cannot be integrated beyond t = {solution.t[-1]:.6g} ({solution.message}): "

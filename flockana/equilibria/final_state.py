@@ -47,7 +47,8 @@ def terminal_state(
     if law.target is not None:
         ensure_one_gain(law.gains)
     alpha = law.alpha
-    forces = _forces(law, q, p)
+    still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
+    forces = moving_frame(law.flow(0.0, q, still)[0])
     force = float(np.linalg.norm(forces, axis=1).max())
     lengths = link_lengths(q, links(q, alpha.range))
     empty = lengths.size == 0
@@ -66,12 +67,6 @@ def terminal_state(
         curvature_error=error,
         distance=landscape.distance / alpha.length if landscape else float("inf"),
     )
-
-
-def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return the forces in the moving frame at zero relative velocity."""
-    still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
-    return moving_frame(law.flow(0.0, q, still)[0])
 
 
 def generators(m: int) -> list[FloatArray]:

@@ -184,7 +184,9 @@ def find_equilibrium(
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
     """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
     q = polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
-    if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
+    pull = potential.law.term(Navigation)
+    unpulled = pull is not None and pull.gains.c1_gamma == 0.0
+    if potential.target is not None and not (potential.pinned or unpulled):  # as Algorithm 2 holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
     blocked = inside_obstacle(potential.law, q)
@@ -223,12 +225,6 @@ def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
     """Raise unless an equilibrium is unchanged since a solver returned it."""
     source = "one as find_equilibrium returned it or read it from a file"
     ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
-
-
-def _fixed_in_space(potential: Potential) -> bool:
-    """Return whether the target acts through the potential alone, or not at all."""
-    pull = potential.law.term(Navigation)
-    return potential.pinned or (pull is not None and pull.gains.c1_gamma == 0.0)
 
 
 def all_pairs(n: int) -> LinkArray:

@@ -32,13 +32,8 @@ _PHI_ALPHA = lift_scalar(kernel.phi_alpha)
 _PHI_ALPHA_SLOPE = lift_scalar(kernel.phi_alpha_slope)
 _PSI_ALPHA = lift_scalar(kernel.psi_alpha)
 _SIGMA_NORM = lift_scalar(sigma_norm)
-_ALPHA = lift(
-    kernel.stress_alpha,
-    kernel.pair_alpha_slope,
-    kernel.pair_alpha_potential,
-    kernel.pair_alpha_adjacency_slope,
-    norm=kernel.norm_alpha,
-)
+_PARTS = kernel.stress_alpha, kernel.pair_alpha_slope, kernel.pair_alpha_potential, kernel.pair_alpha_adjacency_slope
+_ALPHA = lift(*_PARTS, norm=kernel.norm_alpha)
 
 
 def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBound, ...]:

@@ -99,7 +99,8 @@ def formula_parts(
     view.look(d, unbounded=near.kind == "excluded")
     panels = _panels(cut, view, d) if forces else near.panels
     texts, constants = _texts(cut, near, forces=forces)
-    far = _far(view, panels, forces=forces)
+    far = float(panels[-1, 2:].sum()) if forces else view.energy(view.r)  # the potential at the range; of powers of 1
+    far = far if forces or isfinite(far) else inf
     head = np.array([r * r, far, eps, near.bound, *near.coefficients])
     marks = np.array([view.of_mark(mark) for mark in cut.marks[1:-1]])
     par = np.concatenate([head, marks, [float(cut.value(each)) for each in constants]])
@@ -107,21 +108,8 @@ def formula_parts(
         raise ArgumentError(f"{main!r} has a part that is not finite with these parameters: expected finite numbers")
     for array in (par, panels, view.looks):
         array.setflags(write=False)
-    surfaces = tuple(sorted({*view.jumps(), r}))
-    return FormulaParts(
-        cut,
-        texts,
-        par,
-        panels,
-        surfaces,
-        (*view.places, r),
-        view.strength,
-        near.kind != "excluded",
-        view.holds(d),
-        view.looks,
-        view.zeros(d),
-        (*view.poles(), *view.ends()),
-    )
+    facts = tuple(sorted({*view.jumps(), r})), (*view.places, r), view.strength, near.kind != "excluded", view.holds(d)
+    return FormulaParts(cut, texts, par, panels, *facts, view.looks, view.zeros(d), (*view.poles(), *view.ends()))
 
 
 def _norm(x: float, eps: float) -> float:
@@ -261,12 +249,6 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
     middle = 0.5 * (left + right)
     halves = ((left, middle), (middle, right))
     return [edge for half in halves for edge in _resolved(values, *half, scale, depth + 1)]
-
-
-def _far(view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
-    """Return the potential ψ at the range, the constant of pairs out of range."""
-    far = float(panels[-1, 2:].sum()) if forces else view.energy(view.r)  # of powers of 1
-    return far if forces or isfinite(far) else inf
 
 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:

@@ -77,12 +77,8 @@ class Disturbed(Wrapper):
     seed: int = 0
 
     units: ClassVar[Mapping[str, tuple[float, float]]] = {
-        "force": (1, -2),
-        "swing": (1, -2),
-        "times": (0, 1),
-        "table": (1, -2),
-        "frequency": (0, -1),
-        "intensity": (1, -1.5),
+        **{"force": (1, -2), "swing": (1, -2), "table": (1, -2)},
+        **{"times": (0, 1), "frequency": (0, -1), "intensity": (1, -1.5)},
     }
 
     def __post_init__(self) -> None:

@@ -30,12 +30,8 @@ def ensure_gains(law: Any) -> None:
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
     """Return d, and the time in which the leading term (c1α, c1γ, c2α or c2γ) moves an agent by d."""
-    rates = (
-        np.sqrt(gains.c1_alpha * alpha.strength / alpha.length),
-        np.sqrt(np.max(gains.c1_gamma)),
-        gains.c2_alpha,
-        np.max(gains.c2_gamma),
-    )
+    pair, pull = gains.c1_alpha * alpha.strength / alpha.length, np.max(gains.c1_gamma)
+    rates = (np.sqrt(pair), np.sqrt(pull), gains.c2_alpha, np.max(gains.c2_gamma))
     return Scales(alpha.length, 1.0 / float(next((rate for rate in rates if rate > 0.0), 1.0)))
 
 

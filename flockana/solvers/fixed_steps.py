@@ -337,7 +337,8 @@ class FixedSteps(DiscreteLaw):
         now.begins = False
         if self.past_steps:
             past.begin(u, first=now.number == 0)
-        kick = self._kick(now, p.shape)
+        kicks = (one.kick(now, p.shape) for one in self._wrappers)
+        kick = sum((each for each in kicks if each is not None), 0.0)
         speeds, inputs = [p], [u]
         for s in range(1, table.stages):
             place = q + h * _combination(table.a[s], speeds)
@@ -351,11 +352,6 @@ class FixedSteps(DiscreteLaw):
         if self._first_order:  # the rate of the velocity is in the place that is free
             return (inputs[-1] - inputs[0]) / h, after, inputs[-1], inputs[-1]
         return q, after + kick, u, inputs[-1]
-
-    def _kick(self, now: Step, shape: tuple[int, ...]) -> Any:
-        """Change of the velocities by white noise in a step."""
-        kicks = (one.kick(now, shape) for one in self._wrappers)
-        return sum((kick for kick in kicks if kick is not None), 0.0)
 
 
 def _combination(weights: FloatArray, parts: Sequence[FloatArray]) -> FloatArray:

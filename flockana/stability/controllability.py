@@ -99,7 +99,8 @@ class Controllability:
 
     @cached_property
     def _nearest(self) -> tuple[float, complex]:
-        return distance_to_loss(self.model, self.informed, [one.pole for one in sorted(self.poles, key=_by_strength)])
+        weakest_first = sorted(self.poles, key=lambda one: one.strength)
+        return distance_to_loss(self.model, self.informed, [one.pole for one in weakest_first])
 
     @property
     def distance(self) -> float:
@@ -121,10 +122,6 @@ class Controllability:
     def least_reach(self) -> float:
         """Smallest eigenvalue of the Gramian: the inverse energy of the most expensive unit motion."""
         return float(max(0.0, np.linalg.eigvalsh(self.gramian)[0]))
-
-
-def _by_strength(one: PoleReach) -> float:
-    return one.strength
 
 
 class ScaledModel(NamedTuple):

@@ -156,11 +156,8 @@ def _refine(law: Any, name: str, ratio: float, ends: tuple[float, float], here: 
     """Return the gain within a bracket at which the followed mode has the damping ratio."""
     from scipy.optimize import brentq
 
-    root: Any = brentq(
-        lambda gain: _follow(_with(law, name, gain), here).mode.damping_ratio - ratio,
-        *ends,
-        xtol=_EXACT * min(ends),
-        rtol=_EXACT,
-    )
-    gain = float(root)
+    def excess(gain: float) -> float:
+        return _follow(_with(law, name, gain), here).mode.damping_ratio - ratio
+
+    gain = float(brentq(excess, *ends, xtol=_EXACT * min(ends), rtol=_EXACT))
     return DampedGain(gain, _with(law, name, gain), _follow(_with(law, name, gain), here).mode)

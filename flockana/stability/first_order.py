@@ -13,7 +13,6 @@ from flockana.base.errors import ArgumentError
 from flockana.base.table_export import facts_html, facts_text
 from flockana.laws.velocity import VelocityLaw
 from flockana.stability.estimates import LIMIT
-from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.zero_modes import extent
@@ -74,14 +73,14 @@ class VelocityLinearisation:
         return self.A_sparse.toarray()
 
     @cached_property
-    def _velocities(self) -> LinearFlock:
+    def _velocities(self) -> Linearisation:
         """Flock of velocities without stiffness, q'' = A q', with the same margins."""
         from scipy.sparse import block_array, csr_array, eye_array
 
         size = self.q.size
         whole: Any = block_array([[None, eye_array(size)], [csr_array((size, size)), self.A_sparse]], format="csr")
         law, links = cast("Any", self.law), np.zeros((0, 2), dtype=np.int32)
-        return LinearFlock(law, self.q, np.zeros_like(self.q), self.t, self.residual, links, csr_array(whole), _ZERO)
+        return Linearisation(law, self.q, np.zeros_like(self.q), self.t, self.residual, links, csr_array(whole), _ZERO)
 
     @property
     def modes(self) -> tuple[Mode, ...]:
@@ -140,8 +139,7 @@ class VelocityLinearisation:
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        how = {"delayed": delayed, "links": links, "sampled": sampled, "limit": limit}
-        return Linearisation.delay_margin(cast("Any", self._velocities), **cast("Any", how))
+        return self._velocities.delay_margin(delayed=delayed, links=links, sampled=sampled, limit=limit)
 
     def sampling_margin(self, *, limit: float = LIMIT) -> SamplingMargin:
         """Return the longest stable hold period of velocities: 1 + hλ stays in the unit disc.
@@ -151,7 +149,7 @@ class VelocityLinearisation:
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        return Linearisation.sampling_margin(cast("Any", self._velocities), limit=limit)
+        return self._velocities.sampling_margin(limit=limit)
 
     def robustness(self, *, limit: float = LIMIT) -> RobustnessMargins:
         """Return gain, phase and disk margins of the loops broken at each agent's velocity.
@@ -161,7 +159,7 @@ class VelocityLinearisation:
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        return Linearisation.robustness(cast("Any", self._velocities), limit=limit)
+        return self._velocities.robustness(limit=limit)
 
     def transient_growth(self, *, limit: float = LIMIT) -> TransientGrowth:
         """Return the largest transient growth of a position perturbation, off the zero modes.
@@ -171,7 +169,7 @@ class VelocityLinearisation:
         limit : float
             Seconds of estimated work from which on it is refused.
         """
-        return Linearisation.transient_growth(cast("Any", self._velocities), limit=limit)
+        return self._velocities.transient_growth(limit=limit)
 
     def response(self, input: str, output: str, omega: Any = None) -> FrequencyResponseData:
         """Return the frequency response from one named input to one named output of `state_space`.

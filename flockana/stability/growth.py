@@ -150,15 +150,8 @@ def _falls(steps: Steps, x: FloatArray, h: float, unit: float) -> list[FloatArra
     for first, second in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
         at = np.eye(len(x)) + h * (first + h * second)
         a, b = unit * (first + 2.0 * h * second), unit * unit * second
-        cross = [at.T @ x @ a, at.T @ x @ b, a.T @ x @ b]
-        powers.append(
-            [
-                at.T @ x @ at,
-                cross[0] + cross[0].T,
-                a.T @ x @ a + cross[1] + cross[1].T,
-                cross[2] + cross[2].T,
-                b.T @ x @ b,
-            ]
-        )
+        odd, even, last = at.T @ x @ a, at.T @ x @ b, a.T @ x @ b
+        middle = a.T @ x @ a + even + even.T
+        powers.append([at.T @ x @ at, odd + odd.T, middle, last + last.T, b.T @ x @ b])
     fall = [e - f for e, f in zip(*powers, strict=True)]
     return fall[1:] if h == 0.0 else fall

@@ -355,16 +355,9 @@ class SecondOrder:
             both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
             right, left = [*right, *both], [*left, *both]
             neutral += [both[0][:, free], both[1][:, alone]]
-        spaces = (
-            np.hstack(right),
-            np.hstack(left),
-            kernel,
-            cokernel,
-            chains,
-            tuple(sorted(drifting)),
-            np.hstack(neutral),
-        )
-        return Invariant(tuple(zero), tuple(translational), np.array(values, dtype=np.complex128), *spaces)
+        known = tuple(zero), tuple(translational), np.array(values, dtype=np.complex128)
+        spaces = np.hstack(right), np.hstack(left), kernel, cokernel
+        return Invariant(*known, *spaces, chains, tuple(sorted(drifting)), np.hstack(neutral))
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
         """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 if D motion is 0."""

@@ -21,14 +21,10 @@ _FAR = 4.0  # times the delay margin without a hold, and periods: where the sear
 _BRIEF = 1e-3  # of the shortest time of the flock: the shortest period that is tried
 
 
-def _parts(system: DelaySystem, delay: float) -> tuple[LatePart, LatePart]:
-    return LatePart(0.0, *system.prompt), LatePart(delay, *system.late)
-
-
 def _multiplier(system: DelaySystem, delay: float, period: float) -> complex:
     """Return the largest multiplier of one period off the neutral motions; 0 without other motions."""
-    clock = np.zeros(len(system.prompt[0]))
-    values = moving_multipliers(_parts(system, delay), period, clock, system.neutral)
+    clock, parts = np.zeros(len(system.prompt[0])), (LatePart(0.0, *system.prompt), LatePart(delay, *system.late))
+    values = moving_multipliers(parts, period, clock, system.neutral)
     return complex(values[0]) if values.size else 0j
 
 

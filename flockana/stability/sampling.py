@@ -155,18 +155,13 @@ def margin_of_flow(
     """Return the sampling margin of a linearised flock with a hold, or of a map with a `factor`."""
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
     problem, sure = flow.second_order, flow.second_order.symmetric and not in_place
-    ensure_affordable(
-        f"the modes of {len(flow.q)} agents",
-        flow.q.size,
-        _SECONDS * (2 * flow.q.size) ** 3,
-        1e-4 * flow.q.size**2,
-        limit,
-    )
+    size, work = flow.q.size, f"the modes of {len(flow.q)} agents"
+    ensure_affordable(work, size, _SECONDS * (2 * size) ** 3, 1e-4 * size**2, limit)
     if not (sure and factor >= 1.0) and factor > 0.0:
         states = [2 * part.q.size for part in problem.parts or (problem,)]
         seconds = sum(_SECONDS_OF_INTERVALS * x**3 for x in states if x > MOST)
         work = f"the sampling margin of {len(flow.q)} agents, {max(states)} states in one component,"
-        ensure_affordable(work, flow.q.size, seconds, 1e-3 * max(states) ** 2, limit)
+        ensure_affordable(work, size, seconds, 1e-3 * max(states) ** 2, limit)
     k, d = flow.stiffness.toarray(), flow.damping.toarray()
     symmetric, shape = flow.second_order.symmetric, flow.q.shape
     if factor == 0.0 and not in_place:

@@ -77,6 +77,8 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
     As in a run, what is heard enters the pair terms. Of lost messages the mean remains: these terms, times the share
     that arrives.
     """
+    from scipy.linalg import block_diag
+
     core = law.core if isinstance(law, Wrapper) else law
     slopes: Any = core.derivatives(*state)
     by_position, by_velocity = (-part.toarray() for part in slopes)
@@ -91,7 +93,7 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
         if isinstance(one, Lossy):
             share *= 1.0 - one.loss
         elif isinstance(one, Saturated):
-            bend = bend @ _block_diagonal(one.slopes(instant_law(one.law).flow(*state)[0]))
+            bend = bend @ block_diag(*one.slopes(instant_law(one.law).flow(*state)[0]))
         elif isinstance(one, Delayed) and one.late == "all":
             shift, heard = shift + float(one.delay), None
         elif isinstance(one, Delayed):
@@ -137,10 +139,3 @@ def _ensure_at_rest(p: FloatArray, heard: _Heard) -> None:
             "agents that move hear where their neighbours were, which is no rest of the law: expected p = 0, or "
             'late="pairs" or "all", in which all of a pair is late'
         )
-
-
-def _block_diagonal(blocks: FloatArray) -> FloatArray:
-    """Return a matrix (n m, n m) of blocks (n, m, m) on its diagonal."""
-    from scipy.linalg import block_diag
-
-    return block_diag(*blocks)

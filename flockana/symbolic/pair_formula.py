@@ -231,16 +231,12 @@ def _bounded_exp(x: Any) -> Any:
     return mpmath.exp(x) if x > -_LONGEST else mpmath.mpf(0)
 
 
-def _bounded_power(base: Any, exponent: Any) -> Any:
-    return _bounded_exp(exponent * mpmath.log(base)) if base > 0 else mpmath.power(base, exponent)
-
-
 _BOUNDED: dict[str, Callable[..., Any]] = {
     "exp": _bounded_exp,
     "cosh": lambda x: (_bounded_exp(abs(x)) + _bounded_exp(-abs(x))) / 2,
     "sinh": lambda x: (_bounded_exp(x) - _bounded_exp(-x)) / 2 if abs(x) > 1 else mpmath.sinh(x),
     "tanh": lambda x: mpmath.tanh(x) if abs(x) < _LONGEST else mpmath.sign(x),
-    "bounded_power": _bounded_power,
+    "bounded_power": lambda x, k: _bounded_exp(k * mpmath.log(x)) if x > 0 else mpmath.power(x, k),
 }
 
 
