@@ -75,12 +75,12 @@ class Kernel:
 
     @property
     def targetoptions(self) -> dict[str, Any]:
-        """The options of `numba.njit`, which numba asks for where it may inline a call."""
+        """Options of `numba.njit`, read by numba where it may inline a call."""
         return self.options
 
     @property
     def py_func(self) -> Callable[..., Any]:
-        """The function as it was written."""
+        """Original Python function, before compilation."""
         return self.function
 
     @property
@@ -149,7 +149,7 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
 
 
 def register_jitable(function: Callable[..., Any]) -> Inlined:
-    """Return a function that kernels can call and that is compiled into them."""
+    """Return a function that kernels can call, compiled into them."""
     return Inlined(function, False, {"forceinline": True, "error_model": "numpy", **_NO_C, **_NO_PYTHON})
 
 

@@ -42,7 +42,7 @@ def format_value(value: Any) -> str:
 
 
 class FlockanaError(Exception):
-    """Base class of flockana's exceptions, whose messages are one line whatever they quote."""
+    """Base class of flockana's exceptions, with one-line messages."""
 
     def __init__(self, *args: object) -> None:
         super().__init__(*(_LINE_END.sub(" ", arg) if isinstance(arg, str) else arg for arg in args))

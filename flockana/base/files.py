@@ -25,7 +25,7 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 
 
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
-    """Return the file that a path leads to through links; raise if it is something that must not be replaced."""
+    """Return the target file of a path through links; raise if the target must not be replaced."""
     # A device or a pipe is left alone, and so is a link: what it points to is written.
     path_given = ensure_path(path, action="write", remedy=remedy)
     target, reason = Path(os.path.realpath(path_given)), ""
@@ -42,7 +42,7 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
 
 
 def ensure_folder_of(path: Any) -> Path:
-    """Return a path whose folder exists and can be written to; raise if it does not, rather than make it."""
+    """Return a path with an existing, writable folder; raise otherwise, without creating the folder."""
     target = ensure_path(path, action="write")
     folder = target.parent
     if not folder.exists():

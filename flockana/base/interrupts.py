@@ -32,7 +32,7 @@ def defer_sigint(*others: int) -> Iterator[list[int]]:
 
 @contextmanager
 def raise_swallowed() -> Iterator[None]:
-    """Raise at the end of the block what Ctrl-C or an alarm raised within, if a library's callback swallowed it."""
+    """Raise at the end of the block any Ctrl-C or alarm that a library's callback swallowed."""
     lost: list[int] = []
     ours = threading.current_thread() is threading.main_thread()
     known: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, *ALARMS)} if ours else {}

@@ -1,4 +1,4 @@
-"""Lazy imports of a package's public names, as its stub file lists them."""
+"""Lazy imports of a package's public names, listed in its stub file."""
 
 import ast
 from collections.abc import Callable

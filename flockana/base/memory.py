@@ -1,4 +1,4 @@
-"""Cache of results on the object that they were computed from."""
+"""Cache of computed results, stored on the source object."""
 
 from collections.abc import Callable
 from functools import cached_property

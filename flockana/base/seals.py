@@ -34,7 +34,7 @@ def digest(data: Any) -> str:
 
 
 def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return plain data with its digest added, as files hold it."""
+    """Return plain data with its digest added, in the form of files."""
     return {**data, SEAL: digest(dict(data))}
 
 
@@ -62,7 +62,7 @@ def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> s
 
 
 def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return a class's or function's name in digests and files: for those of flockana without the module."""
+    """Return the name of a class or function in digests and files; without module for flockana's own."""
     module, name = item.__module__, item.__qualname__
     if module.partition(".")[0] == "flockana":
         module = modules.get(name, "flockana")
@@ -105,7 +105,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
 
 
 def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -> Iterator[Any]:
-    """Yield the text and bytes by which a value is digested; `within` are the objects that contain it."""
+    """Yield the text and bytes for a value's digest; `within` are the enclosing objects."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):

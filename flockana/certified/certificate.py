@@ -156,7 +156,7 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
 
 
 def _spheres(law: Any) -> dict[str, Any]:
-    """Return the obstacles of Algorithm 3 and their β-law as a certificate states them."""
+    """Return the obstacles of Algorithm 3 and their β-law in the form of a certificate."""
     if not isinstance(law, Algorithm3):
         return {}
     numbers: dict[str, Any] = {f"beta_{name}": _decimal(getattr(law.beta, name)) for name in ("d", "eps", "h")}

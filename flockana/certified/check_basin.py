@@ -37,7 +37,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a basin certificate and return what was verified, step by step."""
+    """Verify a basin certificate and return the verified facts, step by step."""
     with ctx.workdps(DIGITS):
         net = Net(data)
         x = net.equilibrium()
@@ -140,7 +140,7 @@ def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
 
 
 class Net:
-    """Law and equilibrium positions as a basin certificate states them."""
+    """Law and equilibrium positions stated in a basin certificate."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.text = data["law"]

@@ -71,7 +71,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a tube certificate and return what was verified, step by step."""
+    """Verify a tube certificate and return the verified facts, step by step."""
     with ctx.workprec(BITS):
         run = Run.of(data)
         yield from run.follow(data)
@@ -134,7 +134,7 @@ class Run(Motion):
             yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)
 
     def stated(self, boxes: Sequence[Vector], start: Vector) -> dict[str, Any]:
-        """Return what a certificate states of a run's boxes (distances, radii) and of the energy at its start."""
+        """Return a certificate's statements about a run's boxes (distances, radii) and its initial energy."""
         size, level = self.n * self.m, self.energy(start)
         places = [(sphere, x) for box in boxes for sphere in self.spheres for x in self.agents(box[:size])]
         return {

@@ -1,4 +1,4 @@
-"""The scalar functions of flocking in ball arithmetic (Arb), as the checkers of certificates compute them.
+"""Scalar functions of flocking in ball arithmetic (Arb), for the checkers of certificates.
 
 Every result encloses the true values on all of a ball (`flockana.certified.balls`). They are written by hand, and
 share nothing with what proves: that is generated (`flockana.certified.formula_in_balls`).

@@ -72,7 +72,7 @@ def enclose_orbit(
 def _pass(
     law: Any, t0: float, start: tuple[FloatArray, FloatArray], wanted: Sequence[int], left: float
 ) -> tuple[BallOrbit, float]:
-    """Return the orbit at the present precision, to its first wide ball or the end of the budget, and what is left."""
+    """Return the orbit at the current precision up to the first wide ball or the budget's end, and the budget left."""
     n, m = start[0].shape
     flow, begin = flow_of(law.law, n, m, number=_binary), left + 0.0
     h, half, t, evaluations = arb(law.dt), n * m, arb(t0), len(law.solver.b)

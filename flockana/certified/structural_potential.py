@@ -118,7 +118,7 @@ class Structure:
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * norm2(x)
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
-        """Return tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
+        """Return a basis of tangents Ωx of the orbit of x under rotations: 0, 1 or 3 vectors."""
         m, places = self.m, range(len(x))
         return [
             [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in places]

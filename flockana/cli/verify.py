@@ -116,7 +116,7 @@ def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | N
 
 
 def _id_of(name: str | None) -> str | None:
-    """Return the id of a theorem given as its source prints it, such as "Theorem 3"; other names as they are."""
+    """Return the id of a theorem named as in its source, such as "Theorem 3"; other names unchanged."""
     from flockana.base.errors import UnknownNameError
     from flockana.report.verify_catalogue import ERRATA
     from flockana.scenarios import scenarios

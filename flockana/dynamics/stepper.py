@@ -41,7 +41,7 @@ class Stepper(ABC):
 
     @abstractmethod
     def samples(self, count: int) -> Iterator[Samples]:
-        """Yield what a run keeps of these steps."""
+        """Yield the samples and steps to be kept from these steps."""
 
     def describe_failure(self, steps: int, count: int) -> str:
         """Return in words why a run ends after this number of steps; '' if it continues."""

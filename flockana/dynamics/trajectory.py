@@ -1,4 +1,4 @@
-"""A run as frozen data: times, states, inputs, the law that made it; to xarray and to a file and back."""
+"""Run as frozen data: times, states, inputs, and the law; conversion to xarray and files."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ class Trajectory(MeasuredRun):
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
 
     def facts(self) -> dict[str, str]:
-        """Return what a table shows: sizes, times, method and status."""
+        """Return the rows of the printed table: sizes, times, method and status."""
         steps = f", {self.stats['steps']} steps" if "steps" in self.stats else ""
         return {
             "law": self.law.title,
@@ -274,7 +274,7 @@ class Trajectory(MeasuredRun):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
-        """Read what `save` wrote.
+        """Read a run from a file written by `save`.
 
         Raises
         ------

@@ -24,7 +24,7 @@ RESERVED = (
 
 @dataclass(frozen=True)
 class Grid:
-    """Runs of an ensemble in dataset order: parameters with several values, the same with one value, seeds fastest."""
+    """Runs of an ensemble in dataset order: varied parameters, fixed parameters, seeds fastest."""
 
     axes: Mapping[str, Sequence[Scalar]]
     fixed: Mapping[str, Scalar]
@@ -36,7 +36,7 @@ class Grid:
         return (*map(len, self.axes.values()), len(self.seeds))
 
     def jobs(self, most: int | None = None) -> list[Job]:
-        """Return all runs, or those of the first seeds."""
+        """Return all runs, or the runs of the first seeds."""
         points = (dict(zip(self.axes, values, strict=True)) for values in product(*self.axes.values()))
         options = (tuple(sorted({**point, **self.fixed}.items())) for point in points)
         return [Job(seed, each) for each in options for seed in self.seeds[:most]]

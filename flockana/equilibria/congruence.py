@@ -15,7 +15,7 @@ _FLAT = 1e-6  # share of the extent: a configuration this near to a line or plan
 
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
-    """Return all pairwise distances in rising order; configurations with the same are rarely incongruent."""
+    """Return all pairwise distances in rising order, nearly always distinct for incongruent configurations."""
     from scipy.spatial.distance import pdist
 
     return np.sort(pdist(q))

@@ -151,7 +151,7 @@ class Program:
 
 
 def _upper_triangle(shape: tuple[int, int], pairs: LinkArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Return rows and columns of the Hessian's upper triangle, column by column, as CasADi stores them."""
+    """Return rows and columns of the Hessian's upper triangle, column by column, in CasADi's order."""
     (n, m), (i, j), agents = shape, pairs.T.astype(np.int64), np.arange(shape[0])
     a, b = np.append(np.minimum(i, j), agents)[:, None, None], np.append(np.maximum(i, j), agents)[:, None, None]
     row, column = np.broadcast_arrays(m * a + np.arange(m)[:, None], m * b + np.arange(m))

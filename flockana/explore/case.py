@@ -84,7 +84,7 @@ class Case:
 
 
 def program(parts: Start) -> str:
-    """Return Python code that simulates and checks what a page shows.
+    """Return Python code that simulates and checks the case of a page.
 
     Examples
     --------

@@ -85,7 +85,7 @@ class DistanceFunction(ShortRepr, ABC):
 
     @abstractmethod
     def inner(self, s2: FloatArray) -> InnerValues:
-        """Return w, a, dw/d(s²), da/d(s²) within the range; the pair force on i is w (q_j − q_i).
+        """Return the force weight w, the adjacency a and their slopes by s² within the range; force w (q_j − q_i).
 
         Parameters
         ----------

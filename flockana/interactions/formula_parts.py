@@ -186,7 +186,7 @@ class _PreciseForce:
         return tuple(poles)
 
     def zeros(self, d: float) -> tuple[tuple[float, bool], ...]:
-        """Return where the force changes its sign between distances of a grid, and whether it attracts beyond."""
+        """Return the sign changes of the force on a grid of distances, and whether it attracts beyond each."""
         grid = np.linspace(0.0, self.r, _GRID)[1:-1]
         signed = [(float(s), float(f)) for s, f in zip(grid, self.looks[0], strict=True) if f != 0.0]
         changes = [(a, b, right > 0.0) for (a, left), (b, right) in pairwise(signed) if left * right < 0.0]

@@ -1,4 +1,4 @@
-"""Agents sorted into the cells of a grid: those within a range of each other are in the same or in adjacent cells."""
+"""Agents sorted into grid cells: agents within range are in the same or adjacent cells."""
 
 import numpy as np
 

@@ -93,7 +93,7 @@ def _integration() -> FloatArray:
 
 @cache
 def _powers() -> FloatArray:
-    """Return the matrix from a series to coefficients of powers: those of T_j, all of them integers."""
+    """Return the integer matrix from Chebyshev coefficients to coefficients of powers."""
     matrix = np.zeros((NODES + 1, NODES + 1))
     for j, series in enumerate(np.eye(NODES + 1)):
         powers = chebyshev.cheb2poly(series)

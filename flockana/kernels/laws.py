@@ -41,7 +41,7 @@ class LawNumbers(NamedTuple):
 
 
 def law_numbers(terms: Any) -> LawNumbers:
-    """Return the numbers of all terms in one vector, their panels in one matrix."""
+    """Return the parameters of all terms in one vector, and their polynomial panels in one matrix."""
     numbers = np.concatenate([np.empty(0), *(term.numbers for term in terms)])
     width = max((term.panels.shape[1] for term in terms), default=0)
     panels = np.concatenate([np.empty((0, width)), *(term.panels.reshape(-1, width) for term in terms if width)])
@@ -52,7 +52,7 @@ def law_numbers(terms: Any) -> LawNumbers:
 
 @cache
 def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = False) -> LawFunctions:
-    """Return the functions of a law with such terms, compiled for one thread or for several."""
+    """Return the compiled functions of a law with given terms, for one thread or several."""
     if several:
         launch_threads()
         terms = tuple((parallel_twin(act), parallel_twin(energy)) for act, energy in terms)

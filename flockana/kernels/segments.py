@@ -165,7 +165,7 @@ def between(a, b, c, d):
 
 @kernel
 def crossing_signs(x, links, a, b, planes):
-    """Return `cross` of links a[k] and b[k] for every k: 1, 0 or UNSURE; positions x are padded to (n, 3)."""
+    """Return the crossing signs of links a[k] and b[k] for every k: 1, 0 or UNSURE; positions x padded to (n, 3)."""
     signs = np.empty(a.size, np.int64)
     for k in range(a.size):
         signs[k] = cross(x, links[a[k], 0], links[a[k], 1], links[b[k], 0], links[b[k], 1], planes)

@@ -48,7 +48,7 @@ def later_agents(start, rows, cell):
 
 @register_jitable
 def list_cells(x, grid, limit, cells, lists, count):
-    """List the pairs of agents in some cells from an index on; return the end index, or as `list_pairs`."""
+    """List the pairs of agents in some cells from an index on; return the end index, or an overflow code."""
     (order, start, rows), (first, second), m = grid, lists, x.shape[1]
     for cell in range(cells[0], cells[1]):
         begin, end = start[cell], start[cell + 1]

@@ -107,7 +107,7 @@ class DiscreteLaw(LawOfMotion):
         return self._step_by_step(times, q, p, memory, np.arange(1, steps + 1))
 
     def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
-        """Return the results of selected steps that begin at given times, as `simulate` needs them.
+        """Return the results of selected steps with given start times.
 
         Once the state is not finite it stays so, as the steps in between are not seen. At most `steps_at_once` are
         asked for at a time.

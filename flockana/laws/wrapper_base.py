@@ -310,7 +310,7 @@ def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -
 
 
 def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return each listener's own position and velocity, as its pair terms use them."""
+    """Return each listener's own position and velocity."""
     if not view.both:
         return view.q, view.p
     n = len(view.q)

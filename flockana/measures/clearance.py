@@ -81,7 +81,7 @@ def clearance(
 
 
 def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
-    """Return signed distances where they may be the least, and lower bounds elsewhere."""
+    """Return exact signed distances near the least one, and lower bounds elsewhere."""
     centre, radius = obstacle.ball
     off = points - centre
     distance: FloatArray = np.sqrt(np.einsum("km,km->k", off, off)) - radius

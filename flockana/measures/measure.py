@@ -77,7 +77,7 @@ class Measure:
 
     @property
     def summary(self) -> str:
-        """Text for `number`."""
+        """Label of the measure's summary number."""
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:

@@ -106,7 +106,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
-    """Return C = rank(A)/n of the adjacency matrix as the MSN project prints it (erratum E8)."""
+    """Return C = rank(A)/n of the adjacency matrix, the MSN project's connectivity (erratum E8)."""
     from flint import nmod_mat
 
     n = ensure_count("n", n)

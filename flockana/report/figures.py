@@ -37,7 +37,7 @@ def pictures_of_laws() -> dict[type, Callable[[Trajectory], tuple[Picture, ...]]
 
 
 def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
-    """Draw a run with its law's own pictures, or as any flock."""
+    """Draw a run with its law's own pictures, or with the standard ones."""
     laws = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
     draws = (draw for law in laws for kind, draw in pictures_of_laws().items() if isinstance(law, kind))
     draw = next(draws, flock_pictures)

@@ -37,7 +37,7 @@ def show(value: Any) -> str:
 
 
 def markup(value: Any) -> Markup:
-    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings."""
+    """Return a value as markup: short text, or a folded table of nested mappings."""
     if not isinstance(value, Mapping) or (len(value) <= _LONGEST and not any(map(_deep, value.values()))):
         return escape(show(value))
     rows = Markup("").join(Markup("<dt>{}</dt><dd>{}</dd>").format(key, markup(item)) for key, item in value.items())

@@ -95,7 +95,7 @@ class DelaySystem(ShortRepr):
         return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 
     def strong_parts(self) -> Iterator[DelaySystem]:
-        """Return the strongly connected parts, whose roots together are those of the whole."""
+        """Return the strongly connected parts; their roots together are all roots."""
         matrices, parts = (*self.prompt, *self.late), []
         for rows in strong_components(*matrices).indices:
             k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)

@@ -36,7 +36,7 @@ def _weight(i: int, j: int) -> sp.Expr:
 def _between_agents(
     q: list[sp.Matrix], p: list[sp.Matrix], weight: Callable[[int, int, sp.Expr], sp.Expr]
 ) -> tuple[list[sp.Matrix], list[sp.Matrix], sp.Expr, sp.Expr]:
-    """Return (forces of the potential, with consensus, potential, power of the consensus)."""
+    """Return (potential forces, forces with consensus, potential, consensus power)."""
     pulls, u, potential, power = [sp.zeros(*x.shape) for x in q], [sp.zeros(*x.shape) for x in q], sp.S.Zero, sp.S.Zero
     for i, j in combinations(range(_N), 2):
         apart, slip = q[j] - q[i], p[j] - p[i]

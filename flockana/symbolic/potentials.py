@@ -53,7 +53,7 @@ class _Potential:
         return taper(z / self.cutoff, h=self.h) * self.smooth(z)
 
     def integral(self, low: sp.Expr, high: sp.Expr) -> sp.Expr:
-        """Return the integral over the taper, left unevaluated: it has no elementary form."""
+        """Return the unevaluated integral over the taper, which has no elementary form."""
         return sp.S.Zero if low == high else sp.Integral(self.tapered(_S), (_S, low, high))
 
     def pieces(self, zero_on_plateau: bool) -> tuple[Scalar, Scalar, Scalar]:

@@ -52,7 +52,7 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
 
 
 def indexed(*parts: tuple[sp.IndexedBase, sp.Matrix]) -> dict[sp.Symbol, sp.Indexed]:
-    """Return the components of one agent's vectors as those of agent i in sums."""
+    """Return one agent's vector components in the indexed form of sums."""
     return {symbol: base[I_, k] for base, vector in parts for k, symbol in enumerate(vector, start=1)}
 
 

@@ -152,7 +152,7 @@ class RecordingEvidence(Evidence):
 
 
 def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:
-    """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from those of each agent."""
+    """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from the agents' half widths."""
     means = place.mean(axis=1), speed.mean(axis=1)
     return place + means[0][:, None], speed + means[1][:, None], *means
 

@@ -85,7 +85,7 @@ class Compiled(NamedTuple):
 
     @property
     def numbers(self) -> LawNumbers:
-        """Numbers of the compiled functions."""
+        """Parameters of the compiled functions."""
         return law_numbers(self.terms)
 
     def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:

@@ -140,7 +140,7 @@ def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatAr
 
 
 def _snapshots(path: Path) -> list[Snapshot]:
-    """Return the snapshots of a dump, all of the same agents."""
+    """Return the snapshots of a dump, each with the same agents."""
     with opened(path, "a text dump of LAMMPS") as file, TextIOWrapper(file, "utf-8") as text:
         snapshots = list(_parsed(text, path))
     if not snapshots:

@@ -8,7 +8,7 @@ PROOF = "cucker-smale"
 
 
 def guarantee_of(seen: Observed, stretch: float) -> Guarantee:
-    """Return the guarantee of the functional: λ = K in φ for sums divided by n, else nK."""
+    """Return the flocking guarantee of the functional ‖v‖ + ∫φ: λ = K in φ for sums divided by n, else nK."""
     law = seen.law.continuous
     phi = AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else seen.n), stretch)
     return Guarantee(seen, phi, seen.spread, spread_over(seen).max(), seen.velocity_spread, PROOF)

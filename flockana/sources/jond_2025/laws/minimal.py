@@ -324,7 +324,7 @@ class MinimalFlocking(Law):
         return summed(stiffness), summed(align[:, None, None] * identity)
 
     def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
-        """Return the law in steps, as the paper simulates it."""
+        """Return the law as a discrete map, as simulated in the paper."""
         return DiscreteMinimalFlocking(self, dt)
 
 
