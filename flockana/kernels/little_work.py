@@ -59,7 +59,7 @@ def _plain(result: Any) -> Any:
 def in_python(kernel: Kernel) -> Callable[..., Any] | None:
     """Return a kernel's text as a function that calls others as text, too; None if its bits may be others."""
     function = kernel.py_func
-    code, known, texts = function.__code__, function.__globals__, dict[str, Any]()  # type: ignore[attr-defined]
+    code, known, texts = function.__code__, function.__globals__, dict[str, Any]()
     if code.co_freevars or any(hasattr(each, "co_code") for each in code.co_consts):
         return None
     if any(each.opname == "BINARY_OP" and each.argrepr in _POWERS for each in dis.get_instructions(code)):
@@ -72,4 +72,4 @@ def in_python(kernel: Kernel) -> Callable[..., Any] | None:
                 return None
         elif (callable(value) and value not in _FUNCTIONS) or (value is None and name not in _NAMES):
             return None
-    return FunctionType(code, known | texts, code.co_name, function.__defaults__)  # type: ignore[attr-defined]
+    return FunctionType(code, known | texts, code.co_name, function.__defaults__)

@@ -72,7 +72,8 @@ def _look_at_part(own, ends, common, numbers, reaches, first, second, part, shar
     """Write the share of a step that a part of the listed pairs allow."""
     begin, end = begin_of(part, first.size), begin_of(part + 1, first.size)
     whole = common, (numbers[0], numbers[1]), (numbers[2], numbers[3])
-    around = Reaches(*reaches[:2], (numbers[4], numbers[5]), *reaches[2:])
+    radii, far, poles, toward, few = reaches
+    around = Reaches(radii, far, (numbers[4], numbers[5]), poles, toward, few)
     shares[part] = _share_of(ends, whole, around, first[begin:end], second[begin:end], 1.0)
 
 
