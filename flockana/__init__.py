@@ -21,8 +21,8 @@ def __getattr__(name: str) -> object:
     except AttributeError:
         from difflib import get_close_matches
 
-        near = get_close_matches(name, __all__, n=1)
-        hint = f"; did you mean {near[0]!r}?" if near and not name.startswith("_") else ""
+        close_matches = get_close_matches(name, __all__, n=1)
+        hint = f"; did you mean {close_matches[0]!r}?" if close_matches and not name.startswith("_") else ""
         raise AttributeError(f"No flockana attribute {name}{hint}", name=name) from None
 
 

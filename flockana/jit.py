@@ -96,22 +96,22 @@ class Kernel:
                     return self._compiled(*arguments)
                 except TypeError:  # of another type, or frozen
                     pass
-            plain = self._thawed(arguments)
+            plain_arguments = self._thawed(arguments)
             if self._compiled is not None:
                 with suppress(TypeError):
-                    return self._compiled(*plain)
-            self._compile(plain)
-            return self._compiled(*plain)  # type: ignore[misc]
+                    return self._compiled(*plain_arguments)
+            self._compile(plain_arguments)
+            return self._compiled(*plain_arguments)  # type: ignore[misc]
         except SystemError as error:  # of an alarm while numba made a tuple of arrays
             raise origin_of(error) from None
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
         """Return the arguments with writable views of read-only arrays, and record that such arrays occur."""
-        code, plain = self.function.__code__, list(arguments)
-        for k, each in enumerate(arguments):
-            if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
-                plain[k], self._thaws = thawed(each), True
-        return plain
+        code, plain_arguments = self.function.__code__, list(arguments)
+        for k, argument in enumerate(arguments):
+            if type(argument) is np.ndarray and not argument.flags.writeable and code.co_varnames[k] not in WRITTEN:
+                plain_arguments[k], self._thaws = thawed(argument), True
+        return plain_arguments
 
     def _compile(self, arguments: list[Any]) -> None:
         numba, dispatcher = load_numba(), self.dispatcher
@@ -131,8 +131,8 @@ def _ensure_plain(name: str, result: Any) -> None:
     """Raise on named tuples in a kernel's result: an alarm while numba builds one kills the process."""
     if hasattr(result, "instance_class"):
         raise TypeError(f"{name} returns {result}: expected numbers, as kernels that Python calls write into arrays")
-    for part in getattr(result, "types", ()):
-        _ensure_plain(name, part)
+    for component in getattr(result, "types", ()):
+        _ensure_plain(name, component)
 
 
 class Inlined(Kernel):
@@ -262,11 +262,11 @@ def launch_threads() -> int:
     """Start numba's threads, needed before parallel code can be loaded; return the process id."""
     numba, policy = load_numba(), "OMP_WAIT_POLICY"
     with _ONE:
-        given = policy in os.environ
+        is_set = policy in os.environ
         os.environ.setdefault(policy, "passive")  # threads that wait in a loop take the cores that others need
         numba.config.reload_config()  # NUMBA_NUM_THREADS may be set after numba's import, but not from now on
         numba.get_num_threads()
-        if not given:
+        if not is_set:
             del os.environ[policy]
     return os.getpid()
 
@@ -302,14 +302,14 @@ def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..
     if folder is None:
         return decorator(numba, False)(function)
     with _ONE:
-        before = numba.config.CACHE_DIR
+        previous_folder = numba.config.CACHE_DIR
         try:
             numba.config.CACHE_DIR = str(folder)
             return decorator(numba, True)(function)
         except OSError:  # a full disk
             return decorator(numba, False)(function)
         finally:
-            numba.config.CACHE_DIR = before
+            numba.config.CACHE_DIR = previous_folder
 
 
 def _folder(function: Callable[..., Any]) -> Path | None:
@@ -352,8 +352,8 @@ def compiling(mark: Path | None = None, name: str = "kernels") -> Iterator[None]
                         mark.touch()
             finally:
                 while _OPEN:
-                    each = _OPEN.pop()
-                    each.disable_compile(bool(each.signatures))
+                    entry = _OPEN.pop()
+                    entry.disable_compile(bool(entry.signatures))
 
 
 @contextmanager
@@ -380,18 +380,18 @@ def _announce(name: str) -> None:
 @cache
 def kernels_folder() -> Path | None:
     """Return the private folder of compiled code; None, with one warning, without one."""
-    named = load_numba().config.CACHE_DIR
-    places: list[Callable[[], Path]] = [
+    cache_setting = load_numba().config.CACHE_DIR
+    candidate_folders: list[Callable[[], Path]] = [
         lambda: Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "kernels",
         lambda: Path(tempfile.gettempdir()) / f"flockana-kernels-{os.getuid()}",
     ]
-    if named:
-        places = [lambda: Path(named) / "flockana"]
+    if cache_setting:
+        candidate_folders = [lambda: Path(cache_setting) / "flockana"]
     # of two installations numba would give functions of one name the constants of each other
     installation = repr((__file__, load_numba().__version__, sys.version))
-    for place in places:
+    for candidate_folder in candidate_folders:
         with suppress(OSError, RuntimeError, AttributeError):  # no home folder, or no user ids
-            return sources_folder(_private(place()), sha256([installation])[:16])
+            return sources_folder(_private(candidate_folder()), sha256([installation])[:16])
     logging.getLogger("flockana").warning(
         "no folder can be written to for compiled kernels: each process compiles its own; set NUMBA_CACHE_DIR to one"
     )
@@ -411,14 +411,14 @@ def _private(folder: Path) -> Path:
 @cache
 def sources_folder(base: Path, digest: str) -> Path:
     """Return the folder of compiled code of some sources; remove long unused folders."""
-    folder, now = base / digest, time.time()
+    folder, current_time = base / digest, time.time()
     if not folder.is_dir():
         folder.mkdir(mode=0o700, exist_ok=True)
-        for other in base.iterdir():
+        for sibling_folder in base.iterdir():
             with suppress(OSError):
-                if other.is_dir() and now - other.stat().st_mtime > _UNUSED:
-                    shutil.rmtree(other, ignore_errors=True)
-    os.utime(folder, (now, now))
+                if sibling_folder.is_dir() and current_time - sibling_folder.stat().st_mtime > _UNUSED:
+                    shutil.rmtree(sibling_folder, ignore_errors=True)
+    os.utime(folder, (current_time, current_time))
     return folder
 
 
@@ -428,7 +428,7 @@ def sources_digest(file: str) -> str:
     seen_files, files = set[Path](), {Path(file)}
     while files:
         seen_files |= files
-        files = {other for path in files for other in _imported(path)} - seen_files
+        files = {imported_file for path in files for imported_file in _imported(path)} - seen_files
     return sha256([_FORM, *(path.read_bytes() for path in sorted(seen_files - {Path(__file__)}))])[:16]
 
 
@@ -440,6 +440,6 @@ def _imported(file: Path) -> frozenset[Path]:
     paths = set()
     for module, things in names:
         paths.add(root.joinpath(*module.split(".")).with_suffix(".py"))
-        for thing in re.findall(r"\w+", things):  # it may be a module itself
-            paths.add(root.joinpath(*module.split("."), thing).with_suffix(".py"))
+        for imported_name in re.findall(r"\w+", things):  # it may be a module itself
+            paths.add(root.joinpath(*module.split("."), imported_name).with_suffix(".py"))
     return frozenset(path for path in paths if path.is_file())

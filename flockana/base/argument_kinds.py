@@ -48,17 +48,17 @@ _PROTOCOLS: dict[str, Any] = {"Iterable": Iterable, "Mapping": Mapping, "Numbers
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Decorate a function so that it refuses, by name, an argument of another class than its annotation."""
     # Annotations are read as text, so that no library is imported for a check. Items of a sequence are checked too.
-    called = inspect.signature(function)
-    if any(not isinstance(p.annotation, str) for p in called.parameters.values()):
+    signature = inspect.signature(function)
+    if any(not isinstance(p.annotation, str) for p in signature.parameters.values()):
         raise TypeError(f"{function.__module__}: expected annotations as text, from __future__ import annotations")
-    texts = {name: p.annotation.strip("'\"") for name, p in called.parameters.items()}
+    texts = {name: p.annotation.strip("'\"") for name, p in signature.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
     items = {name: texts[name].partition("[")[2].rstrip("]").rpartition(".")[2] for name in kinds}
 
     @functools.wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-        values: dict[str, Any] = called.bind(*args, **kwargs).arguments
+        values: dict[str, Any] = signature.bind(*args, **kwargs).arguments
         for name, kind in kinds.items():
             if name in values and kind in _ARRAYS:
                 ensure_numbers(name, values[name], "an array of real numbers")
@@ -76,6 +76,6 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
 
 def _ensure_symbolic(name: str, value: Any) -> None:
     """Raise unless a value is a sympy expression or matrix, or a number."""
-    classes = {each.__name__ for each in type(value).__mro__}
+    classes = {item.__name__ for item in type(value).__mro__}
     if not (isinstance(value, Real) or classes & {"Expr", "MatrixBase"}):
         raise ArgumentError(f"{name} = {format_value(value)}: expected a sympy expression, such as sympy.Symbol('z')")

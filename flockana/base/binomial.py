@@ -51,13 +51,13 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     """
     from scipy.special import betaincinv
 
-    both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
+    counts_text = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
     try:
         k, n = np.broadcast_arrays(real_array(successes), real_array(trials))
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{both}: expected counts") from None
+        raise ArgumentError(f"{counts_text}: expected counts") from None
     if not ((k >= 0.0) & (k <= n) & (n <= _MOST) & (k == np.floor(k)) & (n == np.floor(n))).all():
-        raise ArgumentError(f"{both}: expected whole numbers 0 <= successes <= trials")
+        raise ArgumentError(f"{counts_text}: expected whole numbers 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))
     # the arguments are kept positive where the end is known without them
     low = np.where(k > 0.0, betaincinv(np.maximum(k, 1.0), n - k + 1.0, tail), 0.0)

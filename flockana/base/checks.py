@@ -50,7 +50,7 @@ def per_agent(name: str, value: Any, ensure: Any = ensure_positive) -> PerAgent:
         return float(ensure(name, value))
     if np.ndim(value) != 1 or not len(value):
         raise ArgumentError(f"{name} has shape {np.shape(value)}: expected one number, or one for each agent")
-    return tuple(ensure(f"{name}[{i}]", one) for i, one in enumerate(value))
+    return tuple(ensure(f"{name}[{i}]", item) for i, item in enumerate(value))
 
 
 def normalise(item: Any, check: Callable[[str, Any], Any], *names: str) -> None:
@@ -78,7 +78,7 @@ def real_array(value: Any) -> FloatArray:
     # Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
     array = np.asarray(_real(value))
     if array.dtype.kind == "O":
-        array = np.array([float(_real(one)) for one in array.ravel()]).reshape(array.shape)
+        array = np.array([float(_real(item)) for item in array.ravel()]).reshape(array.shape)
     if array.dtype.kind not in "fiu" and array.size:
         raise TypeError(f"{array.dtype.str} are no real numbers")
     return np.asarray(array, dtype=np.float64, order="C")
@@ -144,7 +144,7 @@ def draw_start(q0: Any, p0: Any, seed: int, velocities: Any = None) -> tuple[Flo
 
 def ensure_kind(name: str, value: Any, kind: type | tuple[type, ...] | str, example: str) -> None:
     """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library."""
-    names = {each.__name__ for each in type(value).__mro__}
+    names = {item.__name__ for item in type(value).__mro__}
     if not (kind in names if isinstance(kind, str) else isinstance(value, kind)):
         raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
 
@@ -178,21 +178,21 @@ def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int3
         return np.empty((0, 2), dtype=np.int32)
     if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
         raise ArgumentError(f"{name} has shape {array.shape} of {array.dtype}: expected (M, 2) whole numbers")
-    bad = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
-    if bad.any():
-        k = int(np.argmax(bad))
+    is_invalid = ((array < 0) | (array >= n)).any(axis=1) | (array[:, 0] == array[:, 1])
+    if is_invalid.any():
+        k = int(np.argmax(is_invalid))
         raise ArgumentError(f"{name}[{k}] = {array[k].tolist()}: expected two different agents of 0 … {n - 1}")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
     """Raise before an array of floats is allocated that would take more than half of the machine's memory."""
-    size = 8 * math.prod(shape)
+    byte_count = 8 * math.prod(shape)
     if not hasattr(os, "sysconf"):
         return  # the system does not say; the allocation itself may fail
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if 2 * size > memory:
-        much = f"{size:.3g}" if size < 10**DIGITS else format_value(size)
+    if 2 * byte_count > memory:
+        much = f"{byte_count:.3g}" if byte_count < 10**DIGITS else format_value(byte_count)
         axes = ", ".join(map(format_value, shape)) + ("," if len(shape) == 1 else "")
         raise ArgumentError(
             f"{name} of shape ({axes}) would take {much} bytes, more than half of this machine's {memory:.3g}: {remedy}"

@@ -30,32 +30,32 @@ def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, uni
     >>> bool(abs(found.matrix[0, 0] - np.cos(0.5)) < 1e-11), differences(np.abs, np.zeros(1), 1.0).spread
     (True, 1.0)
     """
-    width, best, before = _WIDEST, Differences(np.zeros((0, 0)), np.inf), None
-    while width >= _FINEST and best.spread > _AGREE:
-        matrix, bent = central_differences(function, x, width * unit)
-        size = float(np.abs(matrix).max(initial=0.0)) or float(bent) or 1.0
-        if before is not None:
-            spread = float(np.abs(matrix - before).max(initial=0.0)) / size
-            best = min(best, Differences(before, spread), key=lambda one: one.spread)
-        before, width = matrix, width / _FINER
-    ahead = central_differences(function, x, _FINEST * unit)[
+    width, best_estimate, previous_estimate = _WIDEST, Differences(np.zeros((0, 0)), np.inf), None
+    while width >= _FINEST and best_estimate.spread > _AGREE:
+        matrix, curvature_part = central_differences(function, x, width * unit)
+        magnitude = float(np.abs(matrix).max(initial=0.0)) or float(curvature_part) or 1.0
+        if previous_estimate is not None:
+            spread = float(np.abs(matrix - previous_estimate).max(initial=0.0)) / magnitude
+            best_estimate = min(best_estimate, Differences(previous_estimate, spread), key=lambda one: one.spread)
+        previous_estimate, width = matrix, width / _FINER
+    finest_change = central_differences(function, x, _FINEST * unit)[
         1
     ]  # of a kink at x itself central differences know nothing
-    size = float(np.abs(best.matrix).max(initial=0.0))
-    kink = ahead / (size or ahead or 1.0)
-    return best._replace(spread=max(best.spread, kink if kink > _KINK else 0.0))
+    magnitude = float(np.abs(best_estimate.matrix).max(initial=0.0))
+    relative_change = finest_change / (magnitude or finest_change or 1.0)
+    return best_estimate._replace(spread=max(best_estimate.spread, relative_change if relative_change > _KINK else 0.0))
 
 
 def central_differences(
     function: Callable[[FloatArray], FloatArray], x: FloatArray, h: float, weights: tuple[float, ...] = _WEIGHTS
 ) -> tuple[FloatArray, float]:
     """Return ∂f/∂x by central differences of one width, and the largest difference of slopes to either side."""
-    here, columns, bent = function(x).ravel(), [], 0.0
+    base_value, columns, bent = function(x).ravel(), [], 0.0
     for k in range(x.size):
         nudge = np.zeros(x.size)
         nudge[k] = h
         steps = [j * nudge.reshape(x.shape) for j in range(1, len(weights) + 1)]
-        ahead, behind = ([function(x + s * step).ravel() for step in steps] for s in (1.0, -1.0))
-        columns.append(sum(w * (a - b) for w, a, b in zip(weights, ahead, behind, strict=True)) / h)
-        bent = max(bent, float(np.abs(ahead[0] - 2.0 * here + behind[0]).max(initial=0.0)) / h)
-    return np.column_stack(columns) if columns else np.zeros((here.size, 0)), bent
+        finest_change, backward_values = ([function(x + s * step).ravel() for step in steps] for s in (1.0, -1.0))
+        columns.append(sum(w * (a - b) for w, a, b in zip(weights, finest_change, backward_values, strict=True)) / h)
+        bent = max(bent, float(np.abs(finest_change[0] - 2.0 * base_value + backward_values[0]).max(initial=0.0)) / h)
+    return np.column_stack(columns) if columns else np.zeros((base_value.size, 0)), bent

@@ -14,6 +14,6 @@ def sha256(parts: Iterable[Any]) -> str:
     'ba7816bf8f01cfea'
     """
     total = hashlib.sha256()
-    for part in parts:
-        total.update(part.encode() if isinstance(part, str) else part)
+    for text_part in parts:
+        total.update(text_part.encode() if isinstance(text_part, str) else text_part)
     return total.hexdigest()

@@ -72,15 +72,15 @@ class UnknownNameError(ArgumentError):
         from difflib import get_close_matches
 
         names = sorted(map(str, known)) if isinstance(known, Iterable) else [str(known)]
-        folded = {known_name.casefold(): known_name for known_name in names}
+        names_by_fold = {known_name.casefold(): known_name for known_name in names}
         text = name if isinstance(name, str) else format_value(name)
-        rest = f"known: {', '.join(names) or 'none'}"
+        known_text = f"known: {', '.join(names) or 'none'}"
         if len(names) > _FEW:
-            nearest = get_close_matches(text.casefold(), folded, n=_NEAREST, cutoff=0.0)
-            rest = f"the nearest of {len(names)}: {', '.join(folded[one] for one in nearest)}"
-        for close in get_close_matches(text.casefold(), folded, n=1):
-            rest = f"did you mean {folded[close]!r}? {rest[0].upper()}{rest[1:]}"
-        super().__init__(f"unknown {kind} {format_value(name)}; {rest}")
+            nearest = get_close_matches(text.casefold(), names_by_fold, n=_NEAREST, cutoff=0.0)
+            known_text = f"the nearest of {len(names)}: {', '.join(names_by_fold[item] for item in nearest)}"
+        for close_name in get_close_matches(text.casefold(), names_by_fold, n=1):
+            known_text = f"did you mean {names_by_fold[close_name]!r}? {known_text[0].upper()}{known_text[1:]}"
+        super().__init__(f"unknown {kind} {format_value(name)}; {known_text}")
         self._arguments = (str(kind), text, names)
 
     def __reduce__(self) -> tuple[type[Self], tuple[str, str, list[str]]]:

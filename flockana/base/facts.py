@@ -25,11 +25,11 @@ def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     facts = list(facts)
     status: FactStatus = "met"
     worst = min((status, *(fact.status for fact in facts)), key=_ORDER.index)
-    deciding = [fact for fact in facts if fact.status == worst]
+    deciding_facts = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)
-    detail = "; ".join(dict.fromkeys(fact.detail for fact in deciding if fact.detail))
-    return Fact(worst, detail, deciding[0].witness, sum(fact.width for fact in deciding))
+    detail = "; ".join(dict.fromkeys(fact.detail for fact in deciding_facts if fact.detail))
+    return Fact(worst, detail, deciding_facts[0].witness, sum(fact.width for fact in deciding_facts))
 
 
 @dataclass(frozen=True)

@@ -88,15 +88,15 @@ def write_atomic(
 def read_text_file(path: Any) -> str:
     """Return the UTF-8 text of a regular file; raise on devices and on files too large for a text."""
     # What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
-    source = ensure_path(path)
+    source_path = ensure_path(path)
     try:
-        if source.exists() and not source.is_file():
-            reason = "it is a folder" if source.is_dir() else "it is no regular file"
-            raise FileError(f"cannot read {source}: {reason}; expected a file")
-        if (size := source.stat().st_size) > _MOST:
-            raise FileError(f"cannot read {source}: it has {size} bytes; expected at most {_MOST}")
-        return source.read_text(encoding="utf-8")
+        if source_path.exists() and not source_path.is_file():
+            reason = "it is a folder" if source_path.is_dir() else "it is no regular file"
+            raise FileError(f"cannot read {source_path}: {reason}; expected a file")
+        if (byte_count := source_path.stat().st_size) > _MOST:
+            raise FileError(f"cannot read {source_path}: it has {byte_count} bytes; expected at most {_MOST}")
+        return source_path.read_text(encoding="utf-8")
     except FileError:
         raise
     except OSError as error:
-        raise FileError(f"cannot read {source}: {error.strerror or error}; expected a file") from error
+        raise FileError(f"cannot read {source_path}: {error.strerror or error}; expected a file") from error

@@ -12,12 +12,12 @@ and again, as by default after hundreds, takes a tenth of a short command."""
 @contextmanager
 def relaxed_gc() -> Iterator[None]:
     """Collect garbage after a hundred thousand new objects instead of after hundreds."""
-    before = gc.get_threshold()
+    previous_threshold = gc.get_threshold()
     gc.set_threshold(SELDOM)
     try:
         yield
     finally:
-        gc.set_threshold(*before)
+        gc.set_threshold(*previous_threshold)
 
 
 def freeze_gc() -> None:

@@ -15,18 +15,18 @@ def defer_sigint(*others: int) -> Iterator[list[int]]:
     """Defer Ctrl-C, and other signals, to the end of the block; yields a list that fills when one arrives."""
     # A blocked signal would not do: any other thread, such as linear algebra's, takes it for the main one. And where
     # Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
-    came: list[int] = []
-    ours = threading.current_thread() is threading.main_thread()
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *others)} if ours else {}
+    signal_list: list[int] = []
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *others)} if in_main_thread else {}
     handlers = {number: handler for number, handler in handlers.items() if callable(handler)}
     for number in handlers:
-        signal.signal(number, lambda number, frame: came.append(number))
+        signal.signal(number, lambda number, frame: signal_list.append(number))
     try:
-        yield came
+        yield signal_list
     finally:
         for number, handler in handlers.items():
             signal.signal(number, handler)
-        for number in dict.fromkeys(came):
+        for number in dict.fromkeys(signal_list):
             signal.raise_signal(number)
 
 
@@ -61,11 +61,11 @@ def block_sigint() -> Iterator[None]:
         yield
         return
     resource_tracker.ensure_running()  # it starts with the first process, and then unblocks the signal
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    previous_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
 
 
 @contextmanager

@@ -15,22 +15,22 @@ def attach_stub(package: str, file: str) -> tuple[Callable[[str], Any], Callable
 
     As lazy_loader's function of this name, and names from outside the package as well, under other names if so said.
     """
-    inside: dict[str, list[str]] = {}
-    outside: dict[str, tuple[str, str]] = {}  # by public name, a module and the name in it
+    inside_names: dict[str, list[str]] = {}
+    outside_names: dict[str, tuple[str, str]] = {}  # by public name, a module and the name in it
     for node in ast.parse(Path(file).with_suffix(".pyi").read_text("utf-8")).body:
         if isinstance(node, ast.ImportFrom) and node.level == 1:
-            inside.setdefault(node.module or "", []).extend(alias.name for alias in node.names)
+            inside_names.setdefault(node.module or "", []).extend(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             module = resolve_name("." * node.level + (node.module or ""), package)
-            outside |= {alias.asname or alias.name: (module, alias.name) for alias in node.names}
-    get_inside, _, names = lazy_loader.attach(package, inside.pop("", ()), inside)
-    every = sorted((*names, *outside))
+            outside_names |= {alias.asname or alias.name: (module, alias.name) for alias in node.names}
+    get_inside, _, names = lazy_loader.attach(package, inside_names.pop("", ()), inside_names)
+    all_names = sorted((*names, *outside_names))
 
     def get(name: str) -> Any:
-        if name not in outside:
+        if name not in outside_names:
             return get_inside(name)
-        module, attribute = outside[name]
+        module, attribute = outside_names[name]
         owner = import_module(module)
         return getattr(owner, attribute) if hasattr(owner, attribute) else import_module(f"{module}.{attribute}")
 
-    return get, lambda: [*every], every
+    return get, lambda: [*all_names], all_names

@@ -10,9 +10,9 @@ from flockana.base.errors import ArgumentError
 
 def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
     """Return whether each subclass that overrides one of the methods `others` overrides `name` too."""
-    ways = list(kind.__mro__)
-    defined = next(k for k, base in enumerate(ways) if name in vars(base))
-    return not any(other in vars(base) for base in ways[:defined] for other in others)
+    classes = list(kind.__mro__)
+    defining_index = next(k for k, base in enumerate(classes) if name in vars(base))
+    return not any(other in vars(base) for base in classes[:defining_index] for other in others)
 
 
 def ensure_consistent(item: Any) -> None:
@@ -23,8 +23,8 @@ def ensure_consistent(item: Any) -> None:
     kind = type(item)
     derived_methods: Mapping[str, tuple[str, ...]] = getattr(kind, "derived_methods", {})
     for source, derived in derived_methods.items():
-        defined = next((k for k, base in enumerate(kind.__mro__) if source in vars(base)), 0)
-        for base in kind.__mro__[:defined]:
+        defining_index = next((k for k, base in enumerate(kind.__mro__) if source in vars(base)), 0)
+        for base in kind.__mro__[:defining_index]:
             for name in () if base.__module__.startswith("flockana.") else derived:
                 if name in vars(base):
                     raise ArgumentError(

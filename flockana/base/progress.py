@@ -36,11 +36,11 @@ def progress_bar(
             shown = text + rate
             bar.update(task, completed=done, description=shown)
 
-        before = _PART.set(lambda text: bar.update(task, description=", ".join(filter(None, (shown, text)))))
+        previous_label = _PART.set(lambda text: bar.update(task, description=", ".join(filter(None, (shown, text)))))
         try:
             yield advance
         finally:
-            _PART.reset(before)
+            _PART.reset(previous_label)
 
 
 def show_part(text: str) -> None:
@@ -50,19 +50,19 @@ def show_part(text: str) -> None:
 
 def _lines(total: float) -> Callable[[float, str], None]:
     """Return a function that prints progress to stderr at fixed intervals."""
-    started = printed = time.monotonic()
+    start_time = printed = time.monotonic()
 
     def advance(done: float, text: str) -> None:
         nonlocal printed
-        now = time.monotonic()
-        if now - printed < _EVERY or not 0.0 < done < total:
+        current_time = time.monotonic()
+        if current_time - printed < _EVERY or not 0.0 < done < total:
             return
-        printed = now
-        spent = now - started
-        left = spent * (total - done) / done
+        printed = current_time
+        elapsed_time = current_time - start_time
+        left = elapsed_time * (total - done) / done
         # before a tenth is done, parts that take longer than others would lead far off
-        ahead = f", about {left:.0f} s left" if done >= _BASIS * total else ""
-        sys.stderr.write(f"{done:.4g} of {total:.4g} in {spent:.0f} s{ahead}: {text}\n")
+        time_text = f", about {left:.0f} s left" if done >= _BASIS * total else ""
+        sys.stderr.write(f"{done:.4g} of {total:.4g} in {elapsed_time:.0f} s{time_text}: {text}\n")
         sys.stderr.flush()
 
     return advance

@@ -16,8 +16,8 @@ class Scales:
 
     def __post_init__(self) -> None:
         if not (LEAST <= self.length <= MOST and LEAST <= self.time <= MOST):
-            given = f"the law's length is {self.length:.3g} and its time {self.time:.3g}"
-            raise ArgumentError(f"{given}: expected both from {LEAST:g} to {MOST:g}; choose other units")
+            scale_text = f"the law's length is {self.length:.3g} and its time {self.time:.3g}"
+            raise ArgumentError(f"{scale_text}: expected both from {LEAST:g} to {MOST:g}; choose other units")
 
     @property
     def speed(self) -> float:

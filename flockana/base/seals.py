@@ -40,15 +40,15 @@ def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
 
 def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = None) -> dict[str, Any]:
     """Return a file's data without its digest; raise if the digest is missing or wrong, or a key is unknown."""
-    rest = {key: value for key, value in data.items() if key != SEAL}
-    unknown = sorted({*rest} - {*keys}) if keys is not None else []
+    other_data = {key: value for key, value in data.items() if key != SEAL}
+    unknown = sorted({*other_data} - {*keys}) if keys is not None else []
     if unknown:
         raise FileError(f"it holds {', '.join(unknown)}: expected {', '.join(keys or ())} and {SEAL}, nothing else")
     if SEAL not in data:
         raise FileError(f"it has no {SEAL}, which every file is written with: something was taken out")
-    if data[SEAL] != digest(rest):
+    if data[SEAL] != digest(other_data):
         raise FileError("its digest is not that of its contents: something in it was changed")
-    return rest
+    return other_data
 
 
 def checksum(value: Any, modules: Mapping[str, str] = MappingProxyType({})) -> str:
@@ -109,10 +109,10 @@ def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):
-        numbers = _numbers(value)
-        if numbers is not None:
-            yield f"array {numbers.shape if numbers.size else 0} {numbers.dtype.str}"
-            yield numbers.data  # without a copy
+        values = _numbers(value)
+        if values is not None:
+            yield f"array {values.shape if values.size else 0} {values.dtype.str}"
+            yield values.data  # without a copy
             return
         items = value.tolist() if isinstance(value, np.ndarray) else value
         yield f"sequence {len(items)}"
@@ -121,7 +121,7 @@ def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -
         return
     parts: Mapping[Any, Any] | None = None
     spelling = None if isinstance(value, type) else getattr(value, "spelling", None)  # of what files hold otherwise
-    kind, spelled = spelling or (type(value), None)
+    kind, spelled_value = spelling or (type(value), None)
     text = public_name(kind, modules)
     if value is None or isinstance(value, Number | str | bytes | Enum):
         text += f" {value!r}"
@@ -139,8 +139,8 @@ def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -
         parts = value
     elif isinstance(value, Set):
         text += " ".join(sorted(checksum(item, modules) for item in value))
-    elif spelled is not None:
-        parts = spelled
+    elif spelled_value is not None:
+        parts = spelled_value
     elif is_dataclass(value):
         parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init and field.compare}
     else:

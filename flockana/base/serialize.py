@@ -43,7 +43,7 @@ def to_data(value: Any) -> Any:
     """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``."""
     if is_dataclass(value) and not isinstance(value, type):
         kind, values = getattr(value, "spelling", None) or (type(value), _parameters(value))
-        data = {name: to_data(part) for name, part in values.items()}
+        data = {name: to_data(item) for name, item in values.items()}
         known_class = parameter_classes().get(kind.__qualname__) if kind.__module__.startswith("flockana.") else kind
         if known_class is None or (isinstance(kind, type) and known_class is not kind):
             raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
@@ -101,8 +101,8 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return a JSON object; raise on duplicate keys."""
     data = dict(pairs)
     if len(data) < len(pairs):
-        twice, _ = Counter(key for key, _ in pairs).most_common(1)[0]
-        raise ValueError(f"the key {format_value(twice)} is given twice")
+        repeated_names, _ = Counter(key for key, _ in pairs).most_common(1)[0]
+        raise ValueError(f"the key {format_value(repeated_names)} is given twice")
     return data
 
 

@@ -40,7 +40,7 @@ class ShortRepr:
 
 def _texts(item: Any, most: int) -> dict[str, str]:
     """Return the fields of a dataclass as texts of limited length."""
-    return {each.name: short_text(getattr(item, each.name), most) for each in fields(item) if each.repr}
+    return {field.name: short_text(getattr(item, field.name), most) for field in fields(item) if field.repr}
 
 
 def short_text(value: Any, most: int = _VALUE) -> str:
@@ -50,7 +50,7 @@ def short_text(value: Any, most: int = _VALUE) -> str:
     elif isinstance(value, Fraction):
         text = repr(value) if len(repr(value)) <= _SHORT // 2 else f"{float(value):.6g}"
     elif type(value) in (tuple, list):
-        parts = [short_text(each, most) for each in (value if len(value) <= _FEW else value[:_FIRST])]
+        parts = [short_text(item, most) for item in (value if len(value) <= _FEW else value[:_FIRST])]
         parts += [f"… {len(value)} in all"] if len(value) > _FEW else []
         text = ", ".join(parts)
         text = f"[{text}]" if isinstance(value, list) else f"({text},)" if len(value) == 1 else f"({text})"

@@ -21,9 +21,9 @@ _ACUTE = "\u0301"
 
 def tex(text: str) -> str:
     """Return text with LaTeX's own characters escaped and Greek letters as mathematics."""
-    apart = unicodedata.normalize("NFD", text)
+    decomposed = unicodedata.normalize("NFD", text)
     return re.sub(
-        f"(.)([{''.join(_ACCENTS)}{_ACUTE}]?)", lambda found: _letter(*found.groups()), apart, flags=re.DOTALL
+        f"(.)([{''.join(_ACCENTS)}{_ACUTE}]?)", lambda found: _letter(*found.groups()), decomposed, flags=re.DOTALL
     )
 
 
@@ -40,7 +40,7 @@ def _letter(letter: str, accent: str) -> str:
     if kind in ("<super>", "<sub>"):
         return f"${'^' if kind == '<super>' else '_'}{{{_letter(parts[0], '').strip('$')}}}$"
     if kind == "<compat>":  # such as three primes in one
-        return "".join(_letter(part, "") for part in parts)
+        return "".join(_letter(symbol_part, "") for symbol_part in parts)
     if kind == "<fraction>":  # 1, a fraction slash, 2
         return rf"$\frac{{{parts[0]}}}{{{parts[2]}}}$"
     greek = re.fullmatch("GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?([A-Z]+)", unicodedata.name(letter, ""))

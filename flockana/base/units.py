@@ -61,7 +61,7 @@ def _rescaled(item: Any, length: float, time: float) -> Any:
     if how is not None:
         return how(length, time)
     if isinstance(item, tuple):
-        return tuple(_rescaled(each, length, time) for each in item)
+        return tuple(_rescaled(entry, length, time) for entry in item)
     if not is_dataclass(item) or isinstance(item, type):
         return item
     return type(item)(**scaled_fields(item, length, time))
@@ -71,7 +71,7 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
     """Return the constructor arguments of a parameter object in other units."""
     powers: Mapping[str, Powers] = getattr(item, "units", {})
     values = {field.name: getattr(item, field.name) for field in fields(item) if field.init}
-    factors = {name: length**by_length * time**by_time for name, (by_length, by_time) in powers.items()}
+    factors = {name: length**length_power * time**time_power for name, (length_power, time_power) in powers.items()}
     return {
         name: times(value, factors[name]) if name in powers else _rescaled(value, length, time)
         for name, value in values.items()
@@ -83,5 +83,5 @@ def times(value: Any, factor: float) -> Any:
     if value is None:
         return None
     if isinstance(value, tuple | list):
-        return tuple(times(each, factor) for each in value)
+        return tuple(times(item, factor) for item in value)
     return value * factor if isinstance(value, np.ndarray) else float(value) * factor

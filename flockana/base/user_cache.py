@@ -26,8 +26,8 @@ def kept_data(name: str, compute: Callable[[], Any]) -> Any:
     if path is not None:
         with suppress(OSError, FileError):
             path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            for other in path.parent.glob(f"{name}-*.json"):
-                other.unlink(missing_ok=True)
+            for old_path in path.parent.glob(f"{name}-*.json"):
+                old_path.unlink(missing_ok=True)
             write_atomic(path, json.dumps(data))
     return data
 

@@ -49,19 +49,19 @@ class Pull:
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
         """Return the force at a position and a velocity."""
-        away = self._away(t, x)
+        displacement = self._away(t, x)
         if self.unit is not None:
-            slant = self._saturation(away, self.unit)
-            away = [a * slant for a in away]
-        rows = zip(away, v, self.declared, strict=True)
+            saturation_factor = self._saturation(displacement, self.unit)
+            displacement = [a * saturation_factor for a in displacement]
+        rows = zip(displacement, v, self.declared, strict=True)
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
         """Return the derivatives of the force by position and velocity, as two tables."""
-        rows = list(enumerate(away := self._away(t, x)))
+        rows = list(enumerate(displacement := self._away(t, x)))
         pull, drag = ([[-gain * (k == h) for h, _ in rows] for k, _ in rows] for gain in (self.stiffness, self.damping))
         if self.unit is not None:
-            slant = self._saturation(away, self.unit)
+            slant = self._saturation(displacement, self.unit)
             cube = slant * slant * slant / (self.unit * self.unit)
             pull = [[-self.stiffness * ((slant if k == h else 0) - cube * a * b) for h, b in rows] for k, a in rows]
         return pull, drag
@@ -88,9 +88,9 @@ class SphereTerm:
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
         """Return the unit vector (x − y)/‖x − y‖ from the sphere's centre, and the distance ‖x − y‖."""
-        away = minus(x, self.centre)
-        distance = norm2(away).sqrt()
-        return [a / distance for a in away], distance
+        displacement = minus(x, self.centre)
+        distance = norm2(displacement).sqrt()
+        return [a / distance for a in displacement], distance
 
     def clearance(self, x: Sequence[arb]) -> arb:
         """Return the clearance ‖x − y‖ − R from the sphere, negative inside."""
@@ -102,20 +102,20 @@ class SphereTerm:
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
         """Return the distances of the clearance from the switches h d_β and d_β, and their rates."""
-        away = x - np.array([float(y) for y in self.centre])
-        distance = float(np.linalg.norm(away))
-        speed = float(away @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
+        displacement = x - np.array([float(y) for y in self.centre])
+        distance = float(np.linalg.norm(displacement))
+        speed = float(displacement @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
         return [(distance - float(self.radius) - switch, speed) for switch in self.beta.switches]
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
-        across = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
+        transverse_velocity = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
         adjacency = self.beta.pair(square(clearance), piece)[1]
         if isinstance(adjacency, arb):
             adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-        return -self.damping * adjacency * (clearance / distance * across + square(radial))
+        return -self.damping * adjacency * (clearance / distance * transverse_velocity + square(radial))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Return the time derivative of the sphere's force: 0, as the sphere is at rest."""
@@ -126,8 +126,8 @@ class SphereTerm:
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)
-        push, drag, free = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
-        return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
+        push, drag, free_part = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
+        return [-push * k - drag * (free_part * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
         """Return the derivatives of the force by position and velocity, two tables."""
@@ -137,7 +137,7 @@ class SphereTerm:
         s2, mu, free = square(clearance), self.radius / distance, clearance / distance
         (weight, adjacency), (bend, fade) = self.beta.pair(s2, piece), self.beta.slopes(s2, piece)
         stiff, drag = self.stiffness * weight, self.damping * adjacency
-        steeper, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
+        slope_change, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
         across = [w - radial * k for k, w in zip(a, v, strict=True)]
         slip = [-free * w - radial * k for k, w in zip(a, across, strict=True)]
         size = range(len(x))
@@ -146,7 +146,7 @@ class SphereTerm:
             along, aside = a[k] * a[h], (1 if k == h else 0) - a[k] * a[h]
             turn = -mu / distance * (across[k] * a[h] + radial * aside + a[k] * across[h])
             by_v[k][h] = -drag * (free * aside + along)
-            by_x[k][h] = -stiff * (free * aside + along) - steeper * along + fading * slip[k] * a[h] + drag * turn
+            by_x[k][h] = -stiff * (free * aside + along) - slope_change * along + fading * slip[k] * a[h] + drag * turn
         return by_x, by_v
 
 

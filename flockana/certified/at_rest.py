@@ -26,8 +26,8 @@ _COLLINEAR = 1e-9
 
 def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     """Return the computed equilibrium next to q, and balls that hold the true one of the same orientation."""
-    sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
-    if u.m == 3 and sizes[1] <= _COLLINEAR * sizes[0]:  # its orbit is a sphere
+    singular_values = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
+    if u.m == 3 and singular_values[1] <= _COLLINEAR * singular_values[0]:  # its orbit is a sphere
         raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
     x = _refined(u, q)
     radius = ball(BOX * u.par.d)
@@ -50,10 +50,10 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
     offsets = [dot(motion, centre) for motion in motions] + [arb(0)] * u.m
 
     def equations(unknown: Balls) -> list[arb]:
-        place, factors = unknown[:size], unknown[size:]
-        columns = zip(u.gradient(place), *fixed, strict=True)
+        position, factors = unknown[:size], unknown[size:]
+        columns = zip(u.gradient(position), *fixed, strict=True)
         force = [f + dot(factors, motions) for f, *motions in columns]
-        return force + [dot(motion, place) - offset for motion, offset in zip(fixed, offsets, strict=True)]
+        return force + [dot(motion, position) - offset for motion, offset in zip(fixed, offsets, strict=True)]
 
     def slope(unknown: Balls) -> arb_mat:
         rows = [[*row, *(motion[k] for motion in fixed)] for k, row in enumerate(u.hessian(unknown[:size]).tolist())]
@@ -79,9 +79,9 @@ def _refined(u: Structure, q: FloatArray) -> list[float]:
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):
         equations, slope = system(u, x.tolist())
-        at = [arb(float(y)) for y in x] + _multipliers(u)
-        matrix = np.array([[float(entry.mid()) for entry in row] for row in slope(at).tolist()])
-        value = np.array([float(y.mid()) for y in equations(at)])
+        unknown_values = [arb(float(y)) for y in x] + _multipliers(u)
+        matrix = np.array([[float(entry.mid()) for entry in row] for row in slope(unknown_values).tolist()])
+        value = np.array([float(y.mid()) for y in equations(unknown_values)])
         x = x - np.linalg.lstsq(matrix, value, rcond=None)[0][: x.size]
         if not np.abs(x - start).max() <= _NEAR * d:
             expected = "expected what find_equilibrium returned, under the same law"
@@ -93,12 +93,12 @@ def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
     """Return whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
     if u.m == 1:
         return True
-    size = dot(rest, rest)
+    rest_square = dot(rest, rest)
     if u.m == 2:
-        return bool(square(ball(radius)) < size)
+        return bool(square(ball(radius)) < rest_square)
     columns = [rest[a::3] for a in range(3)]
     largest = norm([dot(a, b) for a in columns for b in columns])
-    return bool((1 + arb(3).sqrt()) * ball(radius) * largest.sqrt() < size - largest)
+    return bool((1 + arb(3).sqrt()) * ball(radius) * largest.sqrt() < rest_square - largest)
 
 
 def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
@@ -108,8 +108,8 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
         raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium has")
     if not all(x.is_finite() for row in rows for x in row):
         raise ArgumentError(f"{name} holds a number that is not finite: expected finite coordinates")
-    middle = [sum(column, arb(0)) / shape[0] for column in zip(*rows, strict=True)]
-    return [x - c for row in rows for x, c in zip(row, middle, strict=True)]
+    column_means = [sum(column, arb(0)) / shape[0] for column in zip(*rows, strict=True)]
+    return [x - c for row in rows for x, c in zip(row, column_means, strict=True)]
 
 
 def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
@@ -129,8 +129,8 @@ def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
     rotation = left @ right
     if m == 2:
         c, s = arb(float(rotation[0, 0])), arb(float(rotation[1, 0]))
-        size = norm([c, s])
-        return [[c / size, -s / size], [s / size, c / size]]
+        vector_norm = norm([c, s])
+        return [[c / vector_norm, -s / vector_norm], [s / vector_norm, c / vector_norm]]
     from scipy.spatial.transform import Rotation
 
     a, b, c, w = (arb(float(y)) for y in Rotation.from_matrix(rotation).as_quat())

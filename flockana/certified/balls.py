@@ -39,10 +39,10 @@ def exact(x: Any) -> fmpq:
 
 def hull(*balls: arb) -> arb:
     """Return the smallest ball around several."""
-    first, *rest = balls
-    for one in rest:
-        first = first.union(one)
-    return first
+    first_ball, *later_balls = balls
+    for item in later_balls:
+        first_ball = first_ball.union(item)
+    return first_ball
 
 
 def square(x: Any) -> Any:
@@ -91,18 +91,18 @@ def place(z: Any, h: arb, piece: Piece) -> Any:
     """Return the position in [0, 1] of a σ-norm on the taper of ρ_h, as a ball or as a series."""
     if piece is Piece.CORE and not isinstance(z, arb):
         return arb_series([0])
-    on_taper = (z - h) / (1 - h)
-    return clamp(on_taper) if isinstance(z, arb) else on_taper
+    taper_position = (z - h) / (1 - h)
+    return clamp(taper_position) if isinstance(z, arb) else taper_position
 
 
 @contextmanager
 def series_length(length: int) -> Iterator[None]:
     """Set the length of power series inside the block."""
-    before, ctx.cap = ctx.cap, length
+    previous_cap, ctx.cap = ctx.cap, length
     try:
         yield
     finally:
-        ctx.cap = before
+        ctx.cap = previous_cap
 
 
 class _Exact:

@@ -124,8 +124,8 @@ class Basin(ShortRepr):
         with ctx.workdps(DIGITS):
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
-            turned = rotated_to(self.proof.rest, x, shape)
-            distance = norm(minus(x, turned))
+            rotated_state = rotated_to(self.proof.rest, x, shape)
+            distance = norm(minus(x, rotated_state))
             excess = u.energy(x) - u.energy(self.proof.rest) + norm2(v) / 2
             return distance.upper(), excess.upper()
 
@@ -202,12 +202,12 @@ def certify(equilibrium: Any, *, law: Any = None) -> Basin:
     u = Structure.of(law, *q.shape)
     _ensure_flock(law, q)
     with ctx.workdps(DIGITS):
-        computed, rest = enclose_rest(u, q)
-        around = BondTable(law, u, rest)
-        radius = _largest(around)
+        computed_state, rest_enclosure = enclose_rest(u, q)
+        bond_table = BondTable(law, u, rest_enclosure)
+        radius = _largest(bond_table)
         for _ in range(_RETRIES):
-            shells = prove(around, around.proposed(radius))
-            basin = shells and _assemble_basin(around, law, computed, shells)
+            shells = prove(bond_table, bond_table.proposed(radius))
+            basin = shells and _assemble_basin(bond_table, law, computed_state, shells)
             if basin:
                 return basin
             radius *= _RETREAT
@@ -222,15 +222,15 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError("the equilibrium has coincident agents: expected distinct positions, or they may collide")
     if law.gains.c2_alpha == 0.0 and (law.target is None or law.gains.c2_gamma == 0.0):
         raise ArgumentError("c2_alpha = 0 and no c2_gamma: expected a gain that damps, or no velocities match")
-    free = law.target is None or law.gains.c1_gamma == 0.0
-    if free and components(len(q), links(q, law.alpha.r)).any():
+    is_untargeted = law.target is None or law.gains.c1_gamma == 0.0
+    if is_untargeted and components(len(q), links(q, law.alpha.r)).any():
         raise ArgumentError("the net is disconnected and nothing else holds it together: expected one component")
 
 
 def _largest(around: BondTable) -> float:
     """Return the largest radius at which floating point proposes enough curvature for a basin, by bisection."""
     d = float(around.law.alpha.d)
-    shortest = min(float(length) for _, length in around.gaps.values())
+    shortest = min(float(distance) for _, distance in around.gaps.values())
     at_rest = around.proposed(_SMALLEST * d).mean
     if not at_rest > 0.0:
         fault = (
@@ -239,22 +239,22 @@ def _largest(around: BondTable) -> float:
         raise ArgumentError(f"{fault}: expected a strict minimum; a saddle or a soft net has no basin")
     low, high = _SMALLEST * d, min(_WIDEST * d, 0.99 * shortest * float(ROOT_TWO.q) / float(ROOT_TWO.p))
     for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if around.proposed(middle).mean > _LEAST * at_rest else (low, middle)
+        midpoint = 0.5 * (low + high)
+        low, high = (midpoint, high) if around.proposed(midpoint).mean > _LEAST * at_rest else (low, midpoint)
     return low
 
 
 def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: Shells) -> Basin | None:
     """Return the basin of proved shells; None where the net may part or nothing damps."""
     u, reach = around.u, ROOT_TWO * shells.radius
-    lengths = {pair: length for pair, (_, length) in around.gaps.items()}
-    second, degree = damping(u, lengths, reach)
-    lowest_curvature, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
+    link_lengths = {pair: distance for pair, (_, distance) in around.gaps.items()}
+    second_eigenvalue, degree = damping(u, link_lengths, reach)
+    lowest_curvature, maximum = u.c2_gamma + u.c2_alpha * second_eigenvalue, u.c2_gamma + 2 * u.c2_alpha * degree
     curvature, surplus = (round_down(value, _STATED) for value in (shells.curvature, shells.surplus))
-    apart = min((length - ball(reach)).lower() for length in lengths.values())
+    apart = min((distance - ball(reach)).lower() for distance in link_lengths.values())
     if not (lowest_curvature > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
         return None
-    bounds = Bounds(curvature, surplus, lowest_curvature, most)
+    bounds = Bounds(curvature, surplus, lowest_curvature, maximum)
     if not (decay_bounds := decay(bounds)).rate > 0:
         return None
     basin = Basin(
@@ -267,7 +267,7 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
         rate=fraction(decay_bounds.rate),
         overshoot=fraction(decay_bounds.overshoot),
         distance=fraction(round_down(apart, _STATED)),
-        connected=second > 0,
-        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second, degree, bounds, decay_bounds),
+        connected=second_eigenvalue > 0,
+        proof=Proved(u, tuple(around.rest), BOX * u.par.d, shells, second_eigenvalue, degree, bounds, decay_bounds),
     )
     return sealed(basin)

@@ -71,8 +71,8 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
 def head(kind: str) -> dict[str, Any]:
     """Return the common first entries of every certificate of a kind."""
     statement, prose = STATEMENTS[kind]
-    made_with = {"flockana": __version__, "python-flint": version("python-flint")}
-    return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": made_with}
+    version_table = {"flockana": __version__, "python-flint": version("python-flint")}
+    return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": version_table}
 
 
 def write_certificate(basin: Basin, path: str | Path) -> None:
@@ -141,14 +141,14 @@ def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
 
 def _start(tube: Tube, weight: float) -> dict[str, Any]:
     law, gains, zero = tube.law, tube.law.gains, ["0"] * tube.m
-    led = isinstance(law, Algorithm2 | Algorithm3)
-    terms = law.target.harmonic.terms if led else np.zeros((5, tube.m))
+    has_target = isinstance(law, Algorithm2 | Algorithm3)
+    terms = law.target.harmonic.terms if has_target else np.zeros((5, tube.m))
     path = {"start": terms[0], "velocity": terms[1], "declared": terms[1] + terms[4]}
-    numbers = _decimals(law.alpha, "d", "r", "eps", "h", "a", "b") | _decimals(gains, "c1_alpha", "c2_alpha")
-    numbers |= _decimals(gains, "c1_gamma", "c2_gamma") if led else {"c1_gamma": "0", "c2_gamma": "0"}
-    target = {name: [_decimal(x) for x in row] if led else zero for name, row in path.items()}
+    decimal_values = _decimals(law.alpha, "d", "r", "eps", "h", "a", "b") | _decimals(gains, "c1_alpha", "c2_alpha")
+    decimal_values |= _decimals(gains, "c1_gamma", "c2_gamma") if has_target else {"c1_gamma": "0", "c2_gamma": "0"}
+    target = {name: [_decimal(x) for x in row] if has_target else zero for name, row in path.items()}
     return head("tube") | {
-        "law": {"algorithm": type(law).__name__, **numbers, **target, **_spheres(law)},
+        "law": {"algorithm": type(law).__name__, **decimal_values, **target, **_spheres(law)},
         "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
         "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],
         "weight": _decimal(weight),
@@ -161,19 +161,19 @@ def _spheres(law: Any) -> dict[str, Any]:
         return {}
     numbers: dict[str, Any] = {f"beta_{name}": _decimal(getattr(law.beta, name)) for name in ("d", "eps", "h")}
     spheres: tuple[Any, ...] = law.obstacles
-    places = [{"centre": [_decimal(y) for y in one.centre], "radius": _decimal(one.radius)} for one in spheres]
+    places = [{"centre": [_decimal(y) for y in sphere.centre], "radius": _decimal(sphere.radius)} for sphere in spheres]
     return numbers | _decimals(law.gains, "c1_beta", "c2_beta") | {"spheres": places}
 
 
 def _paths(tube: Tube) -> list[list[list[str]]]:
     """Return Taylor polynomials of the positions in a run's steps, each from the exact end of the one before."""
-    flow, half, paths = flow_of(tube.law, tube.n, tube.m), tube.n * tube.m, []
+    flow, half_dimension, paths = flow_of(tube.law, tube.n, tube.m), tube.n * tube.m, []
     state = [arb(x) for x in (*tube.q0.ravel().tolist(), *tube.p0.ravel().tolist())]
     for t, end, step in zip(tube.t[:-1], tube.t[1:], tube.taken, strict=True):
         h, rows = arb(end) - arb(t), _polynomials(flow, arb(t), state, flow.pieces(step.during))
-        paths.append([[_hexadecimal(c) for c in row] for row in rows[:half]])
-        q = [sum((c * h**k for k, c in enumerate(row)), arb(0)) for row in rows[:half]]
-        p = [sum((k * c * h ** (k - 1) for k, c in enumerate(row) if k), arb(0)) for row in rows[:half]]
+        paths.append([[_hexadecimal(c) for c in row] for row in rows[:half_dimension]])
+        q = [sum((c * h**k for k, c in enumerate(row)), arb(0)) for row in rows[:half_dimension]]
+        p = [sum((k * c * h ** (k - 1) for k, c in enumerate(row) if k), arb(0)) for row in rows[:half_dimension]]
         state = [x.mid() for x in (*q, *p)]
     return paths
 
@@ -195,15 +195,15 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):
         h, path = arb(end) - arb(t), [[ball(exact(c)) for c in row] for row in text]
         error = run.jumped(state, path, error)
-        stated = small((2 * error).max(arb("1e-28")))
+        stated_value = small((2 * error).max(arb("1e-28")))
         for _ in range(_TRIES):
-            enclosure, box = run.grown(arb(t), h, path, error, number(stated))
-            if enclosure < number(stated) < 2 * enclosure + arb(2) ** -90:
+            enclosure, box = run.grown(arb(t), h, path, error, number(stated_value))
+            if enclosure < number(stated_value) < 2 * enclosure + arb(2) ** -90:
                 break
-            stated = small((arb("1.3") * enclosure).max(arb("1e-28")))
+            stated_value = small((arb("1.3") * enclosure).max(arb("1e-28")))
         else:
             raise ArgumentError(f"no error bound is verified at t = {t:g}: expected another weight or tube")
-        errors.append(stated)
+        errors.append(stated_value)
         boxes.append(box)
         state, error = run.at(path, h), enclosure
     return {"errors": errors} | run.stated(boxes, start)

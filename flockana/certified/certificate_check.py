@@ -133,9 +133,9 @@ def ensure_form(data: Any, form: Any, where: str = "it") -> None:
     """Raise `RejectedError` unless JSON data have the expected form in every key and entry."""
     if isinstance(form, dict):
         _ensure_as(isinstance(data, Mapping), data, where, "names with their values")
-        lacking, unknown = sorted({*form} - {*data}), sorted(map(str, {*data} - {*form}))
-        if lacking or unknown:
-            parts = [f"lacks {key!r}" for key in lacking] + [f"holds {key[:_SHOWN]!r}" for key in unknown]
+        missing_names, unknown = sorted({*form} - {*data}), sorted(map(str, {*data} - {*form}))
+        if missing_names or unknown:
+            parts = [f"lacks {key!r}" for key in missing_names] + [f"holds {key[:_SHOWN]!r}" for key in unknown]
             raise RejectedError(f"{where} {', '.join(parts)}: expected {', '.join(form)}; nothing else is checked")
         for key, inner in form.items():
             ensure_form(data[key], inner, key if where == "it" else f"{where}.{key}")

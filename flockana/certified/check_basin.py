@@ -58,11 +58,11 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         ensure(round_down_float(data["distance"], apart), "the distance is not that of the closest pair")
         yield "no two agents come nearer than the distance stated"
         for bond, pairs in zip(data["bonds"], bonds, strict=True):
-            rest = hull(*(lengths[pair] for pair in pairs))
+            rest_lengths = hull(*(lengths[pair] for pair in pairs))
             fault = "a bond has other than one bound for each shell"
             ensure(len(bond["along"]) == len(bond["across"]) == shells, fault)
             for k, floor in enumerate(zip(bond["along"], bond["across"], strict=True)):
-                holds = net.floor_holds(rest, reach * (k + 1) / shells, *map(Fraction, floor))
+                holds = net.floor_holds(rest_lengths, reach * (k + 1) / shells, *map(Fraction, floor))
                 ensure(holds, f"pairs {pairs}, shell {k}: no bound")
         yield f"the curvatures along and across of {len(bonds)} kinds of pairs are bounds in each of {shells} shells"
         curvatures = [Fraction(k) for k in data["curvatures"]]
@@ -75,8 +75,8 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
             matrix = net.radial(x, gaps, floors)
             ensure(positive(matrix.tolist(), ball(stated)), f"shell {k}: the curvature is not proved")
             ensure(stated % unit(stated, STATED) == 0, f"shell {k}: the curvature has too many digits")
-            more = positive(matrix.tolist(), ball(stated + unit(stated, STATED)))
-            ensure(not more, f"shell {k}: more than the curvature stated is true")
+            next_value = positive(matrix.tolist(), ball(stated + unit(stated, STATED)))
+            ensure(not next_value, f"shell {k}: more than the curvature stated is true")
         yield "the curvature of U along displacements is at least what is stated, shell by shell"
         yield from _check_bounds(data, net, x, lengths, curvatures)
 
@@ -98,18 +98,18 @@ def _check_bounds(
     curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
     ensure(curvature > 0 and level > 0, "the potential does not rise")
     yield "U at the boundary of the ball exceeds its minimum by the level; all equilibria in the ball are on the orbit"
-    away = ball(radius * ROOT_TWO)
+    length_change = ball(radius * ROOT_TWO)
     second, degree = Fraction(data["second_eigenvalue"]), Fraction(data["degree"])
-    weak = {pair: net.weight(length + away).lower() for pair, length in lengths.items()}
-    laplacian = net.laplacian(weak)
+    weak_weights = {pair: net.weight(distance + length_change).lower() for pair, distance in lengths.items()}
+    laplacian = net.laplacian(weak_weights)
     proved = second >= 0 and (second == 0 or positive(laplacian.tolist(), ball(second)))
     ensure(proved, "the net's second eigenvalue is not proved")
-    more = second + unit(second, STATED) if second else Fraction(1, 10**6)
-    ensure(not positive(laplacian.tolist(), ball(more)), "the net's second eigenvalue is larger than stated")
-    near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}
-    degrees = [sum((w for pair, w in near.items() if i in pair), arb(0)).upper() for i in range(net.n)]
+    next_value = second + unit(second, STATED) if second else Fraction(1, 10**6)
+    ensure(not positive(laplacian.tolist(), ball(next_value)), "the net's second eigenvalue is larger than stated")
+    weight_bounds = {pair: net.weight((distance - length_change).max(arb(0))) for pair, distance in lengths.items()}
+    degrees = [sum((w for pair, w in weight_bounds.items() if i in pair), arb(0)).upper() for i in range(net.n)]
     ensure(round_down_float(str(-degree), -max(degrees)), "the largest degree is not that of the net")
-    lowest_ratio, most = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
+    lowest_ratio, maximum = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
     ensure(lowest_ratio > 0, "nothing damps")
     yield "relative velocities are damped, the net's part from its second eigenvalue at its longest lengths"
     eps, theta, kappa, tau = (Fraction(data["lyapunov"][name]) for name in ("eps", "theta", "kappa", "tau"))
@@ -117,7 +117,7 @@ def _check_bounds(
     mean = theta * surplus + (1 - theta) * curvature
     rate = min(
         eps * theta,
-        eps * (theta * curvature + 2 * mean - kappa * most) / (curvature + eps * tau),
+        eps * (theta * curvature + 2 * mean - kappa * maximum) / (curvature + eps * tau),
         2 * ((1 - eps / (2 * kappa)) * lowest_ratio - eps) / (1 + eps / tau),
     )
     ensure(rate > 0 and round_down_float(data["rate"], rate / 2, OF_RATE), "the rate is not that of F")
@@ -131,12 +131,12 @@ def _check_bounds(
 def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
     """Return whether a stated decimal is the given value rounded down."""
     number = Fraction(stated)
-    above = number + unit(number, digits)
+    next_value = number + unit(number, digits)
     if number % unit(number, digits):
         return False
     if isinstance(value, Fraction):
-        return number <= value < above
-    return bool(ball(number) <= value) and bool(value < ball(above))
+        return number <= value < next_value
+    return bool(ball(number) <= value) and bool(value < ball(next_value))
 
 
 class Net:
@@ -151,8 +151,8 @@ class Net:
         self.n, self.m = len(self.centre), len(self.centre[0])
         self.box = ball(Fraction(data["box"]))
         ensure(self.text["algorithm"] in ("Algorithm1", "Algorithm2"), "its law is neither Algorithm 1 nor 2")
-        led = self.text["algorithm"] == "Algorithm2"
-        ensure(led or self.c1_gamma == self.c2_gamma == 0, "Algorithm 1 has no gains of a γ-agent")
+        has_target = self.text["algorithm"] == "Algorithm2"
+        ensure(has_target or self.c1_gamma == self.c2_gamma == 0, "Algorithm 1 has no gains of a γ-agent")
         ensure(self.n > 1 and self.m in (1, 2, 3) and all(len(row) == self.m for row in self.centre), "no flock")
         ensure(min(self.c1_alpha, self.c2_alpha, self.c1_gamma, self.c2_gamma) >= 0, "a gain is negative")
 
@@ -181,8 +181,8 @@ class Net:
         moving = self.rotation_tangents([[y + arb(0, self.box) for y in row] for row in self.centre])
         products = [[dot(a, b) for b in turns] for a in moving]
         ensure(not turns or bool(arb_mat(products).det() != 0), "the rotations are not independent")
-        size = len(start) + len(motion_rows)
-        shift = self.krawczyk(start, [self.box] * size, motion_rows)
+        dimension = len(start) + len(motion_rows)
+        shift = self.krawczyk(start, [self.box] * dimension, motion_rows)
         ensure(all(abs(y) < self.box for y in shift), "Krawczyk's test fails: no isolated equilibrium in the box")
         near = [y + change for y, change in zip(start, shift, strict=False)]
         middles, radii = [y.mid() for y in near], [y.rad() for y in near] + [arb(0)] * len(motion_rows)
@@ -210,28 +210,28 @@ class Net:
     def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
         """Return the Hessian ∇²U, bordered by the fixed rigid motions."""
         blocks = {}
-        for (i, j), gap, length in self.pairs(x):
-            pull = self.tension(length)
-            blocks[i, j] = block(gap, pull, (self.stiffness(length) - pull) / square(length))
+        for (i, j), gap, distance in self.pairs(x):
+            pull = self.tension(distance)
+            blocks[i, j] = block(gap, pull, (self.stiffness(distance) - pull) / square(distance))
         rows = [[*row, *(motion[k] for motion in held)] for k, row in enumerate(self.assembled(blocks))]
         return arb_mat(rows + [[*motion, *[arb(0)] * len(held)] for motion in held])
 
     def force(self, x: Sequence[Sequence[arb]]) -> list[arb]:
         """Return the gradient ∇U of the structural potential."""
         total = [[ball(self.c1_gamma) * y for y in row] for row in x]
-        for (i, j), gap, length in self.pairs(x):
+        for (i, j), gap, distance in self.pairs(x):
             for a, y in enumerate(gap):
-                total[i][a] -= self.tension(length) * y
-                total[j][a] += self.tension(length) * y
+                total[i][a] -= self.tension(distance) * y
+                total[j][a] += self.tension(distance) * y
         return [y for row in total for y in row]
 
     def pairs(self, x: Sequence[Sequence[arb]]) -> Iterator[tuple[Pair, list[arb], arb]]:
         """Return pairs that are not certainly out of range: indices, relative position, length."""
         for i, j in combinations(range(self.n), 2):
             gap = [b - a for a, b in zip(x[i], x[j], strict=True)]
-            length = norm(gap)
-            if not length >= ball(self.par.r):
-                yield (i, j), gap, length
+            distance = norm(gap)
+            if not distance >= ball(self.par.r):
+                yield (i, j), gap, distance
 
     def assembled(self, blocks: Mapping[Pair, list[list[arb]]]) -> list[list[arb]]:
         """Return the matrix of the form c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩ over pairs with their blocks B."""
@@ -248,9 +248,9 @@ class Net:
     ) -> arb_mat:
         """Return a matrix below the Hessian, from bounds of its pairs; rigid motions have large eigenvalues."""
         blocks = {}
-        for pair, (along, across) in floors.items():
+        for pair, (axial_part, transverse_floor) in floors.items():
             gap = gaps[pair]
-            blocks[pair] = block(gap, ball(across), ball(along - across) / norm2(gap))
+            blocks[pair] = block(gap, ball(transverse_floor), ball(axial_part - transverse_floor) / norm2(gap))
         total = arb_mat(self.assembled(blocks))
         for motion in self.rotation_tangents(x) + self.translations():
             column = arb_mat([[y] for y in motion])
@@ -280,21 +280,21 @@ class Net:
         while cells:
             low, high, depth = cells.pop()
             x = ball(low).union(ball(high))
-            length = rest + x
-            stiff, pull, alpha, beta = self.stiffness(length), self.tension(length), ball(along), ball(across)
+            distance = rest + x
+            stiff, pull, alpha, beta = self.stiffness(distance), self.tension(distance), ball(along), ball(across)
             nearest = Fraction(0) if low <= 0 <= high else min(abs(low), abs(high))
             farthest, spare = max(abs(low), abs(high)), (stiff - alpha).lower()
-            zeroth = spare * ball(nearest if spare >= 0 else farthest) ** 2
-            first = 2 * x * (stiff * rest + alpha * length) + 2 * (pull * square(rest) - beta * square(length))
-            twice = (stiff - pull) * square(rest) - (alpha - beta) * square(length)
-            most = (ball(eta**2 - nearest**2) / (2 * length * rest)).upper()
-            worst = first.lower() + twice.lower().min(arb(0)) * most
-            if zeroth + worst.min(arb(0)) * most >= 0:
+            zeroth_term = spare * ball(nearest if spare >= 0 else farthest) ** 2
+            first_term = 2 * x * (stiff * rest + alpha * distance) + 2 * (pull * square(rest) - beta * square(distance))
+            doubled_slope = (stiff - pull) * square(rest) - (alpha - beta) * square(distance)
+            maximum = (ball(eta**2 - nearest**2) / (2 * distance * rest)).upper()
+            worst = first_term.lower() + doubled_slope.lower().min(arb(0)) * maximum
+            if zeroth_term + worst.min(arb(0)) * maximum >= 0:
                 continue
             if depth == _DEEPEST:
                 return False
-            half = (low + high) / 2
-            cells += [(low, half, depth + 1), (half, high, depth + 1)]
+            half_width = (low + high) / 2
+            cells += [(low, half_width, depth + 1), (half_width, high, depth + 1)]
         return True
 
     def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:

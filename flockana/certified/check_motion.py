@@ -107,9 +107,9 @@ class Motion:
 
     def pull(self, x: Vector) -> list[Vector]:
         """Return the slope c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
-        away = [a - b for a, b in zip(x, self.start, strict=True)]
-        slant = (1 + norm2(away)).rsqrt()
-        cube, gain, rows = slant * slant * slant, self.gain["c1_gamma"], list(enumerate(away))
+        displacement = [a - b for a, b in zip(x, self.start, strict=True)]
+        slant = (1 + norm2(displacement)).rsqrt()
+        cube, gain, rows = slant * slant * slant, self.gain["c1_gamma"], list(enumerate(displacement))
         return [[gain * ((slant if k == c else 0) - cube * a * b) for c, b in rows] for k, a in rows]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
@@ -136,17 +136,17 @@ class Motion:
             for k, row in enumerate(self.pull(list(q[i]))):
                 rows[size + i * m + k][i * m : i * m + m] = [-value for value in row]
         for i, sphere in self.near():
-            for first, table in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
+            for first_row, table in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
                 for k, c in product(range(m), repeat=2):
-                    rows[size + i * m + k][first + c] += table[k][c]
+                    rows[size + i * m + k][first_row + c] += table[k][c]
         for i, j, gap in self.gaps(box):
             s2 = norm2(gap)
             z, root = sigma_of_square(s2, par.eps), (1 + ball(par.eps) * s2).sqrt()
             stress, weight = phi_alpha(z, par) / root, adjacency(z, par)
-            steeper = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
+            slope_change = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
             fading = bump_slope(z / r_alpha(par), par.h) / r_alpha(par) / root
             for k, c in product(range(m), repeat=2):
-                block = (g["c1_alpha"] * steeper * gap[k] + g["c2_alpha"] * fading * (p[j][k] - p[i][k])) * gap[c]
+                block = (g["c1_alpha"] * slope_change * gap[k] + g["c2_alpha"] * fading * (p[j][k] - p[i][k])) * gap[c]
                 block += g["c1_alpha"] * stress if k == c else 0
                 for r, o, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
                     rows[size + r * m + k][o * m + c] += sign * block
@@ -169,20 +169,20 @@ class Motion:
     def centred(self, x: Vector) -> list[Vector]:
         """Return the deviations from the mean of all agents."""
         rows = self.agents(x)
-        means = [sum((row[k] for row in rows), arb(0)) / self.n for k in range(self.m)]
-        return [[a - b for a, b in zip(row, means, strict=True)] for row in rows]
+        mean_values = [sum((row[k] for row in rows), arb(0)) / self.n for k in range(self.m)]
+        return [[a - b for a, b in zip(row, mean_values, strict=True)] for row in rows]
 
     def energy(self, x: Vector) -> arb:
         """Return the energy c1α V + c1γ J + K in the moving frame; with a bounded pull, in the given frame."""
         size = self.n * self.m
-        pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
+        pairs = (psi_alpha(sigma_of_square(square(distance), self.par.eps), self.par) for distance in self.lengths(x))
         total = self.gain["c1_alpha"] * sum(pairs, arb(0))
         if not self.bounded:
-            inertia, kinetic = (sum(map(norm2, self.centred(part)), arb(0)) / 2 for part in (x[:size], x[size:]))
+            inertia, kinetic = (sum(map(norm2, self.centred(block)), arb(0)) / 2 for block in (x[:size], x[size:]))
             return total + self.gain["c1_gamma"] * inertia + kinetic
         for y in self.agents(x[:size]):
-            far = norm2([a - b for a, b in zip(y, self.start, strict=True)])
-            total += self.gain["c1_gamma"] * ((1 + far).sqrt() - 1)
+            squared_distance = norm2([a - b for a, b in zip(y, self.start, strict=True)])
+            total += self.gain["c1_gamma"] * ((1 + squared_distance).sqrt() - 1)
             total += sum((sphere.energy(y) for sphere in self.spheres), arb(0))
         return total + norm2(x[size:]) / 2
 
@@ -207,8 +207,8 @@ class Sphere:
         """Return the sphere of a certificate, its numbers as exact decimals."""
         par = BetaParameters(d=law["beta_d"], eps=law["beta_eps"], h=law["beta_h"])
         centre = tuple(ball(Fraction(x)) for x in one["centre"])
-        numbers = (ball(Fraction(x)) for x in (one["radius"], law["c1_beta"], law["c2_beta"]))
-        return cls(par, centre, *numbers)
+        parameters = (ball(Fraction(x)) for x in (one["radius"], law["c1_beta"], law["c2_beta"]))
+        return cls(par, centre, *parameters)
 
     def clearance(self, x: Sequence[arb]) -> arb:
         """Return ‖x − y‖ − R."""
@@ -240,9 +240,9 @@ class Sphere:
             rho = taper(z / d_beta(self.par), h, piece)
             s = z - d_beta(self.par)
             action = rho * (s / (1 + s * s).sqrt() - 1)
-        size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), dot(e, v)
+        size, axial_part = self.push * action * c / (1 + eps * (c * c)).sqrt(), dot(e, v)
         share = self.radius / distance
-        return [-size * a - self.drag * rho * (w - share * (w - along * a)) for a, w in zip(e, v, strict=True)]
+        return [-size * a - self.drag * rho * (w - share * (w - axial_part * a)) for a, w in zip(e, v, strict=True)]
 
     def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
         """Return ∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
@@ -252,21 +252,21 @@ class Sphere:
         action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
         fading = bump_slope(z / d_beta(self.par), self.par.h) / d_beta(self.par) * c / stretch.sqrt()
         size = self.push * action * c / stretch.sqrt()
-        steeper = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
+        slope_change = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
         by_x, by_v = ([[arb(0)] * len(x) for _ in x] for _ in range(2))
         for k, h in product(range(len(x)), repeat=2):
             a, w, b, u = e[k], v[k], e[h], v[h]
             slip, aside = w - share * (w - along * a), int(k == h) - a * b
             turn = share / distance * (b * (w - a * along) + aside * along + a * (u - b * along))
-            by_x[k][h] = -steeper * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn)
+            by_x[k][h] = -slope_change * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn)
             by_v[k][h] = -self.drag * rho * ((1 - share) * int(k == h) + share * a * b)
         return by_x, by_v
 
     def _direction(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
         """Return the unit vector e from the centre, and its derivative D."""
-        away = [a - b for a, b in zip(x, self.centre, strict=True)]
-        distance = norm2(away).sqrt()
-        return [a / distance for a in away], distance
+        displacement = [a - b for a, b in zip(x, self.centre, strict=True)]
+        distance = norm2(displacement).sqrt()
+        return [a / distance for a in displacement], distance
 
 
 def piece_of(z: arb, cutoff: arb, h: Any) -> int | None:

@@ -38,8 +38,8 @@ def round_down(x: arb | fmpq, digits: int) -> fmpq:
     """Return the largest decimal of `digits` significant digits certainly not above x."""
     low = fraction(x) if isinstance(x, fmpq) else _end(x.lower())
     unit = Fraction(10) ** (_exponent(abs(low)) + 1 - digits)
-    rounded = floor(low / unit) * unit
-    return fmpq(rounded.numerator, rounded.denominator)
+    rounded_value = floor(low / unit) * unit
+    return fmpq(rounded_value.numerator, rounded_value.denominator)
 
 
 def round_up(x: arb | fmpq, digits: int) -> fmpq:
@@ -76,8 +76,8 @@ def plus_minus(x: arb, digits: int) -> str:
 def decimal(x: Fraction | fmpq) -> str:
     """Return a finite decimal as text, without rounding."""
     x = fraction(x) if isinstance(x, fmpq) else x
-    places = next(k for k in range(400) if (x * 10**k).denominator == 1)
-    return _shifted(int(x * 10**places), places)
+    digit_count = next(k for k in range(400) if (x * 10**k).denominator == 1)
+    return _shifted(int(x * 10**digit_count), digit_count)
 
 
 def _end(x: arb) -> Fraction:

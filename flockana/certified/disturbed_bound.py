@@ -98,15 +98,15 @@ def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) returns it")
     basin.ensure_unedited()
-    size = Fraction(ensure_nonnegative("disturbance", disturbance))
+    disturbance_bound = Fraction(ensure_nonnegative("disturbance", disturbance))
     with ctx.workdps(DIGITS):
         share, rate = _share(basin), 2 * ball(basin.proof.decay.rate)
         gain = (2 * (1 + share * share) / (1 - share)).sqrt() / rate  # √F <= W gain in the end
         largest = ((1 - share) * ball(basin.level)).sqrt() / gain
-        excess = (ball(size) * gain) ** 2 / (1 - share)
+        excess = (ball(disturbance_bound) * gain) ** 2 / (1 - share)
         bounds = (excess, (2 * excess / ball(basin.curvature)).sqrt(), (2 * excess).sqrt())
         up = (fraction(round_up(x, _STATED)) if x > 0 else Fraction(0) for x in bounds)
-        return UltimateBound(basin, size, fraction(round_down(largest, _STATED)), *up)
+        return UltimateBound(basin, disturbance_bound, fraction(round_down(largest, _STATED)), *up)
 
 
 def _share(basin: Basin) -> arb:

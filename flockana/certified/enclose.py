@@ -105,14 +105,14 @@ def enclose(
     around = tuple(ensure_nonnegative("radius", r) for r in radii)
     if isinstance(order, bool) or not isinstance(order, int) or not 4 <= order <= 40:
         raise ArgumentError(f"order = {order!r}: expected a whole number from 4 to 40")
-    steps, started = ensure_count("steps", steps), time.perf_counter()
+    steps, start_time = ensure_count("steps", steps), time.perf_counter()
     with ctx.workprec(BITS):
-        march = _March(flow_of(law, *q0.shape), law.alpha.d, order, **limits)
+        marcher = _March(flow_of(law, *q0.shape), law.alpha.d, order, **limits)
         widths = [arb(r) for r in around for _ in range(q0.size)]
         start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], widths)
-        times, sets, taken_steps, status, message = _collected(march, start, span, steps, progress)
+        times, sets, taken_steps, status, message = _collected(marcher, start, span, steps, progress)
     stats = {"order": order, **limits, "radius": around, "steps": len(taken_steps)}
-    stats["seconds"] = time.perf_counter() - started
+    stats["seconds"] = time.perf_counter() - start_time
     return sealed(Tube(law, q0, p0, times, sets, taken_steps, status, message, stats))
 
 
@@ -154,42 +154,42 @@ class _March:
 
     def steps(self, start: StateSet, span: tuple[float, float]) -> Iterator[tuple[float, Step | str]]:
         """Yield each proved step with its final set; yield a message where a proof fails."""
-        flow, t, current, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
+        flow, t, current_set, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
         while t < span[1]:
-            end, step, crosses = self._step(t, current, min(target_step, span[1] - t), span[1])
+            end, step, crossing_switch = self._step(t, current_set, min(target_step, span[1] - t), span[1])
             if step is None:
-                yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current)}"
+                yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current_set)}"
                 return
             if not self._width(step) <= self.widest * self.length:
-                where = _where(flow, current)
-                yield t, f"the set is wider than {2.0 * self.widest:g} d at t = {end:.6g}, where {where}"
+                place_text = _where(flow, current_set)
+                yield t, f"the set is wider than {2.0 * self.widest:g} d at t = {end:.6g}, where {place_text}"
                 return
-            if not crosses:
+            if not crossing_switch:
                 growth = _factor(step.blur / _BLUR, variation_order(self.order))
                 target_step = (end - t) * max(min(_factor(self._excess(step), self.order), growth, _GROW), 0.3)
-            t, current = end, step.after
+            t, current_set = end, step.after
             yield t, step
 
     def _step(self, t: float, current: StateSet, most: float, last: float) -> tuple[float, Step | None, bool]:
         """Return the end of the next step, the step if a proof succeeds, and whether a switch is crossed."""
         flow, shortest, end = self.flow, _SHORTEST / self.flow.pace, t
         step: Step | None = None
-        length, crosses = _proposed(flow, current, most)
+        distance, crossing_switch = _proposed(flow, current, most)
         for _ in range(_TRIES):
-            if not crosses and length < shortest:
-                length, crosses = shortest, True
-            end = min(t + length, last)
+            if not crossing_switch and distance < shortest:
+                distance, crossing_switch = shortest, True
+            end = min(t + distance, last)
             if end <= t:
                 break
             h = arb(end) - arb(t)
-            if crosses:
+            if crossing_switch:
                 step = crossing_step(flow, arb(t), h, current)
             else:
                 step = taylor_step(flow, arb(t), h, current, self.order)
-            if step is not None and (crosses or (step.blur < _BLUR**0.5 and self._excess(step) < _FAR)):
+            if step is not None and (crossing_switch or (step.blur < _BLUR**0.5 and self._excess(step) < _FAR)):
                 break
-            length *= _SHRINK
-        return end, step, crosses
+            distance *= _SHRINK
+        return end, step, crossing_switch
 
     def _width(self, step: Step) -> float:
         """Return the largest half-width of the set after a step."""
@@ -209,10 +209,10 @@ def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, boo
     """Return the length of the next step, proposed in floating point, and whether it crosses a switch."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
     (q, p), radii = state[:, 0].reshape(2, flow.n, flow.m), state[:, 1].reshape(2, -1)
-    wide, blown = (2.0 * sqrt(flow.m) * float(part.max()) for part in radii)
+    wide, velocity_width = (2.0 * sqrt(flow.m) * float(half_vector.max()) for half_vector in radii)
     h, crossing = longest, 0.0
     for gap, speed in _gaps(flow, q, p):
-        fastest = abs(speed) + blown
+        fastest = abs(speed) + velocity_width
         if abs(gap) <= 1.5 * wide + 2.0 * _SHORTEST * fastest / flow.pace:
             crossing = max(crossing, (wide + abs(gap)) / max(fastest, 1e-3 * wide * flow.pace, 1e-300))
         elif gap * speed < 0.0:
@@ -228,10 +228,10 @@ def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
     """Yield the distance of each pair and agent from a switch, and the rate at which it grows."""
     switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):
-        apart, relative = q[j] - q[i], p[j] - p[i]
-        length = float(np.linalg.norm(apart))
-        speed = float(apart @ relative) / length if length > 0.0 else float(np.linalg.norm(relative))
-        yield from ((length - switch, speed) for switch in switches)
+        displacement, relative = q[j] - q[i], p[j] - p[i]
+        distance = float(np.linalg.norm(displacement))
+        speed = float(displacement @ relative) / distance if distance > 0.0 else float(np.linalg.norm(relative))
+        yield from ((distance - switch, speed) for switch in switches)
     for term in flow.terms:
         for x, v in zip(q, p, strict=True):
             yield from term.switches(x, v)
@@ -241,9 +241,9 @@ def _where(flow: Flow, current: StateSet) -> str:
     """Return a sentence naming the pairs and agents near a switching distance."""
     names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
     names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
-    about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]
+    switch_names = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]
     width = max(float(x.rad()) for x in current.hull)
     if not isfinite(width):
         return "nothing is known of it any more"
-    others = f", and {', '.join(about[:3])} may be about a switching distance" if about else ""
-    return f"its half-width is {width:.2g}{others}"
+    suspects_text = f", and {', '.join(switch_names[:3])} may be about a switching distance" if switch_names else ""
+    return f"its half-width is {width:.2g}{suspects_text}"

@@ -28,8 +28,8 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
     with ctx.workprec(BITS):
         area = arb(exact(law.alpha.unit)) ** 2
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
-        far = sum(((1 + norm2(minus(x, start)) / area).sqrt() - 1 for x in q), arb(0))
-        total = pair_energy(law, q) + arb(exact(law.gains.c1_gamma)) * area * far
+        distance_sum = sum(((1 + norm2(minus(x, start)) / area).sqrt() - 1 for x in q), arb(0))
+        total = pair_energy(law, q) + arb(exact(law.gains.c1_gamma)) * area * distance_sum
         for term in sphere_terms(law):
             total += term.stiffness * sum((term.beta.potential(square(term.clearance(x))) for x in q), arb(0))
         return total + sum(map(norm2, p), arb(0)) / 2
@@ -48,15 +48,15 @@ def work(tube: Tube) -> arb:
     with ctx.workprec(BITS):
         flow, total = flow_of(tube.law, tube.n, tube.m), arb(0)
         for k, (start, end) in enumerate(zip(tube.t[:-1], tube.t[1:], strict=True)):
-            h, during = arb(end) - arb(start), tube.taken[k].during
-            pieces = flow.pieces(during)
+            h, state_range = arb(end) - arb(start), tube.taken[k].during
+            pieces = flow.pieces(state_range)
             if Piece.SWITCH in pieces:
-                total += h * sum(flow.powers(during, pieces), arb(0))
+                total += h * sum(flow.powers(state_range, pieces), arb(0))
                 continue
-            first = _rate(flow, arb(start), tube.boxes[k], pieces)
-            last = _rate(flow, arb(start) + hull(arb(0), h), during, pieces)
-            total += sum((c * h ** (j + 1) / (j + 1) for j, c in enumerate(first[:_ORDER])), arb(0))
-            total += last[_ORDER] * h ** (_ORDER + 1) / (_ORDER + 1)
+            first_item = _rate(flow, arb(start), tube.boxes[k], pieces)
+            last_rate = _rate(flow, arb(start) + hull(arb(0), h), state_range, pieces)
+            total += sum((c * h ** (j + 1) / (j + 1) for j, c in enumerate(first_item[:_ORDER])), arb(0))
+            total += last_rate[_ORDER] * h ** (_ORDER + 1) / (_ORDER + 1)
         return total
 
 
@@ -103,8 +103,8 @@ def _shortest_bound(alpha: Any) -> fmpq | None:
     if not pair.c_star > pair.far:
         return None
     for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if pair.potential(square(ball(middle))) > pair.far else (low, middle)
+        midpoint = (low + high) / 2
+        low, high = (midpoint, high) if pair.potential(square(ball(midpoint))) > pair.far else (low, midpoint)
     return low
 
 
@@ -114,11 +114,11 @@ def _largest_clique(alpha: Any, m: int) -> int | None:
     if not shortest:
         return None
     ratio = ball(exact(alpha.r) / shortest)
-    packed = floor(float(((1 + 2 * ratio * ball(fmpq(m, 2 * (m + 1))).sqrt()) ** m).upper()) * (1 + 2.0**-40))
+    clique_limit = floor(float(((1 + 2 * ratio * ball(fmpq(m, 2 * (m + 1))).sqrt()) ** m).upper()) * (1 + 2.0**-40))
     if m == 1:
-        return min(packed, ceil(float(ratio.upper()) * (1 + 2.0**-40)))
+        return min(clique_limit, ceil(float(ratio.upper()) * (1 + 2.0**-40)))
     reachable = [points - 1 for points, least_ratio in _least_ratios(m).items() if ratio < least_ratio]
-    return min([packed, *reachable])
+    return min([clique_limit, *reachable])
 
 
 def _least_ratios(m: int) -> dict[int, arb]:

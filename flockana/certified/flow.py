@@ -55,11 +55,11 @@ class Flow:
         """Return u(t, q, p), coordinate by coordinate."""
         (q, p), m = self.split(state), self.m
         u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
-        for i, j, piece, apart, relative in self._pairs(q, p, pieces):
-            stress, adjacency = self.pair.pair(norm2(apart), piece)
+        for i, j, piece, displacement, relative in self._pairs(q, p, pieces):
+            stress, adjacency = self.pair.pair(norm2(displacement), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
-                force = stress * apart[k] + adjacency * relative[k]
+                force = stress * displacement[k] + adjacency * relative[k]
                 u[i][k], u[j][k] = u[i][k] + force, u[j][k] - force
         for k, i, piece in self._agents(pieces):
             u[i] = [a + b for a, b in zip(u[i], self.terms[k].force(t, q[i], p[i], piece), strict=True)]
@@ -69,8 +69,8 @@ class Flow:
         """Return the parts of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² of all pairs, then the power of each term."""
         q, p = self.split(state)
         heat, powers = 0 * q[0][0], [0 * q[0][0] for _ in self.terms]
-        for _, _, piece, apart, relative in self._pairs(q, p, pieces):
-            adjacency = self.pair.pair(norm2(apart), piece)[1]
+        for _, _, piece, displacement, relative in self._pairs(q, p, pieces):
+            adjacency = self.pair.pair(norm2(displacement), piece)[1]
             if isinstance(adjacency, arb):
                 adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
             heat = heat + adjacency * norm2(relative)
@@ -82,16 +82,16 @@ class Flow:
         """Return the derivatives (∂u/∂q, ∂u/∂p) as square tables; entries without dependence are the number 0."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
-        for i, j, piece, apart, relative in self._pairs(q, p, pieces):
-            s2 = norm2(apart)
-            (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
+        for i, j, piece, displacement, relative in self._pairs(q, p, pieces):
+            s2 = norm2(displacement)
+            (stress, adjacency), (weight_slope, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
-            bend, fade = self.stiffness * bend, self.damping * fade
-            way = [2 * (bend * x + fade * w) for x, w in zip(apart, relative, strict=True)]
+            weight_slope, fade = self.stiffness * weight_slope, self.damping * fade
+            rate_terms = [2 * (weight_slope * x + fade * w) for x, w in zip(displacement, relative, strict=True)]
             for k in range(m):
                 _couple(by_p, m, i, j, k, k, drag)
                 for h in range(m):
-                    _couple(by_q, m, i, j, k, h, way[k] * apart[h] + (stress if k == h else 0))
+                    _couple(by_q, m, i, j, k, h, rate_terms[k] * displacement[h] + (stress if k == h else 0))
         for number, i, piece in self._agents(pieces):
             blocks = self.terms[number].slopes(t, q[i], p[i], piece)
             for table, block in zip((by_q, by_p), blocks, strict=True):
@@ -102,8 +102,8 @@ class Flow:
     def _pairs(self, q: Any, p: Any, pieces: Pieces) -> Iterator[tuple[int, int, Piece, list[Any], list[Any]]]:
         """Return the pairs in range with their pieces, relative positions and velocities."""
         pairs = zip(combinations(range(self.n), 2), pieces, strict=False)
-        near = ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
-        return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near)
+        near_pairs = ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
+        return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near_pairs)
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
         """Return (number of the term, agent, piece) for all agents on which terms of single agents act."""
@@ -112,30 +112,30 @@ class Flow:
 
     def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
         """Return Taylor coefficients 0 to `order` of the solutions from a box, at a ball of times."""
-        half = self.n * self.m
+        half_dimension = self.n * self.m
         path = [[x] for x in state]
         for k in range(order):
             with series_length(k + 1):
                 series = [arb_series(coefficients) for coefficients in path]
                 u = self.input(arb_series([t, 1]), series, pieces)
-            for x, v, a in zip(path[:half], path[half:], u, strict=True):
+            for x, v, a in zip(path[:half_dimension], path[half_dimension:], u, strict=True):
                 x.append(v[k] / (k + 1))
                 v.append(a[k] / (k + 1))
         return path
 
     def variation(self, t: arb, path: Sequence[Sequence[arb]], order: int, pieces: Pieces) -> list[arb_mat]:
         """Return Taylor coefficients 0 to `order` of ∂x(t + s)/∂x(t) along a path."""
-        half = self.n * self.m
+        half_dimension = self.n * self.m
         with series_length(order):
             series = [arb_series(coefficients[:order]) for coefficients in path]
             by_q, by_p = self.slopes(arb_series([t, 1]), series, pieces)
             slopes = [(_coefficient(by_q, k), _coefficient(by_p, k)) for k in range(order)]
-        rows = identity(2 * half).tolist()
-        upper, lower = [arb_mat(rows[:half])], [arb_mat(rows[half:])]
+        rows = identity(2 * half_dimension).tolist()
+        upper, lower = [arb_mat(rows[:half_dimension])], [arb_mat(rows[half_dimension:])]
         for k in range(order):
-            rate = arb_mat(half, 2 * half)
-            for j, (of_q, of_p) in enumerate(slopes[: k + 1]):
-                rate += of_q * upper[k - j] + of_p * lower[k - j]
+            rate = arb_mat(half_dimension, 2 * half_dimension)
+            for j, (position_slope, velocity_slope) in enumerate(slopes[: k + 1]):
+                rate += position_slope * upper[k - j] + velocity_slope * lower[k - j]
             upper.append(lower[k] * (arb(1) / (k + 1)))
             lower.append(rate * (arb(1) / (k + 1)))
         return [arb_mat(a.tolist() + b.tolist()) for a, b in zip(upper, lower, strict=True)]
@@ -161,8 +161,8 @@ class Flow:
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
     """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction on j."""
-    for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
-        table[row * m + k][other * m + h] += value if sign > 0 else -value
+    for row, partner, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
+        table[row * m + k][partner * m + h] += value if sign > 0 else -value
 
 
 def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
@@ -210,5 +210,5 @@ def sphere_terms(law: Any, number: Callable[[Any], fmpq] = exact) -> tuple[Spher
     """Return the terms of a law's obstacles at the present precision."""
     gains: Any = law.gains
     beta, pull, drag = PairNumbers.of_beta(law.beta, number), arb(number(gains.c1_beta)), arb(number(gains.c2_beta))
-    places = [(tuple(arb(number(y)) for y in one.centre), arb(number(one.radius))) for one in law.obstacles]
-    return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)
+    sphere_places = [(tuple(arb(number(y)) for y in one.centre), arb(number(one.radius))) for one in law.obstacles]
+    return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in sphere_places)

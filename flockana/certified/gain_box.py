@@ -91,18 +91,18 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
         raise ArgumentError(f"target = {format_value(target)}: expected one of constant velocity, which it reports")
     if spread >= 1.0:
         raise ArgumentError(f"spread = {spread:g}: expected a share below 1")
-    rest = find_equilibrium(law, q)
-    if not (rest.success and rest.residual <= RESIDUAL):
+    equilibrium = find_equilibrium(law, q)
+    if not (equilibrium.success and equilibrium.residual <= RESIDUAL):
         return GainBox("inconclusive")
-    proof = _proved(law, np.asarray(rest.q), spread)
+    proof = _proved(law, np.asarray(equilibrium.q), spread)
     if isfinite(proof):
         return GainBox("verified", moved=proof)
     for share in product((1.0 - spread, 1.0 + spread), repeat=3):
         shares = zip(GAINS, (*share, 1.0 - spread), strict=True)
         gains: dict[str, Any] = {name: factor * np.asarray(getattr(law.gains, name))[()] for name, factor in shares}
-        other = replace(law, gains=replace(law.gains, **gains))
-        there = find_equilibrium(other, rest.q)
-        if there.success and any(mode.decay_rate < -mode.error for mode in linearise(other, there).modes):
+        changed_law = replace(law, gains=replace(law.gains, **gains))
+        there = find_equilibrium(changed_law, equilibrium.q)
+        if there.success and any(mode.decay_rate < -mode.error for mode in linearise(changed_law, there).modes):
             return GainBox("refuted", tuple(float(np.min(x)) for x in gains.values()))
     return GainBox("inconclusive")
 
@@ -110,27 +110,27 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
 def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
     """Return the share by which link lengths may change in the proved box of gains; NaN without a proof."""
     unit: float = getattr(law.alpha, "unit", 1.0)
-    rescaled, nothing = in_lengths_of_unit(law), float("nan")
-    gains, (n, m) = rescaled.gains, q.shape
+    rescaled_law, no_number = in_lengths_of_unit(law), float("nan")
+    gains, (n, m) = rescaled_law.gains, q.shape
     pull, drag = (np.broadcast_to(x, q.shape)[:, 0].tolist() for x in (gains.pull, gains.drag))
     if not (gains.c1_alpha > 0.0 and gains.c2_alpha >= 0.0 and min(pull) > 0.0 and min(drag) > 0.0):
-        return nothing
+        return no_number
     y = (q - (0.0 if law.target is None else law.target.position(0.0))) / unit
     low, high = (ball(1 - side * fmpq(*spread.as_integer_ratio())) for side in (1, -1))
     kappa = [(ball(x) * low / high / gains.c1_alpha).union(ball(x) * high / low / gains.c1_alpha) for x in pull]
-    structure = Structure(AlphaParameters.of(rescaled.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
+    structure = Structure(AlphaParameters.of(rescaled_law.alpha), fmpq(1), fmpq(0), fmpq(0), fmpq(0), n, m)
     box = _enclose(structure, y, kappa)
     if box is None or not _is_stiff(structure, box, min((x.lower() for x in kappa), key=float)):
-        return nothing
+        return no_number
     widest = max(float(x.rad()) for x in box)
     return float(np.nextafter(2.0 * np.sqrt(m) * widest * unit, np.inf))
 
 
 def _turns(y: FloatArray) -> FloatArray:
     """Return orthonormal rotations about the γ-agent, as columns of shape (n m, k)."""
-    turns = np.array([(y @ turn.T).ravel() for turn in generators(y.shape[1])]).reshape(-1, y.size)
-    basis, sizes, _ = np.linalg.svd(turns.T, full_matrices=False)
-    return np.asarray(basis[:, sizes > _ON_A_LINE * sizes.max(initial=0.0)])
+    turns = np.array([(y @ rotation.T).ravel() for rotation in generators(y.shape[1])]).reshape(-1, y.size)
+    basis, singular_values, _ = np.linalg.svd(turns.T, full_matrices=False)
+    return np.asarray(basis[:, singular_values > _ON_A_LINE * singular_values.max(initial=0.0)])
 
 
 def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb] | None:
@@ -152,26 +152,26 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
         ]
         forces = [f + own_force for f, own_force in zip(structure.gradient(x[:size]), outer, strict=True)]
         forces[:m] = [sum(outer[a::m], arb(0)) for a in range(m)]  # of all agents, to which pairs add nothing
-        means = [sum((x[m * i + a] for i in range(n)), arb(0)) for a in range(m)]
-        fixed = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
-        return [*forces, *means, *fixed]
+        mean_values = [sum((x[m * i + a] for i in range(n)), arb(0)) for a in range(m)]
+        gauge_rows = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
+        return [*forces, *mean_values, *gauge_rows]
 
     def slope(x: Any) -> arb_mat:
-        whole = [[arb(0)] * (size + m + k) for _ in range(size + m + k)]
+        full_matrix = [[arb(0)] * (size + m + k) for _ in range(size + m + k)]
         for i, row in enumerate(structure.hessian(x[:size]).tolist()):
-            a, into = i % m, {i % m, i}  # the first rows are those of all agents
+            a, target_columns = i % m, {i % m, i}  # the first rows are those of all agents
             if i >= m:
-                whole[i][:size] = row
-            for r in into:
-                whole[r][i] += weights[i]
-                whole[r][size + a] += weights[i]
-            whole[size + a][i] = arb(1)
+                full_matrix[i][:size] = row
+            for r in target_columns:
+                full_matrix[r][i] += weights[i]
+                full_matrix[r][size + a] += weights[i]
+            full_matrix[size + a][i] = arb(1)
             for j in range(k):
-                for r in into:
-                    whole[r][size + m + j] += float(turns[i, j])
-                whole[size + m + j][i] = arb(float(turns[i, j]))
-                whole[size + m + j][size + a] += float(turns[i, j])
-        return arb_mat(whole)
+                for r in target_columns:
+                    full_matrix[r][size + m + j] += float(turns[i, j])
+                full_matrix[size + m + j][i] = arb(float(turns[i, j]))
+                full_matrix[size + m + j][size + a] += float(turns[i, j])
+        return arb_mat(full_matrix)
 
     solution = _grow_box(equations, slope, [arb(x) for x in start])
     if solution is None:
@@ -217,21 +217,21 @@ def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
         loss = arb(loss.upper())
         rows = enumerate(block)
         blocks.append((i, j, [[x.mid() - (loss if a == b else 0) for b, x in enumerate(row)] for a, row in rows]))
-    whole = structure.assembled(blocks).tolist()
+    full_hessian = structure.assembled(blocks).tolist()
     form = arb_mat(
         [
-            [whole[i][j] + least * ((i == j) - ball(fmpq(int(i % m == j % m), n))) for j in range(m, n * m)]
+            [full_hessian[i][j] + least * ((i == j) - ball(fmpq(int(i % m == j % m), n))) for j in range(m, n * m)]
             for i in range(m, n * m)
         ]
     )
     turns = [[x - t[k % m] for k, x in enumerate(t)][m:] for t in structure.rotation_tangents(z)]
-    tie, lost = arb(max(float(abs(entry).upper()) for entry in form.entries())), arb(0)
-    for turn in turns:
-        size = arb(sum((x.mid() ** 2 for x in turn), arb(0)).mid())
+    tie_bound, rounding_loss = arb(max(float(abs(entry).upper()) for entry in form.entries())), arb(0)
+    for rotation in turns:
+        size = arb(sum((x.mid() ** 2 for x in rotation), arb(0)).mid())
         if not size > 0:
             continue
-        middle = column([x.mid() for x in turn])
-        form = form + tie / size * middle * middle.transpose()
-        lost += tie / size * sum((x.rad() ** 2 for x in turn), arb(0))
+        midpoint_column = column([x.mid() for x in rotation])
+        form = form + tie_bound / size * midpoint_column * midpoint_column.transpose()
+        rounding_loss += tie_bound / size * sum((x.rad() ** 2 for x in rotation), arb(0))
     bound = least_eigenvalue(form)
-    return bound is not None and bool(bound > lost)
+    return bound is not None and bool(bound > rounding_loss)

@@ -42,8 +42,8 @@ def bump(z: arb, h: Any) -> arb:
 
 def bump_slope(z: arb, h: Any) -> arb:
     """Return ρ_h'(z), continuous: −π sin(π (z − h)/(1 − h))/(2 (1 − h)) on [h, 1], 0 elsewhere."""
-    rest = 1 - ball(h)
-    return -arb.pi() / (2 * rest) * clamp((ball(z) - ball(h)) / rest).sin_pi()
+    taper_width = 1 - ball(h)
+    return -arb.pi() / (2 * taper_width) * clamp((ball(z) - ball(h)) / taper_width).sin_pi()
 
 
 def shift(a: Any, b: Any) -> arb:
@@ -94,8 +94,8 @@ class _Action:
     def slope(self, z: arb) -> arb:
         """Return the action's derivative, which is continuous."""
         x = z / self.cutoff
-        rising = self.factor * sigma_1_slope(z + self.offset)
-        return bump_slope(x, self.h) / self.cutoff * self._smooth(z) + bump(x, self.h) * rising
+        rising_slope = self.factor * sigma_1_slope(z + self.offset)
+        return bump_slope(x, self.h) / self.cutoff * self._smooth(z) + bump(x, self.h) * rising_slope
 
     def _smooth(self, z: arb) -> arb:
         return self.factor * sigma_1(z + self.offset) + self.level
@@ -125,9 +125,9 @@ class _Action:
     def _from_knee(self, z: arb) -> arb:
         """Return the integral of the action from h times the cutoff: closed form below, enclosed by Arb above."""
         knee = self.h * self.cutoff
-        before = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
-        after = arb(0) if z <= knee else integrate(self._on_taper, knee, z.max(knee).min(self.cutoff))
-        return before + after
+        inner_part = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
+        outer_part = arb(0) if z <= knee else integrate(self._on_taper, knee, z.max(knee).min(self.cutoff))
+        return inner_part + outer_part
 
     def _closed(self, z: arb) -> arb:
         return self.factor * (1 + square(z + self.offset)).sqrt() + self.level * z

@@ -51,13 +51,13 @@ def least_eigenvalue(matrix: arb_mat) -> arb | None:
     """Return a positive lower bound of the eigenvalues of the matrices in the balls; None if there is none."""
     # With Q any matrix, here approximate eigenvectors, Gershgorin's discs bound the eigenvalues of QᵀAQ by some g. If g
     # > 0, Q is invertible, and ⟨Qx, A Qx⟩ >= g |x|² >= g |Qx|²/|QᵀQ|: the eigenvalues of A are at least g/|QᵀQ|.
-    size = matrix.nrows()
+    dimension = matrix.nrows()
     middle = np.array([[float(entry.mid()) for entry in row] for row in matrix.tolist()])
-    q = arb_mat(size, size, [arb(float(x)) for x in np.linalg.eigh((middle + middle.T) / 2)[1].ravel()])
+    q = arb_mat(dimension, dimension, [arb(float(x)) for x in np.linalg.eigh((middle + middle.T) / 2)[1].ravel()])
     discs = (q.transpose() * matrix * q).tolist()
     radii = (sum(map(abs, [*row[:i], *row[i + 1 :]]), arb(0)) for i, row in enumerate(discs))
-    lowest = arb(min((row[i] - radius).lower() for i, (row, radius) in enumerate(zip(discs, radii, strict=True))))
-    if not lowest > 0:
+    lowest_value = arb(min((row[i] - radius).lower() for i, (row, radius) in enumerate(zip(discs, radii, strict=True))))
+    if not lowest_value > 0:
         return None
-    length = arb(max(sum(map(abs, row), arb(0)).upper() for row in (q.transpose() * q).tolist()))
-    return (lowest / length).lower()
+    row_bound = arb(max(sum(map(abs, row), arb(0)).upper() for row in (q.transpose() * q).tolist()))
+    return (lowest_value / row_bound).lower()

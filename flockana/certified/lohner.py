@@ -38,10 +38,10 @@ class StateSet:
     @classmethod
     def box(cls, centre: Sequence[arb], radius: Sequence[arb]) -> StateSet:
         """Return the set of all states in a box."""
-        middle = tuple(x.mid() for x in centre)
-        spread = tuple(x - y + arb(0, r.upper()) for x, y, r in zip(centre, middle, radius, strict=True))
-        size = len(middle)
-        return cls(middle, identity(size), spread, identity(size), (arb(0),) * size)
+        midpoint = tuple(x.mid() for x in centre)
+        spread = tuple(x - y + arb(0, r.upper()) for x, y, r in zip(centre, midpoint, radius, strict=True))
+        dimension = len(midpoint)
+        return cls(midpoint, identity(dimension), spread, identity(dimension), (arb(0),) * dimension)
 
     @property
     def hull(self) -> list[arb]:
@@ -76,16 +76,16 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
     enclosure = _enclosed(flow, t + span, h, reach, order, pieces)
     if enclosure is None:
         return None
-    during, remainder = enclosure
-    variation, tail_of_it = _variation(flow, t, h, path, during, pieces, variation_order(order))
+    state_range, remainder = enclosure
+    variation, tail_enclosure = _variation(flow, t, h, path, state_range, pieces, variation_order(order))
     point = flow.taylor(t, before.centre, order - 1, pieces)
     image = [_at(coefficients, h) + rest for coefficients, rest in zip(point, remainder, strict=True)]
-    after = _moved(before, image, variation, flow.pace)
-    if not all(x.is_finite() for x in after.hull):
+    next_set = _moved(before, image, variation, flow.pace)
+    if not all(x.is_finite() for x in next_set.hull):
         return None
     tail = [hull(arb(0), x) for x in remainder]
     relative, deviations = _seen(flow, lambda weights: _combined(weights, path, tail, span))
-    return Step(after, during, relative, deviations, size(flow, remainder), _blur(flow, tail_of_it))
+    return Step(next_set, state_range, relative, deviations, size(flow, remainder), _blur(flow, tail_enclosure))
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
@@ -99,11 +99,11 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
     rate = flow.rate(t, before.centre, flow.pieces(before.centre))
     image = [x + h * v + rest for x, v, rest in zip(before.centre, rate, remainder, strict=True)]
     slope = identity(len(box)) + flow.jacobian(t, box, flow.pieces(box)) * h
-    after = _moved(before, image, slope, flow.pace)
-    if not all(x.is_finite() for x in after.hull):
+    next_set = _moved(before, image, slope, flow.pace)
+    if not all(x.is_finite() for x in next_set.hull):
         return None
     weighed = _seen(flow, lambda weights: sum((weight * during[k] for k, weight in weights.items()), arb(0)))
-    return Step(after, during, *weighed, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
+    return Step(next_set, during, *weighed, size(flow, [arb(x.rad()) for x in remainder]), _blur(flow, slope))
 
 
 def _enclosed(
@@ -120,11 +120,11 @@ def _enclosed(
         last = [coefficients[order] for coefficients in flow.taylor(times, box, order, pieces)]
         if not all(x.is_finite() for x in last):
             return None
-        power, whole = h**order, hull(arb(0), h**order)
-        image = [x + whole * rest for x, rest in zip(reach, last, strict=True)]
+        power, power_range = h**order, hull(arb(0), h**order)
+        image = [x + power_range * remainder for x, remainder in zip(reach, last, strict=True)]
         if all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
-            return image, [power * rest for rest in last]
-        growth = [a + 2 * arb((whole * rest).abs_upper()) for a, rest in zip(growth, last, strict=True)]
+            return image, [power * remainder for remainder in last]
+        growth = [a + 2 * arb((power_range * remainder).abs_upper()) for a, remainder in zip(growth, last, strict=True)]
     return None
 
 
@@ -146,7 +146,7 @@ def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | 
 def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
     """Return the margin by which a candidate box is enlarged: an eighth of its radius, at least a tiny number."""
     half = len(box) // 2
-    far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
+    far, fast = (arb(max(x.abs_upper() for x in half_vector)) for half_vector in (box[:half], box[half:]))
     margins = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
     return [arb((x.rad() / 8 + margin).upper()) + arb(2) ** -500 for x, margin in zip(box, margins, strict=True)]
 
@@ -160,12 +160,12 @@ def _variation(
     # identity by more than e^{Lh} − 1.
     span = hull(arb(0), h)
     polynomial = flow.variation(t, path, order - 1, pieces)
-    there = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
+    remainder = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
     rows = flow.jacobian(t + span, during, pieces).tolist()
     steepest = arb(max(sum((abs(x) for x in row), arb(0)).upper() for row in rows))
-    off, size = arb(0, ((steepest * h).exp() - 1).upper()), len(during)
-    between = identity(size) + arb_mat(size, size, [off] * size**2)
-    total = tail = there * between * h**order
+    growth_radius, dimension = arb(0, ((steepest * h).exp() - 1).upper()), len(during)
+    growth_enclosure = identity(dimension) + arb_mat(dimension, dimension, [growth_radius] * dimension**2)
+    total = tail = remainder * growth_enclosure * h**order
     for k, coefficients in enumerate(polynomial):
         total = total + coefficients * h**k
     return total, tail
@@ -174,13 +174,13 @@ def _variation(
 def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
     """Return the image of a set by the mean value theorem, from its centre's image and the derivatives on the set."""
     centre = tuple(x.mid() for x in moved)
-    rest = column([x - y for x, y in zip(moved, centre, strict=True)])
+    remainder = column([x - y for x, y in zip(moved, centre, strict=True)])
     c, b = slope * before.c, slope * before.b
     exact = c.mid()
-    rest += (c - exact) * column(before.start)
+    remainder += (c - exact) * column(before.start)
     frame = _frame(b, [float(x.abs_upper()) for x in before.error], pace)
-    back = frame.inv()
-    error = (back * b) * column(before.error) + back * rest
+    inverse_frame = frame.inv()
+    error = (inverse_frame * b) * column(before.error) + inverse_frame * remainder
     return StateSet(centre, exact, before.start, frame, tuple(error.entries()))
 
 
@@ -188,15 +188,15 @@ def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
     """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set."""
     # Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it
     # does not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
-    size, widest = len(widths), max(widths)
-    weights = np.repeat((1.0, 1.0 / pace), size // 2)[:, None]
+    dimension, widest = len(widths), max(widths)
+    weights = np.repeat((1.0, 1.0 / pace), dimension // 2)[:, None]
     edges = weights * np.array([[float(x.mid()) for x in row] for row in b.tolist()])
-    scaled = edges * (np.array(widths) / widest if widest > 0.0 else 1.0)
-    if not np.isfinite(scaled).all():
-        return identity(size)
-    longest = np.argsort(-np.linalg.norm(scaled, axis=0), kind="stable")
+    scaled_edges = edges * (np.array(widths) / widest if widest > 0.0 else 1.0)
+    if not np.isfinite(scaled_edges).all():
+        return identity(dimension)
+    longest = np.argsort(-np.linalg.norm(scaled_edges, axis=0), kind="stable")
     q = np.linalg.qr(edges[:, longest])[0] / weights
-    return arb_mat(size, size, [arb(float(x)) for x in q.ravel()])
+    return arb_mat(dimension, dimension, [arb(float(x)) for x in q.ravel()])
 
 
 def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
@@ -217,7 +217,7 @@ def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: S
 def size(flow: Flow, remainder: Sequence[arb]) -> float:
     """Return the largest coordinate of a box, velocities times the law's time; for step control only."""
     half = len(remainder) // 2
-    far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
+    far, fast = (max(float(x.abs_upper()) for x in half_vector) for half_vector in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)
 
 

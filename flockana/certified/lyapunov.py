@@ -66,12 +66,12 @@ class Decay:
 def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -> tuple[fmpq, fmpq]:
     """Return the weighted net's second eigenvalue, rounded down, and its largest degree, rounded up."""
     # So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
-    away = ball(reach)
-    weakest = {pair: u.weight(square(length + away)).lower() for pair, length in lengths.items()}
-    strongest = {pair: u.weight(square((length - away).max(arb(0)))) for pair, length in lengths.items()}
+    length_change = ball(reach)
+    weakest = {pair: u.weight(square(distance + length_change)).lower() for pair, distance in lengths.items()}
+    strongest = {pair: u.weight(square((distance - length_change).max(arb(0)))) for pair, distance in lengths.items()}
     degrees = [sum((w for pair, w in strongest.items() if i in pair), arb(0)) for i in range(u.n)]
-    second = _second_eigenvalue(u.n, weakest)
-    floor = fmpq(0) if second is None else round_down(second, _DAMPING_DIGITS)
+    second_eigenvalue = _second_eigenvalue(u.n, weakest)
+    floor = fmpq(0) if second_eigenvalue is None else round_down(second_eigenvalue, _DAMPING_DIGITS)
     return floor, round_up(max(degree.upper() for degree in degrees), _DAMPING_DIGITS)
 
 
@@ -86,13 +86,13 @@ def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:
     """Return the largest exact rate α that the inequalities allow; 0 if there is none above 0."""
-    curvature, lowest, most = bounds.curvature, bounds.least, bounds.most
-    mixed = theta * bounds.surplus + (1 - theta) * curvature
-    places = eps * (theta * curvature / 2 + mixed - kappa * most / 2) / (curvature / 2 + eps * tau / 2)
-    speeds = ((1 - eps / (2 * kappa)) * lowest - eps) / (fmpq(1, 2) + eps / (2 * tau))
+    curvature, lowest_value, maximum = bounds.curvature, bounds.least, bounds.most
+    mixed_curvature = theta * bounds.surplus + (1 - theta) * curvature
+    eps_term = eps * (theta * curvature / 2 + mixed_curvature - kappa * maximum / 2) / (curvature / 2 + eps * tau / 2)
+    speeds = ((1 - eps / (2 * kappa)) * lowest_value - eps) / (fmpq(1, 2) + eps / (2 * tau))
     if not 0 <= theta <= 1 or eps * eps >= curvature:
         return fmpq(0)  # where ε > 2κ, `speeds` is below 0
-    return max(fmpq(0), min(eps * theta, places, speeds))
+    return max(fmpq(0), min(eps * theta, eps_term, speeds))
 
 
 def decay(bounds: Bounds) -> Decay:
@@ -101,29 +101,29 @@ def decay(bounds: Bounds) -> Decay:
     eps = widest * np.geomspace(_LEAST, 1.0, _STEPS)
     low, high = np.zeros_like(eps), np.minimum(eps, 2.0 * float(bounds.least))
     for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        left = _left(bounds, eps, middle) > 0.0
-        low, high = np.where(left, middle, low), np.where(left, high, middle)
-    best = int(np.argmax(low))
-    proposed = (eps[best], *(x[best] for x in _others(bounds, eps, low)))
-    eps_, theta, kappa, tau = (round_down(arb(float(x)), _CHOSEN) for x in proposed)
-    rate = round_down(rate_of(bounds, eps_, theta, kappa, tau) / 2, _DIGITS)
-    share = ball(eps_) / ball(bounds.curvature).sqrt()
-    return Decay(eps_, theta, kappa, tau, rate, round_up((1 + share) / (1 - share), _DIGITS))
+        midpoint = 0.5 * (low + high)
+        left = _left(bounds, eps, midpoint) > 0.0
+        low, high = np.where(left, midpoint, low), np.where(left, high, midpoint)
+    best_index = int(np.argmax(low))
+    proposal = (eps[best_index], *(x[best_index] for x in _others(bounds, eps, low)))
+    epsilon, theta, kappa, tau = (round_down(arb(float(x)), _CHOSEN) for x in proposal)
+    rate = round_down(rate_of(bounds, epsilon, theta, kappa, tau) / 2, _DIGITS)
+    share = ball(epsilon) / ball(bounds.curvature).sqrt()
+    return Decay(epsilon, theta, kappa, tau, rate, round_up((1 + share) / (1 - share), _DIGITS))
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the best θ, κ and τ for given ε and α; κ and τ are not positive if α is too large."""
-    curvature, surplus, lowest, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
+    curvature, surplus, cell_minima, maximum = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
-    room = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
-    tau = 2.0 * room / ((lowest * most) ** 0.5 + alpha)
-    return theta, tau * (lowest / most) ** 0.5, tau
+    margin = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
+    tau = 2.0 * margin / ((cell_minima * maximum) ** 0.5 + alpha)
+    return theta, tau * (cell_minima / maximum) ** 0.5, tau
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
     """Return the slack of the speeds' inequality; negative if the inequality fails."""
     _, kappa, tau = _others(bounds, eps, alpha)
-    lowest, sound = float(bounds.least), tau > 0.0
-    cost = 1.0 + 0.5 * lowest / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)
-    return np.where(sound, lowest - 0.5 * alpha - eps * cost, -1.0)
+    lowest_value, is_sound = float(bounds.least), tau > 0.0
+    cost = 1.0 + 0.5 * lowest_value / np.where(is_sound, kappa, 1.0) + 0.5 * alpha / np.where(is_sound, tau, 1.0)
+    return np.where(is_sound, lowest_value - 0.5 * alpha - eps * cost, -1.0)

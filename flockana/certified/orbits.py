@@ -61,12 +61,12 @@ def enclose_orbit(
     The law's parameters, unlike those of a tube, are their binary values; `budget` counts pairs, at 128 bits.
     """
     bits, left = _FIRST_BITS, float(budget)
-    best: BallOrbit | None = None
-    while best is None or (best.known < len(wanted) and left > 0.0):
+    best_orbit: BallOrbit | None = None
+    while best_orbit is None or (best_orbit.known < len(wanted) and left > 0.0):
         with ctx.workprec(bits):
-            best, left = _pass(law, t0, (q0, p0), wanted, left)
+            best_orbit, left = _pass(law, t0, (q0, p0), wanted, left)
         bits *= 2
-    return best
+    return best_orbit
 
 
 def _pass(
@@ -75,42 +75,42 @@ def _pass(
     """Return the orbit at the current precision up to the first wide ball or the budget's end, and the budget left."""
     n, m = start[0].shape
     flow, begin = flow_of(law.law, n, m, number=_binary), left + 0.0
-    h, half, t, evaluations = arb(law.dt), n * m, arb(t0), len(law.solver.b)
-    widest = np.repeat([law.scales.length, law.scales.speed], half) * _THIN
-    state = [arb(float(x)) for x in np.concatenate([each.ravel() for each in start])]
+    h, half_dimension, t, evaluations = arb(law.dt), n * m, arb(t0), len(law.solver.b)
+    widest = np.repeat([law.scales.length, law.scales.speed], half_dimension) * _THIN
+    state = [arb(float(x)) for x in np.concatenate([item.ravel() for item in start])]
     rows = np.full((len(wanted), 2, 2, n, m), np.nan)
-    finished, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
+    finished_steps, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
     while True:
-        mid, off = (np.array([float(part(x)) for x in state]) for part in (arb.mid, arb.rad))
-        if not (off <= widest).all():
+        midpoint, radii = (np.array([float(ball_part(x)) for x in state]) for ball_part in (arb.mid, arb.rad))
+        if not (radii <= widest).all():
             break
-        if k == wanted[finished]:
-            rows[finished] = np.stack([mid, off + _ROUND * np.abs(mid)]).reshape(2, 2, n, m)
-            finished += 1
-            if finished == len(wanted):
+        if k == wanted[finished_steps]:
+            rows[finished_steps] = np.stack([midpoint, radii + _ROUND * np.abs(midpoint)]).reshape(2, 2, n, m)
+            finished_steps += 1
+            if finished_steps == len(wanted):
                 break
-        state, near = _step(flow, law, t + k * h, h, state)
-        left -= cost * (near + evaluations)
+        state, near_pairs = _step(flow, law, t + k * h, h, state)
+        left -= cost * (near_pairs + evaluations)
         if left <= 0.0:
             break
         k += 1
     parts = (rows[:, 0, 0], rows[:, 0, 1], rows[:, 1, 0], rows[:, 1, 1])
-    return BallOrbit(*parts, finished, 1.0 - max(left, 0.0) / begin, ctx.prec), left
+    return BallOrbit(*parts, finished_steps, 1.0 - max(left, 0.0) / begin, ctx.prec), left
 
 
 def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
     """Return the state after one step of the method, and how many pairs were evaluated."""
     half, slopes, count, solver = flow.n * flow.m, list[list[arb]](), 0, law.solver
     for row, s in zip(solver.a, (sum(row) for row in solver.a), strict=True):
-        there = _moved(state, h, row, slopes)
-        pieces, near = _pieces(flow, there, law.law.alpha.r)
-        slopes.append([*there[half:], *flow.input(t + h * arb(s), there, pieces)])
-        count += near
-    after = _moved(state, h, solver.b, slopes)
+        moved_state = _moved(state, h, row, slopes)
+        pieces, near_pairs = _pieces(flow, moved_state, law.law.alpha.r)
+        slopes.append([*moved_state[half:], *flow.input(t + h * arb(s), moved_state, pieces)])
+        count += near_pairs
+    next_state = _moved(state, h, solver.b, slopes)
     if solver.position_factor:
-        bend = arb(solver.position_factor) * h * h
-        after[:half] = [x + bend * a for x, a in zip(after[:half], slopes[0][half:], strict=True)]
-    return after, count
+        input_part = arb(solver.position_factor) * h * h
+        next_state[:half] = [x + input_part * a for x, a in zip(next_state[:half], slopes[0][half:], strict=True)]
+    return next_state, count
 
 
 def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[list[arb]]) -> list[arb]:
@@ -121,17 +121,17 @@ def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[
 
 def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
     """Return the piece of each pair and agent, and the number of pairs that may be in range."""
-    places = state[: flow.n * flow.m]
-    x = np.array([float(y.mid()) for y in places]).reshape(flow.n, flow.m)
-    off = max(float(y.rad()) for y in places)
-    reach = r * (1.0 + 1e-9) + 2.0 * sqrt(flow.m) * (off + 4.0 * _ROUND * float(np.abs(x).max()))
-    apart = np.linalg.norm(x[:, None] - x, axis=2)
-    q, near, pieces = flow.split(state)[0], 0, []
+    positions = state[: flow.n * flow.m]
+    x = np.array([float(y.mid()) for y in positions]).reshape(flow.n, flow.m)
+    position_radius = max(float(y.rad()) for y in positions)
+    reach = r * (1.0 + 1e-9) + 2.0 * sqrt(flow.m) * (position_radius + 4.0 * _ROUND * float(np.abs(x).max()))
+    distances = np.linalg.norm(x[:, None] - x, axis=2)
+    q, near_pairs, pieces = flow.split(state)[0], 0, []
     for i, j in combinations(range(flow.n), 2):
-        far = apart[i, j] > reach
-        near += not far
-        pieces.append(Piece.OUT if far else flow.pair.piece(norm2(minus(q[i], q[j]))))
-    return (*pieces, *(term.piece(y) for term in flow.terms for y in q)), near
+        is_far = distances[i, j] > reach
+        near_pairs += not is_far
+        pieces.append(Piece.OUT if is_far else flow.pair.piece(norm2(minus(q[i], q[j]))))
+    return (*pieces, *(term.piece(y) for term in flow.terms for y in q)), near_pairs
 
 
 def _binary(x: Any) -> fmpq:

@@ -63,19 +63,19 @@ def sample_basin(
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
     runs, end = ensure_count("runs", runs), ensure_positive("t_end", t_end)
-    sizes = ensure_series("distances", distances)
-    if not sizes.size or not (sizes > 0.0).all():
-        raise ArgumentError(f"distances = {sizes.tolist()}: expected one or more numbers > 0")
+    start_distances = ensure_series("distances", distances)
+    if not start_distances.size or not (start_distances > 0.0).all():
+        raise ArgumentError(f"distances = {start_distances.tolist()}: expected one or more numbers > 0")
     rng, motions = np.random.default_rng(ensure_seed(seed)), rigid_motions(basin.rest)
     target = basin.law.target
     centre, drift = (0.0, 0.0) if target is None else target.state(0.0)
-    returned = np.zeros(sizes.size, dtype=np.int64)
-    for k, size in enumerate(sizes):
+    return_counts = np.zeros(start_distances.size, dtype=np.int64)
+    for k, start_distance in enumerate(start_distances):
         for _ in range(runs):
             w = rng.standard_normal(basin.rest.size)
             w -= motions @ (motions.T @ w)
-            start = basin.rest + centre + (size / np.linalg.norm(w) * w).reshape(basin.rest.shape)
+            start = basin.rest + centre + (start_distance / np.linalg.norm(w) * w).reshape(basin.rest.shape)
             p0, span = np.zeros_like(start) + drift, (0.0, end)
             run = ensure_uninterrupted(simulate(basin.law, start, p0, span, t_eval=[0.0, end]))
-            returned[k] += basin.holds(run.q[-1], run.p[-1])
-    return SampledBasin(basin, sizes, returned, runs)
+            return_counts[k] += basin.holds(run.q[-1], run.p[-1])
+    return SampledBasin(basin, start_distances, return_counts, runs)

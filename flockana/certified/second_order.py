@@ -14,11 +14,11 @@ _DIGITS = 30  # of the enclosures
 
 def laplacian_of(weights: Sequence[Sequence[float]]) -> fmpq_mat:
     """Return L = diag(Σ_j a_ij) − A of rational weights."""
-    rows = [[exact(one) for one in row] for row in weights]
-    off = [[-one for one in row] for row in rows]
+    rows = [[exact(item) for item in row] for row in weights]
+    negated_rows = [[-item for item in row] for row in rows]
     for i, row in enumerate(rows):
-        off[i][i] = sum(row, fmpq(0)) - row[i]
-    return fmpq_mat(off)
+        negated_rows[i][i] = sum(row, fmpq(0)) - row[i]
+    return fmpq_mat(negated_rows)
 
 
 def stable_off_agreement(laplacian: fmpq_mat, position: float, velocity: float) -> bool:
@@ -29,10 +29,10 @@ def stable_off_agreement(laplacian: fmpq_mat, position: float, velocity: float) 
     """
     n, gain = laplacian.nrows(), fmpq_poly([exact(position), exact(velocity)])
     characteristic = laplacian.charpoly()
-    square = fmpq_poly([0, 0, 1])
+    square_term = fmpq_poly([0, 0, 1])
     whole = fmpq_poly([0])
     for k in range(n + 1):
-        whole += characteristic[k] * (-1) ** (n - k) * square**k * gain ** (n - k)
+        whole += characteristic[k] * (-1) ** (n - k) * square_term**k * gain ** (n - k)
     coefficients = [whole[k] for k in range(whole.degree() + 1)]
     return is_hurwitz(coefficients[2:])  # the first two are 0, as the rows of L sum to 0
 
@@ -42,15 +42,15 @@ def is_hurwitz(coefficients: Sequence[fmpq]) -> bool:
 
     Routh's array: all entries of its first column have one sign.
     """
-    falling = list(reversed([fmpq(c) for c in coefficients]))
-    upper, lower = falling[0::2], falling[1::2]
-    sign = 1 if falling[0] > 0 else -1
+    falling_coefficients = list(reversed([fmpq(c) for c in coefficients]))
+    upper, lower = falling_coefficients[0::2], falling_coefficients[1::2]
+    sign = 1 if falling_coefficients[0] > 0 else -1
     while lower:
         if lower[0] * sign <= 0:
             return False
         ratio = upper[0] / lower[0]
-        rest = [a - ratio * b for a, b in zip(upper[1:], [*lower[1:], *[fmpq(0)] * len(upper)], strict=False)]
-        upper, lower = lower, rest
+        remaining_row = [a - ratio * b for a, b in zip(upper[1:], [*lower[1:], *[fmpq(0)] * len(upper)], strict=False)]
+        upper, lower = lower, remaining_row
     return True
 
 

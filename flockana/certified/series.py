@@ -108,13 +108,13 @@ class PairNumbers:
     def _from_knee(self, z: arb) -> arb:
         """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
         knee = self.knee
-        before = (
+        inner_part = (
             arb(0) if z >= knee else formula_in_balls.closed(z.min(knee), self) - formula_in_balls.closed(knee, self)
         )
         if z <= knee:
-            return before
+            return inner_part
         end = z.max(knee).min(self.cutoff)
-        return before + integrate(lambda x, analytic: formula_in_balls.tapered(x, self, analytic), knee, end)
+        return inner_part + integrate(lambda x, analytic: formula_in_balls.tapered(x, self, analytic), knee, end)
 
 
 def _nonnegative(s2: Any) -> Any:

@@ -85,25 +85,25 @@ class LengthCells:
 
     def _cell_holds(self, level: int, k: int, limit: arb, along: arb, across: arb) -> bool:
         x, stiff, pull = self.at(level, k)
-        rest, length = self.rest, self.rest + x
+        rest, distance = self.rest, self.rest + x
         lower_end = (stiff - along).lower()  # by its ends: a product of balls about 0 would be far too wide
         d0 = lower_end * square(x.abs_lower() if lower_end >= 0 else x.abs_upper())
-        d1 = 2 * x * (stiff * rest + along * length) + 2 * (pull * square(rest) - across * square(length))
-        d2 = (stiff - pull) * square(rest) - (along - across) * square(length)
-        most = ((limit - square(x)).nonnegative_part() / (2 * length * rest)).upper()
-        slope = d1.lower() + d2.lower().min(arb(0)) * most  # d1 + d2 b >= slope for b in [0, most]
-        return bool(d0 + slope.min(arb(0)) * most >= 0)
+        d1 = 2 * x * (stiff * rest + along * distance) + 2 * (pull * square(rest) - across * square(distance))
+        d2 = (stiff - pull) * square(rest) - (along - across) * square(distance)
+        maximum = ((limit - square(x)).nonnegative_part() / (2 * distance * rest)).upper()
+        slope = d1.lower() + d2.lower().min(arb(0)) * maximum  # d1 + d2 b >= slope for b in [0, most]
+        return bool(d0 + slope.min(arb(0)) * maximum >= 0)
 
 
 def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
     """Return a β that matches an α, proposed in floating point at points x, with slack for the proof."""
-    length, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
-    most = np.maximum((eta**2 - x**2) / (2.0 * length * rest), 0.0)
-    d1 = 2.0 * x * (stiff * rest + along * length) + 2.0 * pull * rest**2
-    d2 = np.minimum((stiff - pull) * rest**2 - along * length**2, 0.0)
-    turned = most > 0.0
-    room = (stiff - along) * x**2 + most * (d1 + d2 * most)
-    bound = np.min(room[turned] / (most * length**2 * (2.0 - most))[turned], initial=np.inf)
+    distance, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
+    maximum = np.maximum((eta**2 - x**2) / (2.0 * distance * rest), 0.0)
+    d1 = 2.0 * x * (stiff * rest + along * distance) + 2.0 * pull * rest**2
+    d2 = np.minimum((stiff - pull) * rest**2 - along * distance**2, 0.0)
+    is_positive = maximum > 0.0
+    margin = (stiff - along) * x**2 + maximum * (d1 + d2 * maximum)
+    bound = np.min(margin[is_positive] / (maximum * distance**2 * (2.0 - maximum))[is_positive], initial=np.inf)
     bound = min(bound, float(pull[np.argmin(np.abs(x))]))
     return float(bound - _SPARE[0] * unit * (eta / rest) ** 2 - _SPARE[1] * unit)
 
@@ -111,8 +111,8 @@ def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray,
 def points(reach: float) -> FloatArray:
     """Return bond displacements for floating-point proposals: the shells' ends, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
-    ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
-    return reach * np.unique(np.concatenate([inner, ends]))
+    shell_edges = np.arange(-SHELLS, SHELLS + 1) / SHELLS
+    return reach * np.unique(np.concatenate([inner, shell_edges]))
 
 
 @dataclass(frozen=True)
@@ -148,14 +148,14 @@ class BondTable:
     def bonds(self, reach: fmpq) -> list[Bond]:
         """Return pairs grouped by length, without the pairs that stay out of range."""
         groups: list[list[tuple[int, int]]] = []
-        last, same = -np.inf, _ALIKE * self.law.alpha.d
+        last_length, length_tolerance = -np.inf, _ALIKE * self.law.alpha.d
         for pair in sorted(self.gaps, key=lambda pair: float(self.gaps[pair][1])):
-            length = self.gaps[pair][1]
-            if length - ball(reach) > ball(self.u.par.r):
+            distance = self.gaps[pair][1]
+            if distance - ball(reach) > ball(self.u.par.r):
                 continue
-            if float(length) > last + same:
+            if float(distance) > last_length + length_tolerance:
                 groups.append([])
-                last = float(length)
+                last_length = float(distance)
             groups[-1].append(pair)
         return [Bond(tuple(group), hull(*(self.gaps[pair][1] for pair in group))) for group in groups]
 
@@ -163,10 +163,10 @@ class BondTable:
     def lifts(self) -> arb_mat:
         """Return Σ g gᵀ/‖g‖² over the rigid motions g, times a large number, to shift their eigenvalues."""
         total = arb_mat(len(self.rest), len(self.rest))
-        stiffest = max(abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values())
+        largest_stiffness = max(abs(float(self.u.stiffness(distance**2).mid())) for _, distance in self.gaps.values())
         for motion in self.u.rotation_tangents(self.rest) + self.u.translations():
             g = column(motion)
-            total += g * g.transpose() * (_LIFT * arb(stiffest) / dot(motion, motion))
+            total += g * g.transpose() * (_LIFT * arb(largest_stiffness) / dot(motion, motion))
         return total
 
     def matrix(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb_mat:
@@ -174,8 +174,8 @@ class BondTable:
         blocks = []
         for bond, a, b in zip(bonds, along, across, strict=True):
             for pair in bond.pairs:
-                gap, length = self.gaps[pair]
-                blocks.append((*pair, outer(gap, ball(b), (ball(a) - ball(b)) / length**2)))
+                gap, distance = self.gaps[pair]
+                blocks.append((*pair, outer(gap, ball(b), (ball(a) - ball(b)) / distance**2)))
         return self.u.assembled(blocks) + self.lifts
 
     def curvature(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb:
@@ -191,19 +191,19 @@ class BondTable:
         bonds = self.bonds(fmpq(*reach.as_integer_ratio()))
         x = points(reach)
         lengths = [float(bond.rest) for bond in bonds]
-        curves = [self._curves(length + x) for length in lengths]
-        along_part, across_part, fixed = self._parts(bonds)
+        curves = [self._curves(distance + x) for distance in lengths]
+        along_part, transverse_part, fixed_rows = self._parts(bonds)
         shape = (SHELLS, len(bonds))
         along, across, curvatures = np.empty(shape), np.empty(shape), np.empty(SHELLS)
         for i in range(SHELLS):
             eta = reach * (i + 1) / SHELLS
-            inside = np.abs(x) <= eta * (1.0 + 1e-12)
-            near = [(rest, *(curve[inside] for curve in line)) for rest, line in zip(lengths, curves, strict=True)]
+            is_inside = np.abs(x) <= eta * (1.0 + 1e-12)
+            near = [(rest, *(curve[is_inside] for curve in line)) for rest, line in zip(lengths, curves, strict=True)]
             curvatures[i] = -np.inf
             for slack in _SLACKS:
                 a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
-                b = [proposed_across(y, r, x[inside], k, t, eta) for y, (r, k, t) in zip(a, near, strict=True)]
-                matrix = fixed + np.tensordot(a, along_part, 1) + np.tensordot(b, across_part, 1)
+                b = [proposed_across(y, r, x[is_inside], k, t, eta) for y, (r, k, t) in zip(a, near, strict=True)]
+                matrix = fixed_rows + np.tensordot(a, along_part, 1) + np.tensordot(b, transverse_part, 1)
                 lowest = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
                 if lowest > curvatures[i]:
                     curvatures[i], along[i], across[i] = lowest, a, b
@@ -218,17 +218,17 @@ class BondTable:
 
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the coefficient matrices of α and β of each bond, and the constant matrix, in floating point."""
-        size, m = len(self.rest), self.u.m
+        dimension, m = len(self.rest), self.u.m
         motions = np.array([[float(y) for y in g] for g in self.u.rotation_tangents(self.rest) + self.u.translations()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
         parts = np.zeros((2, len(bonds), len(basis), len(basis)))
         for k, bond in enumerate(bonds):
             for i, j in bond.pairs:
                 gap = np.array([float(y) for y in self.gaps[i, j][0]])
-                edge_rows = basis.reshape(-1, size // m, m)[:, j] - basis.reshape(-1, size // m, m)[:, i]
-                along = edge_rows @ (gap / np.linalg.norm(gap))
-                parts[0, k] += np.outer(along, along)
-                parts[1, k] += edge_rows @ edge_rows.T - np.outer(along, along)
+                edge_rows = basis.reshape(-1, dimension // m, m)[:, j] - basis.reshape(-1, dimension // m, m)[:, i]
+                axial_rows = edge_rows @ (gap / np.linalg.norm(gap))
+                parts[0, k] += np.outer(axial_rows, axial_rows)
+                parts[1, k] += edge_rows @ edge_rows.T - np.outer(axial_rows, axial_rows)
         gain = float(self.u.c1_gamma.p) / float(self.u.c1_gamma.q)
         return parts[0], parts[1], gain * np.eye(len(basis))
 
@@ -267,11 +267,11 @@ class Shells:
     @property
     def surplus(self) -> fmpq:
         """Surplus min (t G' − G)/t², a lower bound of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
-        step, total, lowest = self.radius / SHELLS, fmpq(0), []
+        step, total, cell_minima = self.radius / SHELLS, fmpq(0), []
         for i, k in enumerate(self.curvatures):
             total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
-            lowest.append(total / (step * (i + 1)) ** 2)
-        return min(lowest)
+            cell_minima.append(total / (step * (i + 1)) ** 2)
+        return min(cell_minima)
 
 
 def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
@@ -282,14 +282,14 @@ def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
     if len(bonds) != floors.along.shape[1]:
         return None
     cells = [LengthCells(around.u, bond.rest, reach) for bond in bonds]
-    along, across = (
+    axial_bounds, transverse_bounds = (
         tuple(tuple(round_down(arb(y), _DIGITS) for y in row) for row in rows) for rows in (floors.along, floors.across)
     )
     curvatures = []
-    for i, (a, b) in enumerate(zip(along, across, strict=True), start=1):
+    for i, (a, b) in enumerate(zip(axial_bounds, transverse_bounds, strict=True), start=1):
         if not all(cell.holds(i, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
             return None
-        if not (lowest := around.curvature(bonds, a, b)).is_finite():
+        if not (curvature_bound := around.curvature(bonds, a, b)).is_finite():
             return None
-        curvatures.append(round_down(lowest, _DIGITS))
-    return Shells(radius, tuple(bonds), along, across, tuple(curvatures))
+        curvatures.append(round_down(curvature_bound, _DIGITS))
+    return Shells(radius, tuple(bonds), axial_bounds, transverse_bounds, tuple(curvatures))

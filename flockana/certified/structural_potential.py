@@ -54,12 +54,12 @@ class Structure:
             )
         if law.alpha.unit != 1.0:
             raise ArgumentError(f"unit = {law.alpha.unit:g}: expected 1; rescale law and places by it (fl.rescale)")
-        led, gains = isinstance(law, Algorithm2), law.gains
-        if led:
+        has_target, gains = isinstance(law, Algorithm2), law.gains
+        if has_target:
             ensure_one_gain(gains)
         if not (c1 := gains.c1_alpha) > 0.0:
             raise ArgumentError(f"c1_alpha = {c1:g}: expected more than 0, or no force holds the agents together")
-        pull = (exact(gains.c1_gamma), exact(gains.c2_gamma)) if led else (exact(0), exact(0))
+        pull = (exact(gains.c1_gamma), exact(gains.c2_gamma)) if has_target else (exact(0), exact(0))
         return cls(AlphaParameters.of(law.alpha), exact(c1), exact(gains.c2_alpha), *pull, n, m)
 
     def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
@@ -71,8 +71,8 @@ class Structure:
 
     def near(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
         """Return the pairs that are not certainly out of range."""
-        beyond = ball(self.par.r) ** 2
-        return (pair for pair in self.pairs(x) if not pair[3] >= beyond)
+        squared_range = ball(self.par.r) ** 2
+        return (pair for pair in self.pairs(x) if not pair[3] >= squared_range)
 
     def tension(self, s: arb) -> arb:
         """Return the tension F'(ℓ)/ℓ of a pair with the potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²."""
@@ -98,8 +98,8 @@ class Structure:
 
     def hessian(self, x: Balls) -> arb_mat:
         """Return the Hessian ∇²U: of each pair the block T 1 + (F'' − T) uuᵀ, and c1γ."""
-        near = ((i, j, gap, s, self.tension(s)) for i, j, gap, s in self.near(x))
-        return self.assembled([(i, j, outer(gap, t, (self.stiffness(s) - t) / s)) for i, j, gap, s, t in near])
+        near_pairs = ((i, j, gap, s, self.tension(s)) for i, j, gap, s in self.near(x))
+        return self.assembled([(i, j, outer(gap, t, (self.stiffness(s) - t) / s)) for i, j, gap, s, t in near_pairs])
 
     def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
         """Return the matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
@@ -113,15 +113,15 @@ class Structure:
 
     def energy(self, x: Balls) -> arb:
         """Return the structural potential U."""
-        law, beyond = self._law, ball(self.par.r) ** 2
-        total = sum((law.far if s >= beyond else law.potential(s) for *_, s in self.pairs(x)), arb(0))
+        law, squared_range = self._law, ball(self.par.r) ** 2
+        total = sum((law.far if s >= squared_range else law.potential(s) for *_, s in self.pairs(x)), arb(0))
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * norm2(x)
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
         """Return a basis of tangents Ωx of the orbit of x under rotations: 0, 1 or 3 vectors."""
-        m, places = self.m, range(len(x))
+        m, agent_range = self.m, range(len(x))
         return [
-            [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in places]
+            [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in agent_range]
             for a, b in combinations(range(m), 2)
         ]
 

@@ -121,7 +121,7 @@ class Tube:
     def boxes(self) -> tuple[list[arb], ...]:
         """Balls of all coordinates, positions then velocities, at each step."""
         with ctx.workprec(BITS):
-            return tuple(one.hull for one in self.sets)
+            return tuple(item.hull for item in self.sets)
 
     @cached_property
     def _midpoints(self) -> FloatArray:
@@ -170,12 +170,12 @@ class Tube:
         with ctx.workprec(BITS):  # the start by itself: a tube may break before its first step
             start = [minus(y, x) for x, y in combinations(self.state(0)[0], 2)]
             rows = [[norm(gap) for gap in gaps] for gaps in (start, *(step.relative for step in self.taken))]
-        each = [
+        item = [
             Approach(down(distance.lower()), pair, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for pair, distance in zip(self.pairs, row, strict=True)
         ]
-        return min(each, key=lambda one: one.lower, default=Approach(inf, (0, 0), self.t[0]))
+        return min(item, key=lambda one: one.lower, default=Approach(inf, (0, 0), self.t[0]))
 
     def clearances_during(self, k: int) -> list[list[arb]]:
         """Return balls that hold the agents' clearances from each obstacle, from step k to the next.
@@ -198,13 +198,13 @@ class Tube:
         """Return a proved lower bound of any agent's clearance from any obstacle over the whole tube."""
         with ctx.workprec(BITS):
             rows = [self._clearances(box) for box in (self.boxes[0], *(step.during for step in self.taken))]
-        each = [
+        clearances = [
             ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for obstacle, own_clearance in enumerate(row)
             for agent, clearance in enumerate(own_clearance)
         ]
-        return min(each, key=lambda one: one.lower, default=ObstacleApproach(inf, 0, 0, self.t[0]))
+        return min(clearances, key=lambda one: one.lower, default=ObstacleApproach(inf, 0, 0, self.t[0]))
 
     def cohesion_radius(self) -> FloatArray:
         """Return proved upper bounds of R = max ‖q_i − q_c‖ between steps, shape (T − 1,)."""

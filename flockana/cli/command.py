@@ -34,6 +34,6 @@ class Command(TyperCommand):
             is_path = kind is Path or Path in get_args(kind)
             if is_path and arguments.get(str(param.name)) == "":  # as from an unset variable
                 name = param.opts[0] if param.param_type_name == "option" else param.metavar
-                here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
-                raise FileError(f"{name} '': the name is empty; choose another name{here}")
+                folder_hint = "; this folder is '.'" if param.metavar in _FOLDERS else ""
+                raise FileError(f"{name} '': the name is empty; choose another name{folder_hint}")
         return left

@@ -64,8 +64,8 @@ def ensemble_command(
     ensure_file(plot)
     if plot is not None and len(axes) > 2:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
-    checked = [read_theorem(name) for name in theorem or ()] or None
-    request: dict[str, Any] = {"theorems": checked, "parameters": parameters, "jobs": jobs, "store": store}
+    checked_theorem = [read_theorem(name) for name in theorem or ()] or None
+    request: dict[str, Any] = {"theorems": checked_theorem, "parameters": parameters, "jobs": jobs, "store": store}
     try:
         case = read_own(scenario) if is_own(scenario) else scenario
         runs = ensemble(case, range(first, first + seeds), **request, retry=retry, progress=True)
@@ -94,8 +94,8 @@ def read_options(texts: list[str]) -> dict[str, Any]:
             raise ArgumentError(f"--set {text}: expected OPTION=VALUE or OPTION=VALUE,VALUE,…, such as n=20,40")
         if name in options:
             raise ArgumentError(f"--set {text}: {name} is set already; give all its values at once")
-        words_read = [_value(word) for word in words]
-        options[name] = words_read if len(words_read) > 1 else words_read[0]
+        option_values = [_value(word) for word in words]
+        options[name] = option_values if len(option_values) > 1 else option_values[0]
     return options
 
 
@@ -120,8 +120,8 @@ def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str])
     elif axes:
         plots.share_against(table, axes[0], claims=_most_varying(table), ax=ax, title=title)
     else:
-        judged = (table.verified + table.refuted).values > 0  # the others have nothing to show
-        plots.share_bars(table, claims=table.claim.values[judged].tolist(), ax=ax, title=title)
+        is_judged = (table.verified + table.refuted).values > 0  # the others have nothing to show
+        plots.share_bars(table, claims=table.claim.values[is_judged].tolist(), ax=ax, title=title)
 
 
 def _most_varying(table: xarray.Dataset) -> list[str]:
@@ -129,16 +129,16 @@ def _most_varying(table: xarray.Dataset) -> list[str]:
     import numpy as np
 
     share = table.share.sel(of="verified").fillna(0.0)
-    others = [name for name in share.dims if name != "claim"]
-    change = (share.max(others) - share.min(others)).values
-    most = np.argsort(-change, kind="stable")[:_MOST]
-    return [str(table.claim.values[k]) for k in sorted(most.tolist())]
+    other_dimensions = [name for name in share.dims if name != "claim"]
+    change = (share.max(other_dimensions) - share.min(other_dimensions)).values
+    varying_dimensions = np.argsort(-change, kind="stable")[:_MOST]
+    return [str(table.claim.values[k]) for k in sorted(varying_dimensions.tolist())]
 
 
 def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
-    bad = runs.run.values != 0
+    is_failed = runs.run.values != 0
     tables = [share_table(table)] if table.claim.size else []
-    console = show(f"{runs.attrs['scenario']}: {bad.size} runs", *tables)
+    console = show(f"{runs.attrs['scenario']}: {is_failed.size} runs", *tables)
     if tables:
         console.print(
             f"shares of the runs on which a claim was checked, vacuous (vac.) and inconclusive (inc.) ones included, "
@@ -147,11 +147,11 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
         )
     seconds = runs.seconds.values
     console.print(f"{seconds.sum():.1f} s of computing, {seconds.mean():.3g} s a run", markup=False)
-    if bad.any():
-        messages = list(dict.fromkeys(runs.message.values[bad].tolist()))
-        console.print(f"{bad.sum()} did not complete:", style="bold red", markup=False)
-        more = [f"… and {len(messages) - _MESSAGES} more kinds"] if len(messages) > _MESSAGES else []
-        for text in messages[:_MESSAGES] + more:
+    if is_failed.any():
+        messages = list(dict.fromkeys(runs.message.values[is_failed].tolist()))
+        console.print(f"{is_failed.sum()} did not complete:", style="bold red", markup=False)
+        more_text = [f"… and {len(messages) - _MESSAGES} more kinds"] if len(messages) > _MESSAGES else []
+        for text in messages[:_MESSAGES] + more_text:
             console.print(f"  {text}", markup=False)
 
 
@@ -159,8 +159,8 @@ def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:
     """Return the shares as plain data: a row for each claim and combination of parameters."""
     rows = []
     for values in table.to_dataframe().reset_index().to_dict("records"):
-        plain = {str(key): value.item() if hasattr(value, "item") else value for key, value in values.items()}
-        rows.append({key: None if value != value else value for key, value in plain.items()})
+        plain_values = {str(key): value.item() if hasattr(value, "item") else value for key, value in values.items()}
+        rows.append({key: None if value != value else value for key, value in plain_values.items()})
     return rows
 
 
@@ -173,13 +173,13 @@ def share_table(table: xarray.Dataset) -> Table:
 
     columns = (column(heading, right=True) for heading in ("runs", "verified, %", "refuted, %", "vac.", "inc."))
     grid = headed_table(column("claim", wraps=True), *columns, collapse_padding=True)
-    point = before = ""
-    for where, label, *cells in share_cells(table):
+    point = previous_cell = ""
+    for place_text, label, *cells in share_cells(table):
         theorem, _, claim = label.partition(":")
-        if where != point:
-            grid.add_row(Text(where, style="bold"))
-        if (where, theorem) != (point, before):
+        if place_text != point:
+            grid.add_row(Text(place_text, style="bold"))
+        if (place_text, theorem) != (point, previous_cell):
             grid.add_row(Text(theorem))
-        point, before = where, theorem
+        point, previous_cell = place_text, theorem
         grid.add_row(f"  {claim}", *cells)
     return grid

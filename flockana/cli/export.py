@@ -37,9 +37,9 @@ def export_command(
     options: dict[str, Any] = {"points": points, "inner": inner, "dt": dt, "samples": samples, "consensus": consensus}
     exported = export_lammps(item.law, item.q0, item.p0, item.t_span, folder, **options)
     if as_json:
-        numbers = {"steps": exported.steps, "dt": exported.dt, "force error": exported.force_error}
+        summary = {"steps": exported.steps, "dt": exported.dt, "force error": exported.force_error}
         words = {name: list(getattr(exported, name)) for name in ("exact", "near", "missing")}
-        show_json({"scenario": name, **numbers, **words, "files": [str(path) for path in exported.files]})
+        show_json({"scenario": name, **summary, **words, "files": [str(path) for path in exported.files]})
         return OK
     console = show(f"{item.name} for LAMMPS: {exported.steps} steps of {exported.dt:.6g}")
     lines = [f"exact: {text}" for text in exported.exact] + [f"nearly: {text}" for text in exported.near]

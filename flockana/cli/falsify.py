@@ -84,9 +84,9 @@ def falsify_command(
         show_json(search_facts(search))
     else:
         _show(search)
-    saved = search.save(save_to) if save_to is not None and search.found else None
+    saved_path = search.save(save_to) if save_to is not None and search.found else None
     write_picture(lambda ax: falsification(search, ax=ax), plot)
-    show_files(as_json, counterexample=saved, picture=plot)
+    show_files(as_json, counterexample=saved_path, picture=plot)
     if search.ended == "interrupted":
         return INTERRUPTED
     return OK if all(known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
@@ -127,13 +127,13 @@ def _replay(path: Path, own: Theorem | None, *, as_json: bool) -> int:
     counterexample = Counterexample.load(path)
     verdict = counterexample.check(theorem=own)
     status = {claim.name: claim.status for claim in verdict.claims}.get(counterexample.claim, "not judged")
-    again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
+    replay_text = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
     claim = f"{counterexample.theorem}:{counterexample.claim}"
     if as_json:
         show_json(verdict.to_dict())
     else:
         Console(highlight=False, emoji=False).print(details(verdict))
-        typer.echo(f"{claim}, found by flockana {counterexample.version}: {again}")
+        typer.echo(f"{claim}, found by flockana {counterexample.version}: {replay_text}")
     return OK if status == "refuted" else UNEXPECTED
 
 
@@ -147,8 +147,8 @@ def known_false(theorem: str, claim: str) -> bool:
         return True
     for statuses in (scenario(name).expected for name in scenarios()):
         # where a scenario says that the theorem breaks, and not by which claim, it may be by any
-        named = any(key.startswith(f"{theorem}:") for key in statuses)
-        if statuses.get(f"{theorem}:{claim}" if named else theorem) == "refuted":
+        is_named = any(key.startswith(f"{theorem}:") for key in statuses)
+        if statuses.get(f"{theorem}:{claim}" if is_named else theorem) == "refuted":
             return True
     return False
 
@@ -166,8 +166,8 @@ def _show(search: Falsification) -> None:
     else:
         text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"
     console.print(text + ("; interrupted" if search.ended == "interrupted" else ""), markup=False)
-    others = ", ".join(name for name in search.broken if name != search.claim)
-    lines = [f"broken on the way: {others}; search them by --claim"] if others else []
+    other_claims = ", ".join(name for name in search.broken if name != search.claim)
+    lines = [f"broken on the way: {other_claims}; search them by --claim"] if other_claims else []
     lines += [f"{name} = {value:.6g}" for name, value in search.parameters.items()]
     if search.found and search.verdict is not None:
         lines.append(search.verdict.claim(search.claim).detail)
@@ -187,10 +187,10 @@ def claim_table(search: Falsification) -> Table:
     headings = "claim", "margin at the start", "at worst", "worst status", "judged on"
     table = headed_table(*(column(text, right=text not in ("claim", "worst status")) for text in headings))
     for name, margins in search.margins.items():
-        judged = sum(status not in ("vacuous", "failed") for status in search.statuses[name])
-        ends = (margins[0], search.least(name)[-1])
-        cells = ["—" if np.isnan(value) else number(float(value)) for value in ends]
+        judged_count = sum(status not in ("vacuous", "failed") for status in search.statuses[name])
+        margin_range = (margins[0], search.least(name)[-1])
+        cells = ["—" if np.isnan(value) else number(float(value)) for value in margin_range]
         style = "bold" if name == search.claim else ""
         worst = search.worst_status(name)
-        table.add_row(Text(name, style=style), *cells, f"{MARKS.get(worst, '!')} {worst}", f"{judged} runs")
+        table.add_row(Text(name, style=style), *cells, f"{MARKS.get(worst, '!')} {worst}", f"{judged_count} runs")
     return table

@@ -68,11 +68,11 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
 
     `as_given` tells whether only the modes at given positions are sought; None where there is no such choice.
     """
-    most, each = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
-    if n > most:
+    search_limit, mode_limit = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
+    if n > search_limit:
         choice = f", or {_GIVEN} with --as-given (slowest modes at these positions)" if as_given is False else ""
-        raise ArgumentError(f"n = {n}: expected at most {most} agents{choice}")
-    seconds = each * n / 1000.0
+        raise ArgumentError(f"n = {n}: expected at most {search_limit} agents{choice}")
+    seconds = mode_limit * n / 1000.0
     if seconds >= _SHORT:
         typer.echo(f"n = {n}: about {seconds:.0f} s on a machine of 2024", err=True)
 
@@ -114,7 +114,7 @@ def _with_fixed_target(law: Any, t: float) -> Any:
     """Return the law with its γ-agent fixed at its position at time t."""
     from flockana.environment import StaticTarget
 
-    target, within = law.target, getattr(law, "law", None)
-    if target is not None and within is not None:
-        return replace(law, law=_with_fixed_target(within, t))
+    target, inner_law = law.target, getattr(law, "law", None)
+    if target is not None and inner_law is not None:
+        return replace(law, law=_with_fixed_target(inner_law, t))
     return law if target is None else replace(law, target=StaticTarget(tuple(target.position(t).tolist())))

@@ -58,8 +58,8 @@ def lattice_command(
     tolerances = _tolerances(tol)
     verdict = verify("os-5", q=start.q, d=start.d, r=start.r, subject=start.name, tolerances=tolerances)
     facts = lattice_facts(start, pairs, verdict)
-    more, hint = {"verdict": verdict.to_dict()}, _hint(facts, tolerances)
-    show_facts(facts | more, as_json, start.name, _rows(facts), details(verdict), *hint)
+    extra_facts, hint = {"verdict": verdict.to_dict()}, _hint(facts, tolerances)
+    show_facts(facts | extra_facts, as_json, start.name, _rows(facts), details(verdict), *hint)
     write_picture(lambda ax: _draw(ax, start, pairs), plot, m=start.q.shape[1])
     show_files(as_json, picture=plot)
     return OK
@@ -106,8 +106,8 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
     from flockana.measures.nets import components, link_lengths
 
     q, d, r = given.q, given.d, given.r
-    (n, m), lengths = q.shape, link_lengths(q, pairs)
-    error = float(abs(lengths - d).max()) if len(pairs) else None
+    (n, m), distances = q.shape, link_lengths(q, pairs)
+    error = float(abs(distances - d).max()) if len(pairs) else None
     strain = float("nan") if error is None else error / d
     graph, crossings = verdict.claim("i-graph"), verdict.claim("i").computed
     neighbours = Counter(coordination(n, pairs).tolist())
@@ -124,8 +124,8 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
         "edge-length error": error,
         "deviation energy": deviation_energy(q, d, r * (1.0 - GUARD)),
         "links": len(pairs),
-        "shortest link": float(lengths.min()) if len(pairs) else None,
-        "longest link": float(lengths.max()) if len(pairs) else None,
+        "shortest link": float(distances.min()) if len(pairs) else None,
+        "longest link": float(distances.max()) if len(pairs) else None,
         "least distance": min_distance(q) if n > 1 else None,
         "components": int(components(n, pairs).max()) + 1,
         "complete": is_complete(n, pairs),
@@ -146,10 +146,10 @@ def _rigidity(q: Any, pairs: LinkArray) -> dict[str, Any]:
     from flockana.lattice import rigidity
 
     try:
-        decided = rigidity(q, pairs)
+        rigidity_facts = rigidity(q, pairs)
     except SolverError as error:
         return {"undecided": str(error)}
-    return vars(decided) | {"infinitesimally rigid": decided.infinitesimally_rigid}
+    return vars(rigidity_facts) | {"infinitesimally rigid": rigidity_facts.infinitesimally_rigid}
 
 
 def _defects(q: Any, pairs: LinkArray) -> dict[str, Any]:
@@ -199,6 +199,6 @@ def _rigidity_text(rigidity: dict[str, Any]) -> str:
         return f"undecided: {rigidity['undecided']}"
     plural = "" if rigidity["flexes"] == 1 else "es"
     kind = "infinitesimally rigid" if rigidity["infinitesimally rigid"] else f"{rigidity['flexes']} flex{plural}"
-    soft = f", {rigidity['soft']} soft" if rigidity["soft"] else ""
+    soft_text = f", {rigidity['soft']} soft" if rigidity["soft"] else ""
     stresses = rigidity["self_stresses"]
-    return f"{kind}{soft}; rank {rigidity['rank']}, {stresses} self-stress{'' if stresses == 1 else 'es'}"
+    return f"{kind}{soft_text}; rank {rigidity['rank']}, {stresses} self-stress{'' if stresses == 1 else 'es'}"

@@ -59,10 +59,10 @@ def _app(asked: str) -> typer.Typer:
 
 def _asked(arguments: Sequence[str]) -> str:
     """Return the requested command or global option from the arguments; raise on an unknown command."""
-    first = arguments[0] if arguments else ""
-    if arguments and not first.startswith("-") and first not in EXAMPLES:
-        raise UnknownNameError("command", first, EXAMPLES)
-    return first
+    first_argument = arguments[0] if arguments else ""
+    if arguments and not first_argument.startswith("-") and first_argument not in EXAMPLES:
+        raise UnknownNameError("command", first_argument, EXAMPLES)
+    return first_argument
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -34,5 +34,5 @@ def prepare_home() -> None:
 
 def _writable(folder: Path) -> bool:
     """Return whether a folder can be written or created."""
-    there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
-    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+    existing_path = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
+    return existing_path.is_dir() and os.access(existing_path, os.W_OK | os.X_OK)

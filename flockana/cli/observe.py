@@ -97,27 +97,27 @@ def observe_command(
         error.args = (_with_options(str(error)),)
         raise
     if window is not None:
-        ends = _numbers("--window", window)
-        if len(ends) != 2:
+        window_ends = _numbers("--window", window)
+        if len(window_ends) != 2:
             raise ArgumentError(f"--window {window}: expected two times, such as 0,2.5")
-        rec = rec.window(*ends)
+        rec = rec.window(*window_ends)
     chosen_law = _law(law, formula, d, r)
     if fit and chosen_law is None:
         raise ArgumentError("--fit: expected --law or --formula, whose gains are fitted")
     scale, reach = _scales(chosen_law, d, r)
-    whole, notes = _complete(rec)
+    complete_recording, notes = _complete(rec)
     metrics = rec.metrics(d=scale, r=reach)
-    results = _results(whole, chosen_law, fit, scale, reach)
+    results = _results(complete_recording, chosen_law, fit, scale, reach)
     if as_json:
         show_json(_plain(rec, metrics, results))
     else:
         _print(rec, measure_rows(metrics), results, notes)
     if page is not None:
-        reference = None if whole is None else whole.trajectory(chosen_law, d=scale, r=reach)
+        reference = None if complete_recording is None else complete_recording.trajectory(chosen_law, d=scale, r=reach)
         write_atomic(page, recording_page(rec, metrics, trajectory=reference, notes=notes, **results))
         show_files(as_json, page=page)
-    follows = [v.hypotheses[0].status for v in results["verdicts"] if v.hypotheses]
-    return UNEXPECTED if chosen_law is not None and "unmet" in follows[:1] else OK
+    follow_statuses = [v.hypotheses[0].status for v in results["verdicts"] if v.hypotheses]
+    return UNEXPECTED if chosen_law is not None and "unmet" in follow_statuses[:1] else OK
 
 
 def _with_options(text: str) -> str:
@@ -125,9 +125,9 @@ def _with_options(text: str) -> str:
 
     def option(match: re.Match[str]) -> str:
         pairs = re.findall(r"""["']?(\w+)["']?: (\[[^]]*\]|[^,]+)""", match[1].replace("[...]", "NAME+NAME"))
-        named = ((key, re.sub(r"[][' \"]", "", value)) for key, value in pairs)
+        named_options = ((key, re.sub(r"[][' \"]", "", value)) for key, value in pairs)
         return "--columns " + ",".join(
-            f"{key}={value.replace(',', '+').replace('...', 'NAME')}" for key, value in named
+            f"{key}={value.replace(',', '+').replace('...', 'NAME')}" for key, value in named_options
         )
 
     text = re.sub(r"columns={(.*?)}", option, text)
@@ -174,14 +174,14 @@ def _columns(text: str | None) -> Any:
     if not any("=" in part for part in parts):
         return parts
     pairs = [part.partition("=") for part in parts]
-    if bad := [part for part, (_, sign, names) in zip(parts, pairs, strict=True) if not sign or not names]:
-        raise ArgumentError(f"--columns {bad[0]!r}: expected MEANING=NAME, such as t=when,id=bird,q=east+north")
+    if bad_columns := [part for part, (_, sign, names) in zip(parts, pairs, strict=True) if not sign or not names]:
+        raise ArgumentError(f"--columns {bad_columns[0]!r}: expected MEANING=NAME, such as t=when,id=bird,q=east+north")
     return {key: names.split("+") if key in ("q", "p", "u", "agents") else names for key, _, names in pairs}
 
 
 def _numbers(name: str, text: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(",")]
+        return [float(piece_text) for piece_text in text.split(",")]
     except ValueError:
         raise ArgumentError(f"{name} {text}: expected numbers with commas between them") from None
 
@@ -217,7 +217,7 @@ def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> 
 def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, Any], notes: list[str]) -> None:
     from flockana.report.tables import fact_table
 
-    facts = tuple((name, f"{first} to {last}") for name, first, last in rows)
+    facts = tuple((name, f"{first_index} to {last_value}") for name, first_index, last_value in rows)
     console = show(repr(rec).strip("<>").partition("; read as ")[0], fact_table(facts))
     for text in rec.read_as:
         console.print(f"read: {text}", markup=False)
@@ -228,8 +228,8 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
             console.print(str(results[key]), markup=False)
     verdicts = results["verdicts"]
     if verdicts:
-        first = verdicts[0].hypotheses[0]
-        console.print(f"{first.name}: {first.status}. {first.detail}", markup=False)
+        first_index = verdicts[0].hypotheses[0]
+        console.print(f"{first_index.name}: {first_index.status}. {first_index.detail}", markup=False)
         console.print(fact_table((v.theorem, f"{v.status} ({v.rigour}): {v.summary}") for v in verdicts))
 
 
@@ -237,16 +237,16 @@ def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]
     """Return all results as plain data for JSON."""
     series = {str(name): seen[name].values.astype(float).tolist() for name in seen.data_vars}
     measures = {name: [x if isfinite(x) else None for x in values] for name, values in series.items()}
-    plain: dict[str, Any] = {
+    plain_values: dict[str, Any] = {
         "recording": repr(rec),
         "read_as": list(rec.read_as),
         "time": rec.t.tolist(),
         "measures": measures,
     }
     if "comparison" in results:
-        plain["comparison"] = results["comparison"].to_dict()
+        plain_values["comparison"] = results["comparison"].to_dict()
     if "fitted" in results:
         fitted = results["fitted"]
-        ends = {name: [x if isfinite(x) else None for x in pair] for name, pair in fitted.intervals.items()}
-        plain["fit"] = {"values": dict(fitted.values), "intervals": ends, "doubts": list(fitted.doubts)}
-    return plain | {"verdicts": [verdict.to_dict() for verdict in results["verdicts"]]}
+        window_ranges = {name: [x if isfinite(x) else None for x in pair] for name, pair in fitted.intervals.items()}
+        plain_values["fit"] = {"values": dict(fitted.values), "intervals": window_ranges, "doubts": list(fitted.doubts)}
+    return plain_values | {"verdicts": [verdict.to_dict() for verdict in results["verdicts"]]}

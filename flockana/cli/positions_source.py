@@ -93,9 +93,9 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, FloatArray, Any
     from flockana.dynamics.trajectory import Trajectory
 
     run = Trajectory.load(path)
-    first, last = float(run.t[0]), float(run.t[-1])
-    if time is not None and not first <= time <= last:
-        raise ArgumentError(f"--time {time:g}: expected a time of the run, {first:g} to {last:g}")
+    first_index, last_time = float(run.t[0]), float(run.t[-1])
+    if time is not None and not first_index <= time <= last_time:
+        raise ArgumentError(f"--time {time:g}: expected a time of the run, {first_index:g} to {last_time:g}")
     k = -1 if time is None else int(np.argmin(np.abs(run.t - time)))
     return run.q[k], run.p[k], run.law, float(run.t[k])
 
@@ -109,12 +109,12 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
 
 def build(text: str, d: float) -> tuple[FloatArray, float]:
     """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice."""
-    name, _, size = text.partition(":")
+    name, _, size_text = text.partition(":")
     form, function = BUILDERS[name], name.replace("-", "_")
-    numbers = size.split("x")
-    if len(numbers) != len(form.split("x")) or not all(k.isascii() and k.isdigit() for k in numbers):
+    values = size_text.split("x")
+    if len(values) != len(form.split("x")) or not all(k.isascii() and k.isdigit() for k in values):
         raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")
-    counts = [int(k[:20]) for k in numbers]  # enough to tell that it is too large
+    counts = [int(k[:20]) for k in values]  # enough to tell that it is too large
     if (3 * counts[0] ** 2 if form == "RINGS" else prod(counts)) > _MOST:
         raise ArgumentError(f"{text!r}: expected a size of at most {_MOST} agents")
     return getattr(lattice, function)(*counts, d), lattice.max_ratio(function)
@@ -137,9 +137,9 @@ def read_csv(path: Path) -> FloatArray:
     for k, row in lines:
         if len(row) != columns:
             raise FileError(f"{path}, line {k}: {len(row)} values, expected {columns} as in the first row")
-        bad = next((cell for cell in row if not (_is_number(cell) and isfinite(float(cell)))), None)
-        if bad is not None:
-            raise FileError(f"{path}, line {k}: {bad!r}, expected finite numbers with commas between them")
+        bad_cell = next((cell for cell in row if not (_is_number(cell) and isfinite(float(cell)))), None)
+        if bad_cell is not None:
+            raise FileError(f"{path}, line {k}: {bad_cell!r}, expected finite numbers with commas between them")
     return np.array([[float(cell) for cell in row] for _, row in lines])
 
 

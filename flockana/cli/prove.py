@@ -43,12 +43,12 @@ def prove_command(
     from flockana.report.build import ensure_directory
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
-    all_names = proof.names()
+    proof_names = proof.names()
     for name in wanted or ():
-        ensure_known("proof", name, all_names)
-    chosen_names = tuple(dict.fromkeys(wanted or all_names))
+        ensure_known("proof", name, proof_names)
+    chosen_names = tuple(dict.fromkeys(wanted or proof_names))
     ensure_directory(folder)
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     outcomes: list[Any] = []
     with progress_bar(len(chosen_names)) as advance:
         for outcome in run.check(
@@ -65,7 +65,7 @@ def prove_command(
         names = ("id", "title", "statement", "rigour", "status", "seconds")
         show_json([{name: getattr(outcome, name) for name in names} for outcome in outcomes])
     else:
-        _show(outcomes, time.perf_counter() - started, folder)
+        _show(outcomes, time.perf_counter() - start_time, folder)
     return OK if all(outcome.status == "proved" for outcome in outcomes) else UNEXPECTED
 
 
@@ -103,8 +103,8 @@ def _table(outcomes: Sequence[Any]) -> Table:
 
     from flockana.report.tables import column, headed_table
 
-    others = (column(name, right=name in ("steps", "time")) for name in ("rigour", "steps", "status", "time"))
-    table = headed_table(Column("theorem, and what exactly is proved", ratio=1, overflow="fold"), *others)
+    other_columns = (column(name, right=name in ("steps", "time")) for name in ("rigour", "steps", "status", "time"))
+    table = headed_table(Column("theorem, and what exactly is proved", ratio=1, overflow="fold"), *other_columns)
     for outcome in outcomes:
         title = f" · {outcome.title}" if outcome.title else ""
         table.add_row(

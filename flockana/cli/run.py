@@ -33,8 +33,8 @@ def run_command(
     ensure_folder_of(save_to)
     run = item.run(progress=progress)
     if as_json:
-        ends = {key: [float(series[k]) for k in (0, -1)] for key, series in run.metrics().items()}
-        finite = {key: [value if isfinite(value) else None for value in pair] for key, pair in ends.items()}
+        end_values = {key: [float(series[k]) for k in (0, -1)] for key, series in run.metrics().items()}
+        finite = {key: [value if isfinite(value) else None for value in pair] for key, pair in end_values.items()}
         facts = {"scenario": item.name, "seed": seed, "status": run.status, "message": run.message}
         show_json({**facts, "t": [float(run.t[0]), float(run.t[-1])], "file": str(save_to), "metrics": finite})
     else:

@@ -70,8 +70,8 @@ def stability_command(
         announce_time(len(q), as_given=as_given)
         with progress_bar(2, enabled=q.size > DENSE) as advance:
             advance(0, "equilibrium")
-            here = q if as_given else rest_of(law, q)
-            linear: Any = linearise(law, here, _velocities(law, p), allow_residual=as_given, side=side)
+            rest_state = q if as_given else rest_of(law, q)
+            linear: Any = linearise(law, rest_state, _velocities(law, p), allow_residual=as_given, side=side)
             advance(1, "slowest modes")
             if not isinstance(linear, Linearisation):
                 return _show_loop(linear, source, modes, delay=delay, norms=norms, as_json=as_json, plot=plot)
@@ -120,9 +120,9 @@ def rest_of(law: Any, q: Any) -> Any:
 
     if is_own_map(law):
         return q
-    acting = law if law.continuous is None else instant_law(law.continuous)
-    by_energy = acting.terms and acting.conservative
-    return find_equilibrium(acting, q) if by_energy else resting_state(acting, q)
+    acting_law = law if law.continuous is None else instant_law(law.continuous)
+    has_energy_law = acting_law.terms and acting_law.conservative
+    return find_equilibrium(acting_law, q) if has_energy_law else resting_state(acting_law, q)
 
 
 def _show_loop(
@@ -136,8 +136,8 @@ def _show_loop(
         raise ArgumentError(
             f"--plot {plot}: expected a continuous law without a past or a clock, whose modes are drawn"
         )
-    for flag, asked, method in (("--norms", norms, "norms"), ("--delay", delay, "delay_margin")):
-        if asked and not hasattr(type(linear), method):
+    for flag, is_asked, method in (("--norms", norms, "norms"), ("--delay", delay, "delay_margin")):
+        if is_asked and not hasattr(type(linear), method):
             raise ArgumentError(
                 f"{flag}: a {type(linear).__name__} of {linear.law.title} has none; leave {flag} out, or ask it of "
                 "the law without its past or clock"
@@ -167,11 +167,11 @@ def _show_loop(
 def _text(value: Any) -> str:
     """Return a fact as table text: complex numbers, names, numbers."""
     if isinstance(value, dict):
-        return ", ".join(f"{key} {_text(one)}" for key, one in value.items())
+        return ", ".join(f"{key} {_text(item)}" for key, item in value.items())
     if isinstance(value, list):
         pairs = value and isinstance(value[0], list)
         return ", ".join(
-            f"{one[0]:.5g}{f' {one[1]:+.5g}i' if one[1] else ''}" if pairs else _text(one) for one in value
+            f"{item[0]:.5g}{f' {item[1]:+.5g}i' if item[1] else ''}" if pairs else _text(item) for item in value
         )
     return f"{value:.5g}" if isinstance(value, float) else "none" if value is None else str(value)
 
@@ -180,9 +180,9 @@ def _finite_margin(name: str, margin: Any) -> dict[str, Any]:
     """Return a delay margin as plain data; None where unbounded."""
     from math import isfinite
 
-    numbers = {key: getattr(margin, key) for key in ("delay", "frequency", "least")}
-    plain = {key: value if isfinite(value) else None for key, value in numbers.items()}
-    return {name: plain | {"certified": margin.certified}}
+    summary = {key: getattr(margin, key) for key in ("delay", "frequency", "least")}
+    plain_values = {key: value if isfinite(value) else None for key, value in summary.items()}
+    return {name: plain_values | {"certified": margin.certified}}
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
@@ -197,8 +197,8 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
     from flockana.stability.centre_transfer import CentreOfMass
 
     slow, (n, m) = tuple(slow), linear.q.shape
-    whole = linear.q.size <= DENSE
-    invariant = linear.second_order.invariant if whole else linear.second_order.rigid_invariant
+    is_small = linear.q.size <= DENSE
+    invariant = linear.second_order.invariant if is_small else linear.second_order.rigid_invariant
     law: Any = linear.law
     centre = CentreOfMass(law.gains) if _follows(law) else None
     poles = None if centre is None else [[pole.real, pole.imag] for pole in centre.poles.tolist()]
@@ -210,7 +210,7 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
         "links": len(linear.links),
         "residual": linear.residual,
         "zero modes": [mode.name for mode in invariant.zero],
-        "zero modes sought": "all" if whole else "rigid motions only",
+        "zero modes sought": "all" if is_small else "rigid motions only",
         "drifting": list(invariant.drifting),
         "stable": all(mode.decays for mode in slow) if slow else None,
         "spectral abscissa": -slow[0].decay_rate if slow else None,
@@ -241,8 +241,8 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool) -> dic
             margin = linear.delay_margin(delayed=kind, progress=sys.stderr.isatty())
             facts |= _finite_margin(f"delay margin, {kind}", margin)
     if norms:
-        numbers = zip(("H2", "Hinf", "Hinf at"), linear.norms(), strict=True)
-        facts |= {key: value if isfinite(value) else None for key, value in numbers}
+        summary = zip(("H2", "Hinf", "Hinf at"), linear.norms(), strict=True)
+        facts |= {key: value if isfinite(value) else None for key, value in summary}
     return facts
 
 
@@ -255,19 +255,19 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
 
     law: Any = linear.law
     space = "3d" if linear.q.shape[1] == 3 else None
-    follows = _follows(law)
+    follow_text = _follows(law)
     target = None if law.target is None else law.target.position(linear.t)
     modes = linear.modes if linear.q.size <= DENSE else slow
     inner = [mode for mode in modes if not mode.name.startswith("translation")] or list(modes)
     halves = figure.subfigures(1, 2)
-    left = halves[0].subfigures(2, 1) if follows else [halves[0]]
+    left = halves[0].subfigures(2, 1) if follow_text else [halves[0]]
     poles = (
         linear.eigenvalues
         if linear.q.size <= DENSE
         else [v for m in slow for v in (m.eigenvalue, np.conj(m.eigenvalue))]
     )
     plots.pole_map(poles, ax=left[0].subplots())
-    if follows:
+    if follow_text:
         centre = CentreOfMass(law.gains)
         omega = centre.natural_frequency * np.geomspace(0.03, 30.0, 200)
         plots.bode(
@@ -279,19 +279,19 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
 
 
 def _title(facts: dict[str, Any], slow: tuple[Mode, ...]) -> str:
-    grows = "unstable" if any(mode.decay_rate < -mode.error for mode in slow) else "some modes do not decay"
-    kind = {None: "no modes", True: "stable off its zero modes", False: grows}[facts["stable"]]
+    growth_text = "unstable" if any(mode.decay_rate < -mode.error for mode in slow) else "some modes do not decay"
+    kind = {None: "no modes", True: "stable off its zero modes", False: growth_text}[facts["stable"]]
     return f"{facts['source']}: {kind}"
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     """Return the linearisation's facts as table rows."""
-    drifts = f"; drifting: {', '.join(facts['drifting'])}" if facts["drifting"] else ""
+    drift_text = f"; drifting: {', '.join(facts['drifting'])}" if facts["drifting"] else ""
     abscissa = facts["spectral abscissa"]
     rows = [
         ("law", f"{facts['law']}, n = {facts['n']}, m = {facts['m']}, {facts['links']} links"),
         ("residual", f"{facts['residual']:.2g} of the force scale"),
-        ("zero modes", f"{', '.join(facts['zero modes']) or 'none'} ({facts['zero modes sought']}){drifts}"),
+        ("zero modes", f"{', '.join(facts['zero modes']) or 'none'} ({facts['zero modes sought']}){drift_text}"),
         ("spectral abscissa", "—" if abscissa is None else f"{abscissa:.6g} per time unit, off the zero modes"),
     ]
     if facts["centre poles"] is not None:
@@ -305,9 +305,9 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         margin = facts.get(f"delay margin, {kind}")
         if margin is not None:
             at = "" if margin["frequency"] is None else f", then a swing at {margin['frequency']:.4g} rad per time unit"
-            most = "" if margin["certified"] else "at most "
+            limit_text = "" if margin["certified"] else "at most "
             delay = "none" if margin["delay"] is None else f"{margin['delay']:.5g}"
-            rows.append(("delay margin", f"{words}: {most}{delay}{at}"))
+            rows.append(("delay margin", f"{words}: {limit_text}{delay}{at}"))
     for name, unit in (("H2", "time^(3/2)"), ("Hinf", "time²")):
         if name in facts:
             value = facts[name]

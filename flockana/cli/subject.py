@@ -74,19 +74,19 @@ def read_law(name: str) -> Any:
 
 def _one_of(name: str, kind: str, classes: tuple[type, ...], remedy: str) -> Any:
     """Return a named object of a file, or the only object of given classes; raise otherwise."""
-    file, _, wanted = name.partition(".py:")
+    file, _, wanted_name = name.partition(".py:")
     path = _path_of(file)
-    defined = _names_in(path)
-    items = {key: value for key, value in defined.items() if isinstance(value, classes)}
-    if wanted in items:
-        return items[wanted]
-    if wanted in defined:
-        raise ArgumentError(f"{name} is {format_value(defined[wanted])}: expected a {kind}; {remedy}")
-    if wanted:
-        raise UnknownNameError(f"{kind} in {path}", wanted, tuple(items))
+    defined_names = _names_in(path)
+    items = {key: value for key, value in defined_names.items() if isinstance(value, classes)}
+    if wanted_name in items:
+        return items[wanted_name]
+    if wanted_name in defined_names:
+        raise ArgumentError(f"{name} is {format_value(defined_names[wanted_name])}: expected a {kind}; {remedy}")
+    if wanted_name:
+        raise UnknownNameError(f"{kind} in {path}", wanted_name, tuple(items))
     if len(items) != 1:
-        listed = ", ".join(items) or "none"
-        raise ArgumentError(f"{path} holds {len(items)} {kind}s ({listed}): expected one, or {KIND}; {remedy}")
+        listing = ", ".join(items) or "none"
+        raise ArgumentError(f"{path} holds {len(items)} {kind}s ({listing}): expected one, or {KIND}; {remedy}")
     return next(iter(items.values()))
 
 
@@ -111,5 +111,5 @@ def _names_in(path: Path) -> dict[str, Any]:
         raise ArgumentError(f"{path}: {error}") from error
     except Exception as error:
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(full)]
-        where = f", line {lines[-1]}" if lines else ""
-        raise ArgumentError(f"{path}{where}: {type(error).__name__}: {error}") from error
+        place_text = f", line {lines[-1]}" if lines else ""
+        raise ArgumentError(f"{path}{place_text}: {type(error).__name__}: {error}") from error

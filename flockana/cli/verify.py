@@ -71,10 +71,10 @@ def verify_command(
         _ensure_checkable(name, on, seeds, seed)
     checked = None if name is None else read_theorem(name)
     seed, name = seed or 0, getattr(checked, "id", name)
-    work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
+    tasks, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
     folder = None if no_report else ensure_directory(report or report_folder(name))
     saved = [] if on is None else [_case_page(checked, on, seed, not no_report)]
-    results, code, failure = (saved, OK, None) if saved else _check_all(work, jobs or cores())
+    results, code, failure = (saved, OK, None) if saved else _check_all(tasks, jobs or cores())
     pages = [result for result in results if isinstance(result, Page)]
     surveyed = [result for result in results if isinstance(result, SurveyResult)]
     if code == OK and any(page.surprises for page in pages):
@@ -104,14 +104,14 @@ def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | N
 
     if seeds:
         raise ArgumentError(f"{name}: a flock in a file is run once; leave out --seeds, or use flockana ensemble")
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     (page,) = own_pages(read_own(name), seed=seed or 0, figures=folder is not None)
-    facts: Any = {"seed": seed or 0, "seconds": time.perf_counter() - started}
-    written = None if folder is None else write_report([page], folder, of=page.name, **facts)
+    facts: Any = {"seed": seed or 0, "seconds": time.perf_counter() - start_time}
+    written_report = None if folder is None else write_report([page], folder, of=page.name, **facts)
     if as_json:
         typer.echo(in_output_encoding(verdicts_json([page], **facts)), nl=False)
     else:
-        _print_verdicts([page], None, facts["seconds"], written, name)
+        _print_verdicts([page], None, facts["seconds"], written_report, name)
     return OK
 
 
@@ -139,10 +139,10 @@ def _planned(
     from flockana.report.verify_catalogue import plan
 
     tasks = plan(name, seed=seed, figures=figures)
-    many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
+    survey_list = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
     linear = (LINEARISED,) if name in (None, *DECAYS, *MARGINS) else ()
-    sections = (Section(each, seed) for each in (*([MANY_LAWS] if name is None else []), *linear) if figures)
-    return (*tasks, *sections, *many), many
+    sections = (Section(item, seed) for item in (*([MANY_LAWS] if name is None else []), *linear) if figures)
+    return (*tasks, *sections, *survey_list), survey_list
 
 
 def _write(folder: Path, results: Sequence[Done], pages: Sequence[Page], **run: Any) -> Path:
@@ -233,8 +233,8 @@ def _print_verdicts(
     from flockana.report.console import details, errata_table, statistics_table, summary, verdict_table
     from flockana.report.verify_catalogue import ERRATA
 
-    console, in_full = Console(highlight=False, emoji=False), name not in (None, ERRATA)
-    if in_full:
+    console, is_full = Console(highlight=False, emoji=False), name not in (None, ERRATA)
+    if is_full:
         for finding in (finding for page in pages for finding in page.findings):
             console.print(details(finding.verdict))
     console.print(verdict_table(pages, width=console.width))
@@ -243,7 +243,7 @@ def _print_verdicts(
     for page in pages:
         for text in page.surprises:
             console.print(f"  {page.name}: {text}", style="bold red", markup=False)
-    if statistics is not None and (in_full or written is None):
+    if statistics is not None and (is_full or written is None):
         console.print(statistics_table(statistics))
     elif statistics is not None:
         console.print("shares of runs over many seeds: in the report")

@@ -63,8 +63,8 @@ class Exercise:
 
 def lectures() -> Path:
     """Return the folder of lecture sources, in the installed package or in the checkout."""
-    shipped = _PACKAGE / "lectures"
-    return shipped if shipped.is_dir() else _CHECKOUT / "notebooks"
+    shipped_folder = _PACKAGE / "lectures"
+    return shipped_folder if shipped_folder.is_dir() else _CHECKOUT / "notebooks"
 
 
 def sources() -> list[Path]:
@@ -99,8 +99,8 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
     pages.fold_depth(book.cells, entry)
     book.cells.insert(1, nbformat.v4.new_markdown_cell(pages.header(entry, source.parent)))
     lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
-    hidden = {"tags": ["install"], "jupyter": {"source_hidden": True}}
-    book.cells.insert(2, nbformat.v4.new_code_cell(lines, metadata=hidden))
+    hidden_metadata = {"tags": ["install"], "jupyter": {"source_hidden": True}}
+    book.cells.insert(2, nbformat.v4.new_code_cell(lines, metadata=hidden_metadata))
     book.cells.append(nbformat.v4.new_markdown_cell(pages.references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
@@ -142,8 +142,8 @@ def exercises(source: Path) -> Iterator[Exercise]:
 
 def asked(check: str) -> tuple[str, str]:
     """Return the variable in an exercise's check, and the form of the answer."""
-    *before, last = ast.parse(check).body
-    match last:
+    *before, last_statement = ast.parse(check).body
+    match last_statement:
         case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:
             texts = {option.arg: option.value for option in options}
         case _:
@@ -162,7 +162,7 @@ def form_check(check: str) -> str:
 
 def write(folder: Path, version: str = "student", *, address: str = "", student: str = "") -> list[Path]:
     """Write one version of all lectures with all imported files; with solutions, also the lecturer's pages."""
-    notebooks = {each.stem: notebook(each, version, address=address, student=student) for each in sources()}
+    notebooks = {source.stem: notebook(source, version, address=address, student=student) for source in sources()}
     books = {f"{name}.ipynb": notebook_bytes(book) for name, book in notebooks.items()}
     files = {"map.md": pages.map_page(lectures()).encode(), "notation.md": pages.notation_page(lectures()).encode()}
     if version == "solutions":
@@ -177,8 +177,8 @@ def lecturer_pages() -> dict[str, bytes]:
 
 def companions() -> dict[str, bytes]:
     """Return the files that lectures import, by name."""
-    law, shipped = lectures() / "own_law", lectures() / "proofs"
-    proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
+    law, shipped_folder = lectures() / "own_law", lectures() / "proofs"
+    proofs = shipped_folder if shipped_folder.is_dir() else _CHECKOUT / "proofs"
     paths = {path: f"own_law/{path.relative_to(law).as_posix()}" for path in sorted(law.rglob("*")) if path.is_file()}
     paths |= {proofs / name: f"proofs/{name}" for name in ("__init__.py", "proof.py")}
     return {name: path.read_bytes() for path, name in paths.items() if "__pycache__" not in path.parts}

@@ -20,8 +20,8 @@ def notebook_bytes(book: Any) -> bytes:
 
 def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
     """Write files into a folder, or none if one exists there with other content."""
-    home = ensure_path(folder, action="write to", remedy=_REMEDY)
-    paths = {home / name: content for name, content in files.items()}
+    folder_prefix = ensure_path(folder, action="write to", remedy=_REMEDY)
+    paths = {folder_prefix / name: content for name, content in files.items()}
     missing = [path for path, content in paths.items() if not _is_there(path, content)]
     try:
         for path in missing:
@@ -29,7 +29,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
             write_atomic(path, paths[path], remedy=_REMEDY)
     except OSError as error:
         reason = getattr(error.__cause__, "strerror", None) or error.strerror or error
-        raise FileError(f"cannot write all of the course to {home}: {reason}; {_REMEDY}") from error
+        raise FileError(f"cannot write all of the course to {folder_prefix}: {reason}; {_REMEDY}") from error
     return list(paths)
 
 
@@ -38,10 +38,10 @@ def _is_there(path: Path, content: bytes) -> bool:
     if not os.path.lexists(path):
         return False
     try:
-        same = path.is_file() and path.read_bytes() == content
+        is_identical = path.is_file() and path.read_bytes() == content
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}; {_REMEDY}") from error
-    if not same:
+    if not is_identical:
         raise FileError(
             f"{path} exists with other content: nothing is written, so that no answers are lost; "
             f"{_REMEDY}, or move it away"

@@ -26,7 +26,7 @@ GRADERS = ("otter", "nbgrader")
 def master(source: Path, grader: str, *, student: str = "") -> Any:
     """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
-    posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
+    exercise_cells: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, questions = build.notebook(source, "solutions", student=student), iter(build.exercises(source))
     cells: list[Any] = [new_raw_cell(_assignment(source))] if grader == "otter" else []
     parts: dict[str, Any] = {}
@@ -38,7 +38,7 @@ def master(source: Path, grader: str, *, student: str = "") -> Any:
             cells.append(cell)
         if kind == "check" or (kind == "solution" and cell.cell_type == "markdown"):
             check = cell.source if kind == "check" else ""
-            cells += posed(next(questions), parts["exercise"], parts["solution"].source, check)
+            cells += exercise_cells(next(questions), parts["exercise"], parts["solution"].source, check)
     for number, cell in enumerate(cells):
         cell["id"] = f"{number_of(source)}-{number:03d}"
     book.cells = cells
@@ -48,48 +48,48 @@ def master(source: Path, grader: str, *, student: str = "") -> Any:
 def write_for(folder: Path, grader: str, *, student: str = "") -> list[Path]:
     """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``."""
     books: dict[str, bytes] = {}
-    others: dict[str, bytes] = {}
-    for source in build.sources():
-        home = f"source/{source.stem}/" if grader == "nbgrader" else ""
-        books[f"{home}{source.stem}.ipynb"] = notebook_bytes(master(source, grader, student=student))
-        if build.needs_companions(source):
-            others |= {f"{home}{name}": content for name, content in build.companions().items()}
+    other_files: dict[str, bytes] = {}
+    for notebook_path in build.sources():
+        home = f"source/{notebook_path.stem}/" if grader == "nbgrader" else ""
+        books[f"{home}{notebook_path.stem}.ipynb"] = notebook_bytes(master(notebook_path, grader, student=student))
+        if build.needs_companions(notebook_path):
+            other_files |= {f"{home}{name}": content for name, content in build.companions().items()}
     if grader == "nbgrader":
-        others["nbgrader_config.py"] = _NBGRADER_CONFIG.encode()
-    return deliver(folder, books | others | build.lecturer_pages())[: len(books)]
+        other_files["nbgrader_config.py"] = _NBGRADER_CONFIG.encode()
+    return deliver(folder, books | other_files | build.lecturer_pages())[: len(books)]
 
 
 def _tests(check: str, exercise: build.Exercise) -> tuple[str, str]:
     """Return the visible and the hidden test of an exercise."""
-    visible = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
-    return visible, f'assert {check.rstrip()}.status == "right"'
+    visible_tests = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
+    return visible_tests, f'assert {check.rstrip()}.status == "right"'
 
 
 def _assignment(source: Path) -> str:
-    listed = "".join(f"\n  - {name}" for name in build.companions() if name.endswith(".py"))
-    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listed}" * build.needs_companions(
+    listing = "".join(f"\n  - {name}" for name in build.companions() if name.endswith(".py"))
+    return "# ASSIGNMENT CONFIG\ninit_cell: true\nexport_cell: true" + f"\nfiles:{listing}" * build.needs_companions(
         source
     )
 
 
 def _otter(exercise: build.Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for Otter: raw cells delimit a question, and the hidden test carries its points."""
-    by_hand = not check
+    is_graded_by_hand = not check
     head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
-    yield new_raw_cell(head + "\nmanual: true" * by_hand)
+    yield new_raw_cell(head + "\nmanual: true" * is_graded_by_hand)
     yield new_markdown_cell(text.source)
     yield new_raw_cell("# BEGIN SOLUTION")
-    if by_hand:
+    if is_graded_by_hand:
         yield new_markdown_cell(solution)
     else:
         prompt = f'""" # BEGIN PROMPT\n{exercise.name} = ...\n"""; # END PROMPT'
         yield new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
     yield new_raw_cell("# END SOLUTION")
-    if not by_hand:
-        visible, hidden = _tests(check, exercise)
+    if not is_graded_by_hand:
+        visible_tests, hidden_tests = _tests(check, exercise)
         yield new_raw_cell("# BEGIN TESTS")
-        yield new_code_cell(_scored(0, hidden=False) + visible)
-        yield new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden)
+        yield new_code_cell(_scored(0, hidden=False) + visible_tests)
+        yield new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden_tests)
         yield new_raw_cell("# END TESTS")
     yield new_raw_cell("# END QUESTION")
 
@@ -102,13 +102,13 @@ def _nbgrader(exercise: build.Exercise, text: Any, solution: str, check: str) ->
     """Export for nbgrader: cell metadata, and solutions between ``### BEGIN`` and ``### END``."""
     yield new_markdown_cell(text.source)
     if not check:
-        written = new_markdown_cell(f"### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
-        yield _marked(written, exercise, grade=True, solution=True)
+        solution_cell = new_markdown_cell(f"### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
+        yield _marked(solution_cell, exercise, grade=True, solution=True)
     else:
         answer = new_code_cell(f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
         yield _marked(answer, exercise, grade=False, solution=True)
-        visible, hidden = _tests(check, exercise)
-        tests = new_code_cell(f"{visible}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
+        visible_tests, hidden_tests = _tests(check, exercise)
+        tests = new_code_cell(f"{visible_tests}\n### BEGIN HIDDEN TESTS\n{hidden_tests}\n### END HIDDEN TESTS")
         yield _marked(tests, exercise, grade=True, solution=False)
 
 

@@ -23,8 +23,8 @@ def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = 
     for i, j in links:
         ax.plot(*q[[i, j]].T, color=MUTED, linestyle="-", linewidth=1.2, zorder=1)
     ax.scatter(*q.T, s=170, color="white", edgecolors=INK, zorder=2)
-    for k, place in enumerate(q):
-        ax.text(*place, f"{k + 1}", ha="center", va="center", fontsize=8, zorder=3)
+    for k, position in enumerate(q):
+        ax.text(*position, f"{k + 1}", ha="center", va="center", fontsize=8, zorder=3)
     ax.set(xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
     write_title(ax, title)
     return ax
@@ -32,23 +32,23 @@ def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = 
 
 def pair_vector(eps: float = 0.1, *, axes: Any) -> Any:
     """Draw n_ij beside q_j - q_i in the plane, and both lengths over the distance, on two axes."""
-    plane, lengths = _plain(axes[0]), axes[1]
+    plane, length_axes = _plain(axes[0]), axes[1]
     i, j = np.array([0.0, 0.0]), np.array([6.0, 2.0])
     n = (j - i) / np.sqrt(1.0 + eps * (j - i) @ (j - i))
     _arrow(plane, i, j, BLUE, "--")
     _arrow(plane, i, i + n, VERMILLION, "-", width=2.2)
-    for place, name, offset in ((i, "$q_i$", (-4, -14)), (j, "$q_j$", (4, 4))):
-        plane.plot(*place, "o", color=INK, markersize=6)
-        _note(plane, name, place, offset)
+    for position, name, offset in ((i, "$q_i$", (-4, -14)), (j, "$q_j$", (4, 4))):
+        plane.plot(*position, "o", color=INK, markersize=6)
+        _note(plane, name, position, offset)
     _note(plane, "$q_j-q_i$", 0.72 * j, (-2, 8), color=BLUE, ha="right")
     _note(plane, "$n_{ij}$", i + 0.6 * n, (6, -14), color=VERMILLION)
     plane.set(xlim=(-1.2, 7.5), ylim=(-1.6, 3.4))
     x = np.linspace(0.0, 12.0, 300)
-    lengths.plot(x, x, color=BLUE, linestyle="--", label="$\\|q_j-q_i\\|$")
-    lengths.plot(x, x / np.sqrt(1.0 + eps * x**2), color=VERMILLION, linestyle="-", label="$\\|n_{ij}\\|$")
-    lengths.axhline(eps**-0.5, color=MUTED, linestyle=":", label="$1/\\sqrt{\\varepsilon}$")
-    lengths.set_ylim(0.0, 6.0)
-    finish(lengths, "distance of the pair (length)", "length of the vector")
+    length_axes.plot(x, x, color=BLUE, linestyle="--", label="$\\|q_j-q_i\\|$")
+    length_axes.plot(x, x / np.sqrt(1.0 + eps * x**2), color=VERMILLION, linestyle="-", label="$\\|n_{ij}\\|$")
+    length_axes.axhline(eps**-0.5, color=MUTED, linestyle=":", label="$1/\\sqrt{\\varepsilon}$")
+    length_axes.set_ylim(0.0, 6.0)
+    finish(length_axes, "distance of the pair (length)", "length of the vector")
     return axes
 
 
@@ -57,9 +57,9 @@ def norms(eps: Sequence[float] = (0.1, 1.0), *, ax: Any = None) -> Any:
     ax = ensure_axes(ax)
     x = np.linspace(-4.0, 4.0, 401)
     ax.plot(x, np.abs(x), color=BLUE, linestyle="--", label="Euclidean norm")
-    for each, colour, dash in zip(eps, (VERMILLION, GREEN), ("-", "-."), strict=False):
-        norm = AlphaInteraction(eps=each).sigma_norm(np.abs(x))
-        ax.plot(x, norm, color=colour, linestyle=dash, label=f"σ-norm, ε = {each:g}")
+    for item, colour, dash in zip(eps, (VERMILLION, GREEN), ("-", "-."), strict=False):
+        norm = AlphaInteraction(eps=item).sigma_norm(np.abs(x))
+        ax.plot(x, norm, color=colour, linestyle=dash, label=f"σ-norm, ε = {item:g}")
     ax.annotate("corner", (0.0, 0.0), (0.9, 0.1), fontsize=8, arrowprops={"arrowstyle": "->", "color": MUTED})
     return finish(ax, "x (length)", "norm of x")
 
@@ -68,9 +68,9 @@ def bumps(h: Sequence[float] = (0.2, 0.6, 0.9), *, ax: Any = None) -> Any:
     """Draw bump functions: 1 up to h, 0 from 1 on, half a cosine between."""
     ax = ensure_axes(ax)
     z = np.linspace(0.0, 1.2, 400)
-    for each, colour, dash in zip(h, (BLUE, VERMILLION, GREEN), ("-", "--", "-."), strict=False):
-        ax.plot(z, AlphaInteraction(h=each).bump(z), color=colour, linestyle=dash, label=f"h = {each:g}")
-        ax.plot([each], [1.0], "o", color=colour, markersize=4)
+    for item, colour, dash in zip(h, (BLUE, VERMILLION, GREEN), ("-", "--", "-."), strict=False):
+        ax.plot(z, AlphaInteraction(h=item).bump(z), color=colour, linestyle=dash, label=f"h = {item:g}")
+        ax.plot([item], [1.0], "o", color=colour, markersize=4)
     return finish(ax, "z (no unit)", "$\\rho_h(z)$")
 
 
@@ -83,14 +83,14 @@ def wall_and_well(interaction: Any, *, ax: Any = None) -> Any:
     ax.plot(x, psi, color=BLUE, linestyle="-")
     ax.plot([0.0], [interaction.c_star], "s", color=VERMILLION, markersize=5)
     _note(ax, f"wall: $c^* = {interaction.c_star:.1f}$", (0.0, interaction.c_star), (12, -4))
-    inset = ax.inset_axes((0.47, 0.40, 0.5, 0.5))
-    near = x > 0.9 * interaction.d
-    inset.plot(x[near], psi[near], color=BLUE, linestyle="-")
-    for at, value, name in ((interaction.d, 0.0, "well"), (interaction.r, rim, f"rim: {rim:.3f}")):
-        inset.plot([at], [value], "o", color=VERMILLION, markersize=4)
-        _note(inset, name, (at, value), (4, 6), fontsize=8)
-    inset.set(xlim=(0.93 * interaction.d, 1.14 * interaction.r), ylim=(-0.1 * rim, 1.6 * rim))
-    inset.tick_params(labelsize=7)
+    inset_axes = ax.inset_axes((0.47, 0.40, 0.5, 0.5))
+    is_shown = x > 0.9 * interaction.d
+    inset_axes.plot(x[is_shown], psi[is_shown], color=BLUE, linestyle="-")
+    for radius, value, name in ((interaction.d, 0.0, "well"), (interaction.r, rim, f"rim: {rim:.3f}")):
+        inset_axes.plot([radius], [value], "o", color=VERMILLION, markersize=4)
+        _note(inset_axes, name, (radius, value), (4, 6), fontsize=8)
+    inset_axes.set(xlim=(0.93 * interaction.d, 1.14 * interaction.r), ylim=(-0.1 * rim, 1.6 * rim))
+    inset_axes.tick_params(labelsize=7)
     return finish(ax, "distance of the pair (length)", "$\\psi_\\alpha$ (energy)")
 
 
@@ -99,8 +99,8 @@ def target_pull(*, ax: Any = None) -> Any:
     ax = _plain(ensure_axes(ax))
     q = np.array([[0.0, 0.0], [1.6, 0.3], [0.7, 1.5], [-0.6, 1.2], [0.9, -1.2]])
     target, velocity = np.array([4.6, 1.4]), np.array([1.0, 0.5])
-    for each in q:
-        _arrow(ax, each, each + 0.3 * (target - each), BLUE, "-")
+    for item in q:
+        _arrow(ax, item, item + 0.3 * (target - item), BLUE, "-")
     ax.scatter(*q.T, s=36, color=INK, zorder=3)
     ax.plot(*q.mean(axis=0), "x", color=VERMILLION, markersize=9, markeredgewidth=2.2, zorder=4)
     _note(ax, "$q_c$", q.mean(axis=0), (-6, 8), color=VERMILLION)
@@ -155,8 +155,8 @@ def zones(radii: Mapping[str, float], *, ax: Any = None) -> Any:
         ax.fill(radius * np.cos(_CIRCLE), radius * np.sin(_CIRCLE), facecolor=str(grey), edgecolor=INK, linewidth=0.8)
         angle = 0.9 - 0.35 * k
         at = radius * np.array([np.cos(angle), np.sin(angle)])
-        look = {"arrowstyle": "-", "color": INK, "linewidth": 0.7}
-        ax.annotate(f"{name} = {radius:g}", at, (1.15 * most, height), fontsize=8, va="center", arrowprops=look)
+        plot_style = {"arrowstyle": "-", "color": INK, "linewidth": 0.7}
+        ax.annotate(f"{name} = {radius:g}", at, (1.15 * most, height), fontsize=8, va="center", arrowprops=plot_style)
     ax.plot(0.0, 0.0, "o", color=INK, markersize=6)
     ax.set(xlim=(-1.1 * most, 2.6 * most), ylim=(-1.1 * most, 1.2 * most))
     return ax
@@ -172,9 +172,9 @@ def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
     def above(x: Any, energy: float) -> Any:
         return interaction.psi_alpha(interaction.sigma_norm(x)) - energy
 
-    looks = [(0.5, BLUE, "-", "0.5 of the rim: it swings"), (1.0, INK, "--", "the rim: separatrix")]
-    looks.append((1.6, VERMILLION, "-.", "1.6 of the rim: it leaves"))
-    for share, colour, dash, name in looks:
+    orbit_styles = [(0.5, BLUE, "-", "0.5 of the rim: it swings"), (1.0, INK, "--", "the rim: separatrix")]
+    orbit_styles.append((1.6, VERMILLION, "-.", "1.6 of the rim: it leaves"))
+    for share, colour, dash, name in orbit_styles:
         nearest = brentq(above, 0.5 * interaction.d, interaction.d, args=(share * rim,), xtol=1e-13)
         swings = share < 1.0  # else it ends at the range, or leaves
         end = brentq(above, interaction.d, interaction.r, args=(share * rim,), xtol=1e-13) if swings else interaction.r
@@ -182,9 +182,9 @@ def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
         x = nearest + (end - nearest) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 400)))  # dense where it turns
         rate = 2.0 * np.sqrt(np.clip(-above(x, share * rim), 0.0, None))
         ax.plot([*x[::-1], *x], [*-rate[::-1], *rate], color=colour, linestyle=dash, label=name)
-        middle = int(np.argmax(rate))
-        _arrow(ax, (x[middle], rate[middle]), (x[middle + 4], rate[middle + 4]), colour, "-")
-        _arrow(ax, (x[middle], -rate[middle]), (x[middle - 4], -rate[middle - 4]), colour, "-")
+        peak_index = int(np.argmax(rate))
+        _arrow(ax, (x[peak_index], rate[peak_index]), (x[peak_index + 4], rate[peak_index + 4]), colour, "-")
+        _arrow(ax, (x[peak_index], -rate[peak_index]), (x[peak_index - 4], -rate[peak_index - 4]), colour, "-")
     ax.axvline(interaction.r, color=MUTED, linestyle=":", linewidth=1.0)
     _note(ax, "r", (interaction.r, ax.get_ylim()[0]), (3, 4), color=MUTED)
     ax.plot([interaction.d], [0.0], "o", color=INK, markersize=4)
@@ -194,12 +194,12 @@ def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
 def orbit_ball_level(*, ax: Any = None) -> Any:
     """Draw an orbit of equilibria, the states within a distance of it, a level set inside, and a solution."""
     ax = _plain(ensure_axes(ax))
-    round_, thick = np.array([np.cos(_CIRCLE), np.sin(_CIRCLE)]), 0.45
-    ax.fill(*((1.0 + thick) * round_), color="0.88")
-    ax.fill(*((1.0 - thick) * round_), color="white")
+    circle_points, thick = np.array([np.cos(_CIRCLE), np.sin(_CIRCLE)]), 0.45
+    ax.fill(*((1.0 + thick) * circle_points), color="0.88")
+    ax.fill(*((1.0 - thick) * circle_points), color="white")
     for radius, label in ((1.0 + 0.6 * thick, "level set of the energy"), (1.0 - 0.6 * thick, None)):
-        ax.plot(*(radius * round_), color=VERMILLION, linestyle="--", label=label)
-    ax.plot(*round_, color=BLUE, linestyle="-", linewidth=2.2, label="orbit of equilibria")
+        ax.plot(*(radius * circle_points), color=VERMILLION, linestyle="--", label=label)
+    ax.plot(*circle_points, color=BLUE, linestyle="-", linewidth=2.2, label="orbit of equilibria")
     t = np.linspace(0.0, 1.0, 300)
     away = 0.24 * np.exp(-4.0 * t) * np.cos(22.0 * t)
     angle = 0.6 + 0.9 * (1.0 - np.exp(-3.0 * t))
@@ -232,10 +232,10 @@ def equilibria(*, axes: Any) -> Any:
 def held_at_a_jump(*, axes: Any) -> Any:
     """Draw a force that jumps, with Filippov's values at the jump, and a damped motion in the phase plane."""
     (force, plane), (repulsion, pull, k2) = axes, (1.0, 0.4, 0.12)
-    for ends, value, name, below in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
+    for ends, value, name, label_below in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
         force.plot(ends, (value, value), color=BLUE, linestyle="-")
         force.plot(0.0, value, "o", color=BLUE, markerfacecolor="white", markersize=5, zorder=3)
-        _note(force, name, (ends[0] + 0.25, value), (0, below), fontsize=8)
+        _note(force, name, (ends[0] + 0.25, value), (0, label_below), fontsize=8)
     force.plot((0.0, 0.0), (-pull, repulsion), color=VERMILLION, linestyle="--", label="Filippov: any of these")
     force.plot(0.0, 0.0, "o", color=VERMILLION, label="held: the force 0")
     y, rate, path = 0.0, 0.9, []
@@ -258,8 +258,8 @@ def crossing_links(*, ax: Any = None) -> Any:
         ax.plot(*q[list(pair)].T, color=colour, linestyle=dash, linewidth=2.0)
     for a, b in ((0, 2), (2, 1), (1, 3), (3, 0)):
         ax.plot(*q[[a, b]].T, color=MUTED, linestyle=":", linewidth=1.0)
-        length = f"{np.hypot(*(q[a] - q[b])):.2f}"
-        ax.text(*q[[a, b]].mean(axis=0), length, fontsize=8, ha="center", backgroundcolor="white")
+        distance = f"{np.hypot(*(q[a] - q[b])):.2f}"
+        ax.text(*q[[a, b]].mean(axis=0), distance, fontsize=8, ha="center", backgroundcolor="white")
     ax.scatter(*q.T, s=40, color=INK, zorder=3)
     ax.set(xlim=(-0.8, 0.8), ylim=(-0.75, 0.65))
     return ax

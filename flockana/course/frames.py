@@ -57,7 +57,7 @@ class Frames:
 
     def html(self) -> str:
         """Return a self-contained page with the pictures."""
-        sources = ["data:image/png;base64," + base64.b64encode(each).decode() for each in self.pictures]
+        sources = ["data:image/png;base64," + base64.b64encode(picture).decode() for picture in self.pictures]
         return _PAGE.format(
             title=escape(self.title),
             title_js=_as_script(self.title),
@@ -115,7 +115,7 @@ def slider(
             figure.set_layout_engine("none")
         pictures.append(_png(figure))
     plt.close(figure)
-    texts = tuple(each if isinstance(each, str) else f"{each:.4g}" for each in values)
+    texts = tuple(item if isinstance(item, str) else f"{item:.4g}" for item in values)
     pixels = round(size[0] * _DPI), round(size[1] * _DPI)
     return Frames(tuple(pictures), texts, name, title, pixels, start, seconds)
 
@@ -130,7 +130,7 @@ def film(
 def _png(figure: Any) -> bytes:
     from PIL import Image
 
-    whole, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(whole, format="png", dpi=_DPI, bbox_inches=None)
-    Image.open(whole).convert("RGB").quantize(_COLOURS).save(small, format="png", optimize=True)
-    return small.getvalue()
+    full_image, small_image = io.BytesIO(), io.BytesIO()
+    figure.savefig(full_image, format="png", dpi=_DPI, bbox_inches=None)
+    Image.open(full_image).convert("RGB").quantize(_COLOURS).save(small_image, format="png", optimize=True)
+    return small_image.getvalue()

@@ -53,19 +53,19 @@ def grade(
     """
     if digits is not None and within is not None:
         raise ArgumentError(f"digits = {digits} and within = {within}: expected one of the two; leave the other out")
-    handed = answered(answer, form or form_of(right))
-    if handed.status != "handed in":
-        return handed
+    given_answer = answered(answer, form or form_of(right))
+    if given_answer.status != "handed in":
+        return given_answer
     if isinstance(right, list | tuple | set | np.ndarray) and len(answer) != len(right):
         return Grade("not yet", f"a list of {len(right)} is asked for; got {len(answer)}")
     try:
         if isinstance(right, Callable):  # type: ignore[arg-type]
-            good = bool(right(answer))
+            is_right = bool(right(answer))
         else:
-            good = _same(answer, right, lambda b: _tolerance(b, digits, within))
+            is_right = _same(answer, right, lambda b: _tolerance(b, digits, within))
     except Exception:  # whatever a student hands in, the check answers
-        good = False
-    return Grade("right" if good else "not yet", hint)
+        is_right = False
+    return Grade("right" if is_right else "not yet", hint)
 
 
 def answered(answer: Any, form: str) -> Grade:
@@ -105,8 +105,8 @@ def shows(axes: Any, sets: Any) -> bool:
     >>> shows([ax], [[[1.0, 3.0]]]), shows([ax], [[[1.0, 2.0]]]), shows([ax], [[[1.0, 3.0]], [[0.0, 2.0]]])
     (True, False, False)
     """
-    matches = np.array([[_draws(ax, points) for ax in axes] for points in sets])
-    matching = maximum_bipartite_matching(csr_matrix(matches), perm_type="column")
+    is_drawn = np.array([[_draws(ax, points) for ax in axes] for points in sets])
+    matching = maximum_bipartite_matching(csr_matrix(is_drawn), perm_type="column")
     return bool((matching >= 0).all())
 
 
@@ -118,13 +118,13 @@ def _draws(ax: Any, points: Any) -> bool:
         curves += [np.asarray(each.get_offsets(), float), *(path.vertices for path in each.get_paths())]
     all_points = np.vstack([np.empty((0, 2)), *(np.ma.filled(each, np.nan).reshape(-1, 2) for each in curves)])
     wanted_points = np.asarray(points, float).reshape(-1, 2)
-    near = 1e-6 * max(1.0, float(np.abs(wanted_points).max()))
-    return all(np.any(np.abs(all_points - each).max(axis=1) <= near) for each in wanted_points)
+    tolerance = 1e-6 * max(1.0, float(np.abs(wanted_points).max()))
+    return all(np.any(np.abs(all_points - each).max(axis=1) <= tolerance) for each in wanted_points)
 
 
 def is_own(*things: Any) -> bool:
     """Return whether functions and classes come from the student: neither library nor course files."""
-    return not any(each.__module__.partition(".")[0] in ("flockana", "own_law") for each in things)
+    return not any(thing.__module__.partition(".")[0] in ("flockana", "own_law") for thing in things)
 
 
 def _number(x: Any) -> bool:

@@ -29,8 +29,8 @@ def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
     '0.6 or 10.8 of 1.2'
     """
     own_column = {row[0]: row[column] for row in rows}
-    longest_first = "|".join(re.escape(each) for each in sorted(own_column, key=len, reverse=True))
-    return re.sub(rf"(?<![\w.])(?:{longest_first})(?!\d|\.\d)", lambda found: own_column[found[0]], text)
+    number_pattern = "|".join(re.escape(pattern_item) for pattern_item in sorted(own_column, key=len, reverse=True))
+    return re.sub(rf"(?<![\w.])(?:{number_pattern})(?!\d|\.\d)", lambda found: own_column[found[0]], text)
 
 
 def draw_column(student: str, exercise: str, columns: int) -> int:

@@ -47,22 +47,22 @@ def course_map(folder: Path) -> list[Lecture]:
         raise ArgumentError(f"lectures.toml lists {sorted(table)}; the folder holds {sorted(files)}")
     lectures: list[Lecture] = []
     for number, entry in table.items():
-        early = [each for each in entry["after"] if each not in {lecture.number for lecture in lectures}]
+        early = [item for item in entry["after"] if item not in {lecture.number for lecture in lectures}]
         if early:
             raise ArgumentError(f"lecture {number} builds on {early}: expected earlier entries of lectures.toml")
         references = tuple(as_text(cite(key)) for key in entry["references"])
         title = re.search(r"^# # (.+)$", files[number].read_text(encoding="utf-8"), re.MULTILINE)
         if title is None:
             raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
-        after, further = tuple(entry["after"]), tuple(entry["further"])
+        after, further_links = tuple(entry["after"]), tuple(entry["further"])
         depth, theorems = tuple(entry.get("depth", ())), entry.get("theorems", {})
-        lectures.append(Lecture(number, title[1], after, entry["minutes"], references, further, depth, theorems))
+        lectures.append(Lecture(number, title[1], after, entry["minutes"], references, further_links, depth, theorems))
     return lectures
 
 
 def entry_of(source: Path) -> Lecture:
     """Return a lecture's entry in the map of the course."""
-    return next(each for each in course_map(source.parent) if each.number == number_of(source))
+    return next(item for item in course_map(source.parent) if item.number == number_of(source))
 
 
 def as_text(bibtex: str) -> str:
@@ -75,25 +75,25 @@ def as_text(bibtex: str) -> str:
      Control 51(3), 401-420, 2006, doi:10.1109/TAC.2005.864190.'
     """
     field = {name: _plain(text) for name, text in _FIELD.findall(bibtex)}
-    *others, last = [_initials(name) for name in field.get("author", "").split(" and ")]
-    authors = f"{', '.join(others)} and {last}" if others else last
+    *first_authors, last_author = [_initials(name) for name in field.get("author", "").split(" and ")]
+    authors = f"{', '.join(first_authors)} and {last_author}" if first_authors else last_author
     number = f"({field['number']})" if "number" in field else ""
     volume = f" {field['volume']}{number}" if "volume" in field else ""
-    place = field.get("journal") or field.get("booktitle") or field.get("howpublished") or field.get("school", "")
+    publication = field.get("journal") or field.get("booktitle") or field.get("howpublished") or field.get("school", "")
     doi = f"doi:{field['doi']}" if "doi" in field else f"arXiv:{field['eprint']}" if "eprint" in field else ""
-    parts = (authors, field.get("title", ""), place + volume, field.get("pages", ""), field.get("year", ""), doi)
-    return ", ".join(part for part in parts if part) + "."
+    parts = (authors, field.get("title", ""), publication + volume, field.get("pages", ""), field.get("year", ""), doi)
+    return ", ".join(piece_text for piece_text in parts if piece_text) + "."
 
 
 def _plain(text: str) -> str:
     """Convert TeX accents to letters and drop braces."""
-    accented = re.sub(r"\\([\"'])(\w)", lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]), text)
-    return re.sub(r"[{}~]", "", accented).replace("--", "-")
+    accented_text = re.sub(r"\\([\"'])(\w)", lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]), text)
+    return re.sub(r"[{}~]", "", accented_text).replace("--", "-")
 
 
 def _initials(name: str) -> str:
-    last, comma, first = name.partition(", ")
-    return f"{last}, {' '.join(f'{each[0]}.' for each in first.split())}" if comma else name
+    last_name, comma, first_name = name.partition(", ")
+    return f"{last_name}, {' '.join(f'{item[0]}.' for item in first_name.split())}" if comma else name
 
 
 def notation(folder: Path) -> list[dict[str, str]]:
@@ -111,12 +111,12 @@ def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
 
 def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], str] = "`{}`".format) -> None:
     """Number theorems, lemmas and propositions in a lecture's cells, and mark those in the library's catalogue."""
-    places = count(1)
+    counter = count(1)
 
     def numbered(found: re.Match[str]) -> str:
-        place = f"{re.sub(r'^0(?=.)', '', lecture.number)}.{next(places)}"
-        name = lecture.theorems.get(place)
-        return f"> **{place} {found[1]}**" + (f" {mark(name)}" if name else "")
+        statement_number = f"{re.sub(r'^0(?=.)', '', lecture.number)}.{next(counter)}"
+        name = lecture.theorems.get(statement_number)
+        return f"> **{statement_number} {found[1]}**" + (f" {mark(name)}" if name else "")
 
     for cell in cells:
         if cell.cell_type == "markdown":
@@ -126,7 +126,7 @@ def number_statements(cells: list[Any], lecture: Lecture, mark: Callable[[str], 
 def fold_depth(cells: list[Any], lecture: Lecture) -> None:
     """Fold proofs, questions and depth sections: click to open; code is collapsed with its output."""
     folded, head = {"Questions that come up", *lecture.depth}, ""
-    for cell in (each for each in cells if not each.metadata.get("tags")):
+    for cell in (item for item in cells if not item.metadata.get("tags")):
         if cell.cell_type != "markdown":
             if head in folded:
                 cell.metadata["jupyter"] = {"source_hidden": True, "outputs_hidden": True}
@@ -174,7 +174,7 @@ def map_page(folder: Path) -> str:
     """Return the course map in Markdown: lectures, their prerequisites, and a Mermaid drawing."""
     lectures = course_map(folder)
     rows = "\n".join(f"| {e.number} | {e.title} | {', '.join(e.after) or '–'} | {e.minutes} |" for e in lectures)
-    arrows = "\n".join(f"    L{before} --> L{each.number}" for each in lectures for before in each.after)
+    arrows = "\n".join(f"    L{prerequisite} --> L{each.number}" for each in lectures for prerequisite in each.after)
     names = "\n".join(f'    L{each.number}["{each.number} {each.title}"]' for each in lectures)
     total = sum(each.minutes for each in lectures)
     return (

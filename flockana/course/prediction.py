@@ -28,8 +28,8 @@ class Prediction:
     right: float | str
 
     def __repr__(self) -> str:
-        told = self._answer() if answered(self.guess, form_of(self.right)).status == "handed in" else ""
-        return f"{self.question}\n{self._guess()}{f'; {told}' if told else ''}"
+        answer_text = self._answer() if answered(self.guess, form_of(self.right)).status == "handed in" else ""
+        return f"{self.question}\n{self._guess()}{f'; {answer_text}' if answer_text else ''}"
 
     def _repr_html_(self) -> str:
         summary, told = escape(self._guess()), escape(self._answer())
@@ -37,11 +37,11 @@ class Prediction:
 
     def _guess(self) -> str:
         form = form_of(self.right)
-        handed = answered(self.guess, form)
-        if handed.status == "handed in":
+        given_answer = answered(self.guess, form)
+        if given_answer.status == "handed in":
             return f"you said {self.guess}"
-        if handed.status == "not yet":
-            return f"✗ {handed.hint}; got {self.guess!r}"
+        if given_answer.status == "not yet":
+            return f"✗ {given_answer.hint}; got {self.guess!r}"
         return f"… no guess yet: put a {form} in the place of the dots, and run the cell again"
 
     def _answer(self) -> str:

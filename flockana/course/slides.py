@@ -42,7 +42,7 @@ def _slides(cells: list[Any]) -> Iterator[Any]:
     code: list[Any] = []
     for cell in cells:
         if cell.cell_type == "code":
-            yield from (_marked(each, "skip") for each in code)
+            yield from (_marked(item, "skip") for item in code)
             code = [cell]
             continue
         for part in _PART.finditer(cell.source):
@@ -52,9 +52,9 @@ def _slides(cells: list[Any]) -> Iterator[Any]:
             if part["said"]:
                 sentence = re.match(_SENTENCE, part["said"])
                 yield _marked(new_markdown_cell(f"## {head}\n\n{sentence[0] if sentence else part['said']}"), "slide")
-                yield from (_marked(each, "-") for each in code)
+                yield from (_marked(item, "-") for item in code)
                 code = []
-    yield from (_marked(each, "skip") for each in code)
+    yield from (_marked(item, "skip") for item in code)
 
 
 def _marked(cell: Any, kind: str) -> Any:
@@ -65,10 +65,10 @@ def _marked(cell: Any, kind: str) -> Any:
 
 def shown() -> list[Path]:
     """Return the numbers of the lectures that have slides; assignments have none."""
-    return [source for source in sources() if not source.name.startswith("A")]
+    return [notebook_path for notebook_path in sources() if not notebook_path.name.startswith("A")]
 
 
 def write_slides(folder: Path) -> list[Path]:
     """Write all lectures as slides, with the files that they import."""
-    books = {f"{source.stem}.ipynb": notebook_bytes(slides(source)) for source in shown()}
+    books = {f"{notebook_path.stem}.ipynb": notebook_bytes(slides(notebook_path)) for notebook_path in shown()}
     return deliver(folder, books | companions())[: len(books)]

@@ -29,5 +29,5 @@ class Pace:
 
     def __exit__(self, *_: object) -> None:
         """Adapt the number of steps to the measured time."""
-        took = max(time.perf_counter() - self._started, 1e-9)
-        self.steps = min(max(1, int(self.steps * min(_GROWS, _LASTS / took))), self.most)
+        block_seconds = max(time.perf_counter() - self._started, 1e-9)
+        self.steps = min(max(1, int(self.steps * min(_GROWS, _LASTS / block_seconds))), self.most)

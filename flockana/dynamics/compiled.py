@@ -48,9 +48,9 @@ class Engine(Integrator):
         self._system, self._sampled = form.system(self.frame.view, n, m), 0
         self._samples = self._room_for(min(self.due.size, max(1, _NUMBERS // (3 * n * m))))
         self.order, self._reach = self._system.order, sum(self._system.reach)
-        constants: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau]
-        size = self.block.y.shape[1]
-        self._room = Room(np.empty((int(max(constants[4])) + 1, size)), np.empty(size))
+        constants: list[Any] = [thawed(item) if isinstance(item, np.ndarray) else item for item in tableau]
+        dimension = self.block.y.shape[1]
+        self._room = Room(np.empty((int(max(constants[4])) + 1, dimension)), np.empty(dimension))
         rtol, floor, longest = plan.control
         constants += [float(rtol), tuple(map(float, floor)), float(longest)]
         self._method = Method(*constants)
@@ -62,29 +62,29 @@ class Engine(Integrator):
             if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
                 self._sort()
         with self._pace as steps, several_threads(self._threads) as several:
-            judged = checks.judged(self.order, several=several)
+            judged_pairs = checks.judged(self.order, several=several)
             lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
             system = self._form.in_threads(self._system) if several else self._system  # both give the same bits
             stages = system, self._method, block, self._room, self._h
-            ahead = Advanced(*advance(*stages, lists, self.stops, samples, judged))
-        self._unsorted -= ahead.steps
-        self._h, self._sampled = ahead.h, ahead.samples if ahead.steps else 0
-        self.evaluations += ahead.evaluations
-        self.notes["redone"] += ahead.redone
-        t = float(self.block.t[ahead.steps])
-        if ahead.status == FULL and not ahead.steps:
-            self._samples = self._room_for(ahead.samples)
-        elif ahead.status == UNLISTED and (pairs := with_room(self.pairs)) is not None:
+            advanced = Advanced(*advance(*stages, lists, self.stops, samples, judged_pairs))
+        self._unsorted -= advanced.steps
+        self._h, self._sampled = advanced.h, advanced.samples if advanced.steps else 0
+        self.evaluations += advanced.evaluations
+        self.notes["redone"] += advanced.redone
+        t = float(self.block.t[advanced.steps])
+        if advanced.status == FULL and not advanced.steps:
+            self._samples = self._room_for(advanced.samples)
+        elif advanced.status == UNLISTED and (pairs := with_room(self.pairs)) is not None:
             self.pairs = pairs
-        elif ahead.status == UNLISTED:
+        elif advanced.status == UNLISTED:
             self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_BLOCKS}'"
-        elif ahead.status == SINGULAR and not checks.make_room():
+        elif advanced.status == SINGULAR and not checks.make_room():
             self.failure = at_a_pole(t)
-        elif ahead.status in (TOO_SMALL, NOT_FINITE):
-            why = _SMALL if ahead.status == TOO_SMALL else "the state is no longer finite"
-            self.failure = self.plan.describe_failure(t + ahead.h, why)
-        return int(ahead.steps)
+        elif advanced.status in (TOO_SMALL, NOT_FINITE):
+            reason_text = _SMALL if advanced.status == TOO_SMALL else "the state is no longer finite"
+            self.failure = self.plan.describe_failure(t + advanced.h, reason_text)
+        return int(advanced.steps)
 
     def list_pairs(self) -> bool:
         """List the pairs of the start; return whether they fit into memory."""
@@ -103,16 +103,16 @@ class Engine(Integrator):
         """Sort the agents by cell."""
         (n, m), order = self.frame.shape, spatial_order(self._places, self._reach)
         for rows in (self.block.y, self.block.f):
-            both = rows[0, : 2 * n * m].reshape(2, n, m)
-            both[:] = both.take(order.view(np.int64), axis=1)
+            state_pair = rows[0, : 2 * n * m].reshape(2, n, m)
+            state_pair[:] = state_pair.take(order.view(np.int64), axis=1)
         self.order = self.order[order]
         self._system = self._system._replace(order=self.order)
         self.pairs.reach[0] = 0.0  # it lists other agents
         self._sorted = int(self.pairs.counts[MADE])
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:  # noqa: D102
-        states, work = self._samples
-        return self.due[: self._sampled], states[: self._sampled], work[: self._sampled]
+        states, work_integral = self._samples
+        return self.due[: self._sampled], states[: self._sampled], work_integral[: self._sampled]
 
     def _room_for(self, samples: int) -> tuple[FloatArray, FloatArray]:
         """Return work arrays for the states and work of samples."""

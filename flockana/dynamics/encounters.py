@@ -68,14 +68,14 @@ class Encounters:
     @classmethod
     def of(cls, law: LawOfMotion, n: int) -> Encounters:
         """Return the encounters of a law for n agents."""
-        surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
+        surfaces = [np.broadcast_to(np.asarray(surface, dtype=np.float64), (n,)) for surface in law.surfaces]
         radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
         length = min(np.inf if law.scales is None else law.scales.length, radii[:, -1].min() if surfaces else np.inf)
         bodies, radii, poles = law.obstacle_field, np.ascontiguousarray(radii), np.array(law.poles, dtype=np.float64)
-        among = None if law.pole_pairs is None else np.array(law.pole_pairs, dtype=np.int32).reshape(-1, 2)
+        pole_pairs = None if law.pole_pairs is None else np.array(law.pole_pairs, dtype=np.int32).reshape(-1, 2)
         if bodies is None or not bodies.obstacles:
-            return cls(radii, SHARE * length, poles=poles, among=among)
-        return cls(radii, SHARE * length, bodies, bodies.beta.r, SHARE * bodies.beta.d, poles, among)
+            return cls(radii, SHARE * length, poles=poles, among=pole_pairs)
+        return cls(radii, SHARE * length, bodies, bodies.beta.r, SHARE * bodies.beta.d, poles, pole_pairs)
 
     @property
     def any(self) -> bool:
@@ -85,11 +85,11 @@ class Encounters:
     def share(self, h: float, before: State, after: State) -> float:
         """Return the share of a step that may be accepted, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
-        ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
-        around, no_share = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
-        crowd, near = False, no_pairs(n, m)
-        while (share := float(self.compiled(crowd=crowd)(0.0, ends, around, *no_share, near))) <= TOO_MANY:
-            crowd, near = share == TOO_MANY, with_room(near) or near
+        step_ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
+        around, empty_share = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
+        is_crowd, near = False, no_pairs(n, m)
+        while (share := float(self.compiled(crowd=is_crowd)(0.0, step_ends, around, *empty_share, near))) <= TOO_MANY:
+            is_crowd, near = share == TOO_MANY, with_room(near) or near
         return share
 
     def compiled(self, *, crowd: bool, several: bool = False) -> Kernel:
@@ -104,22 +104,22 @@ class Encounters:
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
         """Return the numbers for compiled encounter checks, with agents in the given order."""
         few = self.among is not None
-        first, second = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
+        first, second_agents = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
         edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
         shortest, largest = (edges.min(), edges.max()) if edges.size else (0.0, 0.0)
         return Around(
             self.radii[order], float(self.far), (float(shortest), float(largest)), thawed(self.poles), toward,
-            np.ascontiguousarray(first), np.ascontiguousarray(second), few, *self._guard,
+            np.ascontiguousarray(first), np.ascontiguousarray(second_agents), few, *self._guard,
             (float(self.shell), float(self.skirt)), as_callback(lister(large=len(order) >= LARGE)), covering(),
         )  # fmt: skip
 
     @cached_property
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
         """Compiled obstacle check, with its numbers and the start index of each obstacle kind."""
-        kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
-        numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind.arrays) for kind in kinds]
-        starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
-        return guard_of(tuple(kind.kernels.guard for kind in kinds)), np.concatenate([[], *numbers]), starts
+        kinds, unread_number = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
+        body_parameters = [body_numbers(self.shell, 0.0, 0.0, unread_number, *kind.arrays) for kind in kinds]
+        starts = np.cumsum([0, *(number.size for number in body_parameters)]).astype(np.int64)
+        return guard_of(tuple(kind.kernels.guard for kind in kinds)), np.concatenate([[], *body_parameters]), starts
 
 
 class StepChecks:
@@ -131,8 +131,8 @@ class StepChecks:
         balance, poles = (0.0, np.inf), self._encounters.poles.size > 0
         if plan.solver.one_step and not fixed:
             balance = (BALANCED * plan.control.rtol, BALANCED * plan.control.floor.work)
-        energetic = frame.energetic and (poles or not fixed)  # of fixed steps: whether the energy stays finite
-        self._rules = Rules(self._encounters.any, energetic, balance, fixed)
+        has_energy = frame.energetic and (poles or not fixed)  # of fixed steps: whether the energy stays finite
+        self._rules = Rules(self._encounters.any, has_energy, balance, fixed)
         self._toward, self._shape = _TOWARD if fixed else 1.0, frame.shape
         self._ledger, self._order, self._crowd = empty_ledger(), np.empty(0), False
 
@@ -148,26 +148,26 @@ class StepChecks:
             self._judged: dict[bool, Judged] = {}
             self._around = self._encounters.around(order, self._toward)
         if several not in self._judged:
-            around, share = self._around, self._encounters.compiled(crowd=self._crowd, several=several)
+            encounter_data, share = self._around, self._encounters.compiled(crowd=self._crowd, several=several)
             if several:
                 listed = as_callback(lister(large=True, several=True))
-                around = around._replace(listed=listed, covers=covering(several=True))
+                encounter_data = encounter_data._replace(listed=listed, covers=covering(several=True))
             if compiled:
-                ends = Ends(0.0, *6 * (np.empty((0, self._shape[1])),))
-                share = callback_like(share, 0.0, 0.0, ends, around, self._view, self.near, self.near)
-            self._judged[several] = Judged(around, self._rules, self._ledger, share)
+                step_ends = Ends(0.0, *6 * (np.empty((0, self._shape[1])),))
+                share = callback_like(share, 0.0, 0.0, step_ends, encounter_data, self._view, self.near, self.near)
+            self._judged[several] = Judged(encounter_data, self._rules, self._ledger, share)
         return self._judged[several]
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole)."""
-        judged = self.judged(order, compiled=False)
-        shorter, singular = checked(block, 0, judged, self._view, kept, self.near)
-        return self.examine(block, order, kept) if singular and self.make_room() else (shorter, singular)
+        judged_pairs = self.judged(order, compiled=False)
+        step_ratio, is_singular = checked(block, 0, judged_pairs, self._view, kept, self.near)
+        return self.examine(block, order, kept) if is_singular and self.make_room() else (step_ratio, is_singular)
 
     def make_room(self) -> bool:
         """Return whether the pair list overflowed; enlarge the list, or check pairs block by block from now on."""
-        if (near := with_room(self.near)) is not None:
-            self.near = near
+        if (near_pairs := with_room(self.near)) is not None:
+            self.near = near_pairs
             return True
         if self._crowd or self.near.counts[COUNT] >= 0:
             return False

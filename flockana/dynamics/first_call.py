@@ -15,20 +15,20 @@ from flockana.laws.velocity import VelocityLaw
 
 def first_call(law: Law | DiscreteLaw | VelocityLaw, t0: float, q0: FloatArray, p0: FloatArray) -> Start:
     """Return the start of a run; raise unless the law returns real numbers in the flock's shape, finite there."""
-    name, at = law.title, f"at the start, t = {t0:g}"
+    name, time_text = law.title, f"at the start, t = {t0:g}"
     if isinstance(law, VelocityLaw):  # its velocities are checked already
         return Start(t0, q0, p0, law.acceleration(t0, q0))
     if isinstance(law, Law):
         u, power = law.checked_flow(t0, q0, p0)
         start = Start(t0, q0, p0, u, power, law.hamiltonian(t0, q0, p0))
-        _check_finite(name, start, at)
+        _check_finite(name, start, time_text)
         return start
     memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
     answer: Any = law.step(t0, q0.copy(), p0.copy(), memory)
     if not isinstance(answer, tuple) or len(answer) != 4 or not isinstance(answer[3], Mapping):
-        raise ArgumentError(f"{name} gives {format_value(answer)} {at}: expected (q, p, u, memory)")
-    for part, value in zip("qpu", answer, strict=False):
-        ensure_returned_array(f"{name} gives {part}", value, q0.shape, at)
+        raise ArgumentError(f"{name} gives {format_value(answer)} {time_text}: expected (q, p, u, memory)")
+    for state_letter, value in zip("qpu", answer, strict=False):
+        ensure_returned_array(f"{name} gives {state_letter}", value, q0.shape, time_text)
     public = {key: np.array(value) for key, value in law.start(q0, p0).items() if key not in law.private}
     return Start(t0, q0, p0, np.zeros_like(q0), memory=public)
 

@@ -64,9 +64,9 @@ class Frame:
     @classmethod
     def of(cls, t0: float, q0: FloatArray, p0: FloatArray, *, energetic: bool) -> Frame:
         """Return the moving frame of an initial state."""
-        place, velocity = (np.tile(x.mean(axis=0), len(x)) for x in (q0, p0))
+        position, velocity = (np.tile(x.mean(axis=0), len(x)) for x in (q0, p0))
         rest = np.zeros(int(energetic))
-        origin, drift = np.concatenate([place, velocity, rest]), np.concatenate([velocity, 0.0 * place, rest])
+        origin, drift = np.concatenate([position, velocity, rest]), np.concatenate([velocity, 0.0 * position, rest])
         return cls(t0, origin, drift, (q0.shape[0], q0.shape[1]), energetic)
 
     @property
@@ -87,16 +87,16 @@ class Frame:
 
     def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return positions and velocities of a state vector."""
-        whole = y + (self.origin + self.drift * (t - self.t0))
-        both = whole[: 2 * self.size].reshape(2, *self.shape)
-        return both[0], both[1]
+        full_state = y + (self.origin + self.drift * (t - self.t0))
+        state_pair = full_state[: 2 * self.size].reshape(2, *self.shape)
+        return state_pair[0], state_pair[1]
 
     def rate(self, flow: Flow) -> Callable[[float, FloatArray], FloatArray]:
         """Return the right-hand side at a state vector."""
-        size, energetic = self.size, self.energetic
+        dimension, has_energy = self.size, self.energetic
 
         def rhs(t: float, y: FloatArray) -> FloatArray:
             u, rate = flow(t, *self.state(t, y))
-            return np.concatenate([y[size : 2 * size], u.ravel(), [rate] if energetic else []])
+            return np.concatenate([y[dimension : 2 * dimension], u.ravel(), [rate] if has_energy else []])
 
         return rhs

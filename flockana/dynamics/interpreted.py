@@ -71,10 +71,10 @@ class Interpreter(Integrator):
 
     def _open(self, until: float, first: float | None) -> None:
         """Open a new solver from the first row towards a time, with the given first step if possible."""
-        t, y, f = float(self.block.t[0]), *(each[0, : self._solved].copy() for each in self.block[1:3])
+        t, y, f = float(self.block.t[0]), *(item[0, : self._solved].copy() for item in self.block[1:3])
         self._course: Callable[[float], FloatArray] | None = None
-        sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
-        floors = np.repeat(control.floor, sizes)[: self._solved]
+        dimension, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
+        floors = np.repeat(control.floor, dimension)[: self._solved]
         limits = Limits(until, control.rtol, floors, control.longest, first)
         self._solver: Any = self.plan.solver.open(self._rhs, t, y, f, limits)
 
@@ -91,14 +91,14 @@ class Interpreter(Integrator):
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
                     t = float(self.block.t[row])
                     self.block.energy[row] = self.law.hamiltonian(t, *self.frame.state(t, self.block.y[row]))
-            shorter, singular = self.checks.examine(self.block, self.order, self.pairs)
-            if singular:
+            step_ratio, is_singular = self.checks.examine(self.block, self.order, self.pairs)
+            if is_singular:
                 self.failure = at_a_pole(float(self.block.t[0]))
                 return 0
-            if not shorter:
+            if not step_ratio:
                 return 1
             self.notes["redone"] += 1
-            self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + shorter, shorter)
+            self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + step_ratio, step_ratio)
         return 0
 
     def step(self) -> bool:
@@ -110,30 +110,30 @@ class Interpreter(Integrator):
         self._course, start = None, float(self.block.t[0])
         try:
             with np.errstate(over="ignore", invalid="ignore"):  # such a state ends the run, in words
-                why = self._solver.step()
+                reason_text = self._solver.step()
             if self._solver.status != "failed" and self._write(1):
                 if self.block.t[1] > start:
                     return True
                 self.failure = self.plan.describe_failure(start, "its step is lost in the rounding of the time")
                 return False
-            why = why or "the state is no longer finite"
+            reason_text = reason_text or "the state is no longer finite"
         except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:  # implicit solvers raise on NaN
             if isinstance(error, ArgumentError):
                 raise
-            why = str(error)
-        self.failure = self.plan.describe_failure(float(self._solver.t), why)
+            reason_text = str(error)
+        self.failure = self.plan.describe_failure(float(self._solver.t), reason_text)
         return False
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (times, states, work) of the samples due within the step."""
-        due = self.due[self.due < self.block.t[1]]
-        states, work = np.empty((due.size, 3, *self.frame.shape)), np.full(due.size, np.nan)
-        for k, t in enumerate(due.tolist()):
+        due_times = self.due[self.due < self.block.t[1]]
+        states, work_integral = np.empty((due_times.size, 3, *self.frame.shape)), np.full(due_times.size, np.nan)
+        for k, t in enumerate(due_times.tolist()):
             y = self.course(t)
             q, p = self.frame.state(t, y)
             states[k] = q, p, self.flow(t, q, p)[0]
-            work[k] = y[-1] if self.frame.energetic else np.nan
-        return due, states, work
+            work_integral[k] = y[-1] if self.frame.energetic else np.nan
+        return due_times, states, work_integral
 
     def course(self, t: float) -> FloatArray:
         """Return the state vector at a time within the last step."""

@@ -38,21 +38,21 @@ class MapStepper(Stepper):
     """
 
     def __init__(self, law: DiscreteLaw, start: Start, t_span: tuple[float, float], keep: FloatArray | None) -> None:
-        self.law, self.t_span, self.notes, size = law, t_span, {}, start.q.size
+        self.law, self.t_span, self.notes, dimension = law, t_span, {}, start.q.size
         self.q, self.p, self.memory = start.q, start.p, law.start(start.q, start.p)
         self.steps, self.done = count_steps(*t_span, law.dt, np.floor), 0
         self.wanted = None if keep is None else _nearest(t_span[0], law.dt, self.steps, keep)
         self.first = start.sample if self.wanted is None or 0 in self.wanted else None
-        self.pace = Pace(min(_BEGIN, 20_000 // size), min(law.steps_at_once, _NUMBERS // (3 * size)))
+        self.pace = Pace(min(_BEGIN, 20_000 // dimension), min(law.steps_at_once, _NUMBERS // (3 * dimension)))
         self.encounters: Encounters | None = None
         if isinstance(law, FixedSteps) and wrappers_within(law.law) and not law.noisy:
             encounters = Encounters.of(law.law, len(start.q))
             self.encounters = encounters if encounters.any else None
-            past = [State(*row[:3]) for row in self.memory.get("past", ())]
+            past_states = [State(*row[:3]) for row in self.memory.get("past", ())]
             if first_order(law) is not None:
-                past = [State(x, v, np.zeros_like(v)) for _, x, v in past]
-            for k, (before, after) in enumerate(pairwise(past), 1 - len(past)):
-                self._ensure_resolved(before, after, t_span[0] + k * law.dt)
+                past_states = [State(x, v, np.zeros_like(v)) for _, x, v in past_states]
+            for k, (previous_state, next_state) in enumerate(pairwise(past_states), 1 - len(past_states)):
+                self._ensure_resolved(previous_state, next_state, t_span[0] + k * law.dt)
 
     @property
     def finished(self) -> bool:  # noqa: D102
@@ -76,9 +76,9 @@ class MapStepper(Stepper):
         self._kept = self._kept[self._kept < good]
         if self.encounters is not None:
             q, p = self.q, self.p
-            for at, *after in zip(t[:good].tolist(), qs, ps, us, strict=False):
+            for time_point, *after in zip(t[:good].tolist(), qs, ps, us, strict=False):
                 # the input of a step is its mean: that of both of its ends, to the order that paths are looked at
-                self._ensure_resolved(State(q, p, after[2]), State(*after), at - dt)
+                self._ensure_resolved(State(q, p, after[2]), State(*after), time_point - dt)
                 q, p, _ = after
         count = int(stretch[good - 1]) if good else 0
         self.evaluations += count
@@ -98,12 +98,12 @@ class MapStepper(Stepper):
 
         All where encounters are looked at, and where the map has left the finite numbers: which step was the first?
         """
-        every = np.arange(1, len(times) + 1)
-        few = every if self.encounters is not None else np.union1d(own, every[-1:])
-        states = self.law.visit(times, self.q, self.p, copied(self.memory), few)
-        if few.size == every.size or finite(*states[:2]):
-            return few, states
-        return every, self.law.visit(times, self.q, self.p, self.memory, every)
+        step_numbers = np.arange(1, len(times) + 1)
+        has_pole_pairs = step_numbers if self.encounters is not None else np.union1d(own, step_numbers[-1:])
+        states = self.law.visit(times, self.q, self.p, copied(self.memory), has_pole_pairs)
+        if has_pole_pairs.size == step_numbers.size or finite(*states[:2]):
+            return has_pole_pairs, states
+        return step_numbers, self.law.visit(times, self.q, self.p, self.memory, step_numbers)
 
     def samples(self, count: int) -> Iterator[Samples]:
         """Yield the requested steps as samples."""
@@ -126,8 +126,8 @@ def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
     def before(steps: IndexArray) -> npt.NDArray[np.bool_]:
         return np.asarray(t0 + steps * dt + 0.5 * dt < keep)
 
-    while (late := before(k)).any():  # a quotient may round to the step beside
-        k += late
-    while (early := (k > 0) & ~before(k - 1)).any():
-        k -= early
+    while (is_late := before(k)).any():  # a quotient may round to the step beside
+        k += is_late
+    while (is_early := (k > 0) & ~before(k - 1)).any():
+        k -= is_early
     return np.unique(k[k <= steps])

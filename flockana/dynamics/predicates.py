@@ -62,9 +62,9 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
     ArgumentError
         If it is no share from 0 to below 1.
     """
-    if (giant := ensure_nonnegative("share", share)) >= 1.0:
-        raise ArgumentError(f"share = {giant:g}: expected a share from 0 to below 1, such as 0.5")
-    result: BoolArray = ensure_run(trajectory).metrics().giant_share.values > giant
+    if (giant_share := ensure_nonnegative("share", share)) >= 1.0:
+        raise ArgumentError(f"share = {giant_share:g}: expected a share from 0 to below 1, such as 0.5")
+    result: BoolArray = ensure_run(trajectory).metrics().giant_share.values > giant_share
     return result
 
 

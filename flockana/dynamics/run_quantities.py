@@ -119,8 +119,8 @@ class MeasuredRun(ResultCache):
 
     @property
     def _metric_names(self) -> tuple[str, ...]:
-        any_flock = (name for name, it in measures().items() if it.over_time is not None and it.defined(self.law))
-        return tuple(dict.fromkeys((*any_flock, *self._own)))
+        general_names = (name for name, it in measures().items() if it.over_time is not None and it.defined(self.law))
+        return tuple(dict.fromkeys((*general_names, *self._own)))
 
     def measure(self, name: str) -> Measure:
         """Return a metric's description: its text, unit and style of drawing.
@@ -130,9 +130,9 @@ class MeasuredRun(ResultCache):
         UnknownNameError
             If there is none of that name, neither for any flock nor for this law.
         """
-        of_any = measures().get(name)
-        if of_any is not None and of_any.over_time is not None:
-            return of_any
+        known_measure = measures().get(name)
+        if known_measure is not None and known_measure.over_time is not None:
+            return known_measure
         if name in self._own:
             text, _, logarithmic = Series(*self._own[name])
             return Measure(name, text, "", logarithmic=logarithmic)
@@ -147,9 +147,9 @@ class MeasuredRun(ResultCache):
             If there is none of that name for this law.
         """
         if name not in self._measured:
-            of_any = measures().get(name)
-            if of_any is not None and of_any.over_time is not None and of_any.defined(self.law):
-                values = of_any.over_time(self._flock)
+            known_measure = measures().get(name)
+            if known_measure is not None and known_measure.over_time is not None and known_measure.defined(self.law):
+                values = known_measure.over_time(self._flock)
             elif name in self._own:  # the law is asked last, which may cost more
                 own_values = Series(*self._own[name]).values
                 values = np.fromiter(own_values() if callable(own_values) else own_values, float, len(self.t))
@@ -201,7 +201,7 @@ class MeasuredRun(ResultCache):
     @cached_property
     def _closest(self) -> ClosestApproach:
         if not self.resolved and len(self.t) > 1 < self.n:
-            k = slice(at := int(np.argmin(self.metric("min_distance"))), at + 1)
+            k = slice(closest_index := int(np.argmin(self.metric("min_distance"))), closest_index + 1)
             nearest = closest_approach(self.t[k], self.q[k], self.p[k], self.u[k])
             return replace(nearest, lower=0.0, lower_by_interval=np.zeros(len(self.t) - 1))
         approach = closest_approach(*self.path)
@@ -219,8 +219,8 @@ class MeasuredRun(ResultCache):
         """
         if self.between is None:
             return values
-        reduced: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
-        return reduced
+        interval_values: FloatArray = reduce.reduceat(values, np.searchsorted(self.path.t, self.t[:-1]), axis=-1)
+        return interval_values
 
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
@@ -251,7 +251,7 @@ class MeasuredRun(ResultCache):
         path, obstacles = self.path, self.law.obstacles
         if self.resolved or len(self.t) == 1 or not obstacles:
             return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
-        one = (slice(k, k + 1) for k in range(len(self.t)))
-        each = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in one)
-        approach = min(each, key=lambda found: found.reached)
+        slices = (slice(k, k + 1) for k in range(len(self.t)))
+        clearances = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in slices)
+        approach = min(clearances, key=lambda found: found.reached)
         return replace(approach, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))

@@ -36,19 +36,19 @@ class Samples(NamedTuple):
     def joined(cls, blocks: Sequence[Samples]) -> Samples:
         """Return the instants of several blocks as one, flagged as the first block is."""
         t, q, p, u = (np.concatenate(series) for series in zip(*(block[:4] for block in blocks), strict=True))
-        extra = {name: np.concatenate([block.extra[name] for block in blocks]) for name in blocks[0].extra}
-        return cls(t, q, p, u, extra, blocks[0].wanted)
+        extra_series = {name: np.concatenate([block.extra[name] for block in blocks]) for name in blocks[0].extra}
+        return cls(t, q, p, u, extra_series, blocks[0].wanted)
 
     def at(self, rows: Any) -> Samples:
         """Return selected instants: views where `rows` is a slice."""
-        extra = {name: values[rows] for name, values in self.extra.items()}
-        return Samples(self.t[rows], self.q[rows], self.p[rows], self.u[rows], extra, self.wanted)
+        extra_series = {name: values[rows] for name, values in self.extra.items()}
+        return Samples(self.t[rows], self.q[rows], self.p[rows], self.u[rows], extra_series, self.wanted)
 
     def each(self) -> Iterator[Sample]:
         """Yield the samples one by one."""
         for k, t in enumerate(self.t.tolist()):
-            extra = {name: values[k] for name, values in self.extra.items()}
-            yield Sample(t, self.q[k], self.p[k], self.u[k], extra, self.wanted)
+            extra_series = {name: values[k] for name, values in self.extra.items()}
+            yield Sample(t, self.q[k], self.p[k], self.u[k], extra_series, self.wanted)
 
 
 class Start(NamedTuple):
@@ -70,9 +70,9 @@ class Start(NamedTuple):
     @property
     def sample(self) -> Samples:
         """The initial state as a single sample."""
-        extra = {**self.memory, **({"work": np.array(0.0)} if self.energetic else {})}
-        one = {name: np.asarray(values)[None] for name, values in extra.items()}
-        return Samples(np.array([self.t]), self.q[None], self.p[None], self.u[None], one)
+        extra_series = {**self.memory, **({"work": np.array(0.0)} if self.energetic else {})}
+        item = {name: np.asarray(values)[None] for name, values in extra_series.items()}
+        return Samples(np.array([self.t]), self.q[None], self.p[None], self.u[None], item)
 
 
 @dataclass

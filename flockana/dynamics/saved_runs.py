@@ -104,15 +104,15 @@ def _format_1_modules() -> dict[str, str]:
 
 def _ensure_whole(source: Path) -> None:
     """Raise if a file ends in a digest line, or a part of one, that is not the digest of the bytes before it."""
-    size = source.stat().st_size
+    byte_count = source.stat().st_size
     with source.open("rb") as file:
-        file.seek(max(0, size - 2 * _LENGTH))
+        file.seek(max(0, byte_count - 2 * _LENGTH))
         end = file.read()
         if _MARK not in end:
             return  # another program wrote it, or flockana before there was such a line
         file.seek(0)
-        whole = max(0, size - _LENGTH)
-        total = sha256(file.read(min(_BLOCK, whole - k)) for k in range(0, whole, _BLOCK))
+        first_record = max(0, byte_count - _LENGTH)
+        total = sha256(file.read(min(_BLOCK, first_record - k)) for k in range(0, first_record, _BLOCK))
     if end[-_LENGTH:] != _LINE % total.encode():
         raise FileError(
             f"cannot read {source} as netCDF-4: it was cut short or altered, by the digest at its end; "

@@ -133,7 +133,7 @@ def simulate(
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
-    keep = _check_t_eval(t_eval, t_span)
+    kept_times = _check_t_eval(t_eval, t_span)
     threads = ensure_threads(threads) if threads is not None or len(q0) >= LARGE else 1
     with limited_threads(threads):
         start = first_call(law, t_span[0], q0, p0)
@@ -142,25 +142,25 @@ def simulate(
     if isinstance(law, DiscreteLaw):
         if dt is not None or max_step is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt, max_step nor method")
-        name, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
-        _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        make_stepper: Callable[[], Stepper] = partial(MapStepper, law, start, t_span, keep)
+        name, run_options = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
+        _ensure_samples_fit(run_options["dt"], t_span, q0, kept_times)
+        make_stepper: Callable[[], Stepper] = partial(MapStepper, law, start, t_span, kept_times)
     else:
-        plan, how = _plan(solver_of(method, dt), law, start, t_span, keep, (rtol, atol, max_step))
+        plan, run_options = _plan(solver_of(method, dt), law, start, t_span, kept_times, (rtol, atol, max_step))
         if isinstance(law, VelocityLaw) and getattr(plan.solver, "position_factor", None):
             raise ArgumentError(f"method = {plan.solver.name!r}: {law.title} is of first order; expected RK4 or Heun")
         name, make_stepper = plan.solver.name, partial(integrator_of, law, start, plan._replace(threads=threads))
-    started, tally = time.perf_counter(), Tally()
+    start_time, tally = time.perf_counter(), Tally()
     with limited_threads(threads):
-        samples, between = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
+        samples, between_samples = _collect(drive(make_stepper, tally), t_span, tally, progress, watch)
     counts = {"method": name, "steps": tally.steps, "evaluations": tally.evaluations}
-    stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
+    stats = counts | tally.notes | run_options | {"seconds": time.perf_counter() - start_time}
     if not samples:  # ended before the first time to keep
         samples = [start.sample]
         if watch is not None:
             watch(_copy(start.sample))
-    t, q, p, u, extra = _stacked(samples)
-    return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
+    t, q, p, u, extra_series = _stacked(samples)
+    return sealed(Trajectory(t, q, p, u, law, extra_series, tally.status, tally.message, stats, between_samples))
 
 
 def _in_steps(law: Law, method: str | Solver, dt: Any) -> FixedSteps:
@@ -168,7 +168,7 @@ def _in_steps(law: Law, method: str | Solver, dt: Any) -> FixedSteps:
     if isinstance(method, str) and dt is None:
         raise ArgumentError(f"dt = None: {law.title} is run in fixed steps, expected one such as dt=0.01")
     if method == "DOP853":
-        method = "Heun" if any(one.noisy for one in wrappers_within(law)) else "RK4"
+        method = "Heun" if any(item.noisy for item in wrappers_within(law)) else "RK4"
     solver = solver_of(method, dt)
     if not isinstance(solver, FixedStep):
         raise ArgumentError(f"method = {method!r}: {law.title} is run in fixed steps, such as Heun(0.01)")
@@ -192,40 +192,40 @@ def _plan(
         _ensure_samples_fit(dt, t_span, start.q, keep)
         stops = np.union1d(list(_stops(t_span, dt, keep)), _beside_switches(law, t_span))
         return Plan(solver, stops, stops if keep is None else keep), {"dt": dt}
-    how: dict[str, Any] = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
-    floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
+    run_options: dict[str, Any] = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
+    floor = error_floor(law.scales, start, t_span[1] - t_span[0], **run_options)
     longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
-    control = Control(how["rtol"], floor, longest)
-    how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
-    return Plan(solver, np.append(_beside_switches(law, t_span), t_span[1]), keep, control), how
+    control = Control(run_options["rtol"], floor, longest)
+    run_options |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
+    return Plan(solver, np.append(_beside_switches(law, t_span), t_span[1]), keep, control), run_options
 
 
 def _beside_switches(law: Law | VelocityLaw, t_span: tuple[float, float]) -> FloatArray:
     """Return the times of law switches, each with the next floating-point time after it."""
     times = law.switches(*t_span)
-    both = np.stack([times, times + 4.0 * np.spacing(np.abs(times))], axis=1).ravel()
-    return both[(both > t_span[0]) & (both < t_span[1])]
+    doubled_times = np.stack([times, times + 4.0 * np.spacing(np.abs(times))], axis=1).ravel()
+    return doubled_times[(doubled_times > t_span[0]) & (doubled_times < t_span[1])]
 
 
 def _stacked(kept: list[Samples]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
     """Return the stacked arrays (t, q, p, u, extra) of a run, without two copies of the samples in memory."""
-    one, end = kept[0], sum(len(samples.t) for samples in kept)
-    t, (q, p, u) = np.empty(end), (np.empty((end, *one.q.shape[1:])) for _ in range(3))
-    extra = {key: np.empty((end, *values.shape[1:])) for key, values in one.extra.items()}
+    first_block, end = kept[0], sum(len(samples.t) for samples in kept)
+    t, (q, p, u) = np.empty(end), (np.empty((end, *first_block.q.shape[1:])) for _ in range(3))
+    extra_series = {key: np.empty((end, *values.shape[1:])) for key, values in first_block.extra.items()}
     while kept:
         samples = kept.pop()
         start = end - len(samples.t)
         t[start:end], q[start:end], p[start:end], u[start:end] = samples.t, samples.q, samples.p, samples.u
-        for key, series in extra.items():
+        for key, series in extra_series.items():
             series[start:end] = samples.extra[key]
         end = start
-    return t, q, p, u, extra
+    return t, q, p, u, extra_series
 
 
 def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
-    step, far = ensure_positive(name, dt), max(abs(t) for t in t_span)
-    if far + 0.5 * step == far:
-        raise ArgumentError(f"{name} = {step:g}: too small to change t = {far:g}; start the clock near t = 0")
+    step, largest_time = ensure_positive(name, dt), max(abs(t) for t in t_span)
+    if largest_time + 0.5 * step == largest_time:
+        raise ArgumentError(f"{name} = {step:g}: too small to change t = {largest_time:g}; start the clock near t = 0")
     return step
 
 
@@ -256,8 +256,8 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
         times = np.atleast_1d(real_array(t_eval))
     except (TypeError, ValueError, OverflowError):
         times = np.array([np.nan])
-    good = times.ndim == 1 and times.size > 0 and np.isfinite(times).all() and (np.diff(times) > 0.0).all()
-    if not good or times[0] < t_span[0] or times[-1] > t_span[1]:
+    is_valid = times.ndim == 1 and times.size > 0 and np.isfinite(times).all() and (np.diff(times) > 0.0).all()
+    if not is_valid or times[0] < t_span[0] or times[-1] > t_span[1]:
         raise ArgumentError(f"t_eval = {t_eval!r}: expected rising times within t_span = {t_span}")
     return times
 
@@ -280,20 +280,20 @@ def _collect(
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
             with restore_interrupts():
-                for some in samples if watch is None else _one_by_one(samples):
-                    recorder.add(some)  # first: `watch` may end the run here
-                    if some.wanted:
-                        blocks.append(some)
+                for sample_block in samples if watch is None else _one_by_one(samples):
+                    recorder.add(sample_block)  # first: `watch` may end the run here
+                    if sample_block.wanted:
+                        blocks.append(sample_block)
                         if watch is not None:
-                            watch(_copy(some))
+                            watch(_copy(sample_block))
                     if progress:
-                        t_reached = max(t_reached, float(some.t[-1]))
+                        t_reached = max(t_reached, float(sample_block.t[-1]))
                         advance(t_reached - t_span[0], f"t = {t_reached:.4g}")
         except KeyboardInterrupt:
-            until = (
+            end_text = (
                 f"the last sample is at t = {blocks[-1].t[-1]:g}" if blocks else "no sample was reached but the start"
             )
-            tally.status, tally.message = "interrupted", f"interrupted: {until}"
+            tally.status, tally.message = "interrupted", f"interrupted: {end_text}"
     return blocks, recorder.between()
 
 

@@ -80,15 +80,15 @@ class Integrator(Stepper):
 
     def states(self, count: int) -> tuple[FloatArray, FloatArray]:
         """(states of shape (count, 3, n, m), work) at the ends of the steps."""
-        states, work = np.empty((count, 3, *self.frame.shape)), np.empty(count)
+        states, work_integral = np.empty((count, 3, *self.frame.shape)), np.empty(count)
         with several_threads(self.plan.threads if self.frame.shape[0] >= LARGE else 1) as several:
             write = parallel_record if several else record
-            write(self.block, self.order, self.frame.view, states, work)
-        return states, work
+            write(self.block, self.order, self.frame.view, states, work_integral)
+        return states, work_integral
 
     def _samples_of(self, t: FloatArray, states: FloatArray, work: FloatArray) -> Samples:
-        extra = {"work": work} if self.frame.energetic else {}
-        return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra)
+        extra_series = {"work": work} if self.frame.energetic else {}
+        return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra_series)
 
     def samples(self, count: int) -> Iterator[Samples]:
         """Yield the steps between samples, then the samples, in blocks."""
@@ -101,8 +101,8 @@ class Integrator(Stepper):
         picks, apart = _among(steps.t, self.plan.keep), ~_among(due.t, steps.t)  # where a step ended it is the sample
         if not picks.all():
             rows = np.flatnonzero(~picks)
-            contiguous = rows[-1] - rows[0] < rows.size  # then a view
-            yield steps.at(slice(rows[0], rows[-1] + 1) if contiguous else rows)._replace(extra={}, wanted=False)
+            is_contiguous = rows[-1] - rows[0] < rows.size  # then a view
+            yield steps.at(slice(rows[0], rows[-1] + 1) if is_contiguous else rows)._replace(extra={}, wanted=False)
         if picks.any() or apart.any():
             both = Samples.joined([steps.at(picks), due.at(apart)])
             yield both.at(np.argsort(both.t))
@@ -114,16 +114,16 @@ class Integrator(Stepper):
 
     def _describe_stall(self, steps: int, count: int) -> str:
         """Return in words that recent steps are far too short for the law's time or the span; '' otherwise."""
-        at, (since, before) = float(self.block.t[count]), self._counted_from
+        at, (start_time, previous_count) = float(self.block.t[count]), self._counted_from
         ahead = self.stops[self.stops > at]
         if self.plan.solver.dt:
             return self.plan.describe_cuts(steps, len(self.plan.stops) - ahead.size)
-        if steps < before + _MANY:
+        if steps < previous_count + _MANY:
             return ""
-        mean, self._counted_from = (at - since) / (steps - before), (at, steps)
+        mean, self._counted_from = (at - start_time) / (steps - previous_count), (at, steps)
         law_time = np.inf if self.law.scales is None else self.law.scales.time
-        most = _LONG if self.in_python and mean < _SLUGGISH * law_time else _ENDLESS
-        if ahead.size and ahead[-1] - at > most * mean:
+        time_limit = _LONG if self.in_python and mean < _SLUGGISH * law_time else _ENDLESS
+        if ahead.size and ahead[-1] - at > time_limit * mean:
             return (
                 f"it would take {(ahead[-1] - at) / mean:.1e} more steps to t = {ahead[-1]:g}: the last {_MANY} are "
                 f"{mean:.2g} long on average; expected a shorter span or slower gains"
@@ -141,10 +141,10 @@ class Integrator(Stepper):
         if n == 1:
             return ""
         q = self.block.y[row, : n * m].reshape(n, m)  # as the frame sees it: finer than the positions
-        apart, others = map(np.asarray, cKDTree(q).query(q, k=2))
-        k = int(apart[:, 1].argmin())
-        i, j = sorted((int(self.order[k]), int(self.order[others[k, 1]])))
-        return f"; the nearest agents, {i} and {j}, are {apart[k, 1]:.3g} apart"
+        neighbour_distances, neighbours = map(np.asarray, cKDTree(q).query(q, k=2))
+        k = int(neighbour_distances[:, 1].argmin())
+        i, j = sorted((int(self.order[k]), int(self.order[neighbours[k, 1]])))
+        return f"; the nearest agents, {i} and {j}, are {neighbour_distances[k, 1]:.3g} apart"
 
     def continue_from(self, count: int) -> None:  # noqa: D102
         for rows in self.block:

@@ -71,11 +71,11 @@ class Between:
         if len(kept) == 1:
             return None
         start, end = kept[0], kept[-1]
-        inside, slack = (self.t > start) & (self.t < end), self.slack
+        is_inside, slack = (self.t > start) & (self.t < end), self.slack
         if slack is not None:
             times = np.sort(np.concatenate([t, self.t]))
             slack = slack[(times[:-1] >= start) & (times[1:] <= end)]
-        return Between(self.t[inside], self.q[inside], self.p[inside], self.u[inside], slack)
+        return Between(self.t[is_inside], self.q[is_inside], self.p[is_inside], self.u[is_inside], slack)
 
     def in_units(self, length: float, time: float) -> Between:
         """Return the steps in other units (`flockana.rescale`)."""
@@ -128,12 +128,12 @@ class Recorder:
         if not (self._steps and self._samples):
             return None
         self._limit_memory()
-        times = np.concatenate([some.t for some in self._samples])
+        times = np.concatenate([sample_block.t for sample_block in self._samples])
         steps = Samples.joined(self._steps)
-        inside = (steps.t > times[0]) & (steps.t < times[-1])
-        if not inside.any():
+        is_inside = (steps.t > times[0]) & (steps.t < times[-1])
+        if not is_inside.any():
             return None
-        steps = steps if inside.all() else steps.at(inside)
+        steps = steps if is_inside.all() else steps.at(is_inside)
         if not self._thinned:
             return Between(steps.t, steps.q, steps.p, steps.u)
         exact, knots = np.zeros(steps.q.shape[1]), np.sort(np.concatenate([times, steps.t]))
@@ -146,9 +146,9 @@ class Recorder:
         if self._held <= self.most or not self._samples:
             return
         self._assemble()
-        first = self._samples[0].t[0]
+        first_time = self._samples[0].t[0]
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
-        knots = [one for one in knots if one.t >= first]
+        knots = [one for one in knots if one.t >= first_time]
         exact, before, retained, leave = np.zeros(len(knots[0].q)), knots[0], list[Sample](), False
         for one, after in zip(knots[1:], [*knots[2:], None], strict=True):
             if not one.wanted:

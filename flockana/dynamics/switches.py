@@ -52,9 +52,9 @@ class SwitchingInterpreter(Interpreter):
             q, p = self.frame.state(switch, y)
             self._crossed = self.law.crossed(self.pieces, self.law.margins(self.pieces, q))
             self.notes["switches"] += 1
-            sliding = self.law.sliding(self.pieces, self._crossed, switch, q, p)
-            if sliding is not None:
-                self.notes["sliding"], self.failure = sliding, f"sliding at t = {switch:.6g}: {sliding}"
+            sliding_mode = self.law.sliding(self.pieces, self._crossed, switch, q, p)
+            if sliding_mode is not None:
+                self.notes["sliding"], self.failure = sliding_mode, f"sliding at t = {switch:.6g}: {sliding_mode}"
         return 1
 
     def samples(self, count: int) -> Iterator[Samples]:
@@ -75,7 +75,7 @@ class SwitchingInterpreter(Interpreter):
             self.pieces, self._crossed = self._crossed, None
             self.begin()
             (t, y, f, _), n = (rows[:1] for rows in self.block), self.frame.size
-            q, p = (each[None] for each in self.frame.state(float(t[0]), y[0]))
+            q, p = (item[None] for item in self.frame.state(float(t[0]), y[0]))
             gap = 4.0 * float(np.spacing(abs(t[0])))  # from there the path continues with the other side's input
             self._beside = Samples(t + gap, q + gap * p, p, f[:, n : 2 * n].reshape(q.shape).copy(), {}, wanted=False)
 
@@ -94,10 +94,10 @@ def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: 
         if beyond(t):
             high = t
             for _ in range(_HALVINGS):
-                middle = 0.5 * (low + high)
-                if not low < middle < high:
+                midpoint = 0.5 * (low + high)
+                if not low < midpoint < high:
                     break
-                low, high = (low, middle) if beyond(middle) else (middle, high)
+                low, high = (low, midpoint) if beyond(midpoint) else (midpoint, high)
             return float(high)
         low = t
     return None
@@ -108,14 +108,14 @@ def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) 
     # The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
     # pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.
     times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
-    places = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)
-    series = np.tensordot(_TO_SERIES, places, axes=1)
+    positions = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)
+    series = np.tensordot(_TO_SERIES, positions, axes=1)
     reach = np.sum(lengths(series[1:]), axis=0)  # an agent's way from its mean place, series[0]
     rows, columns = np.triu_indices(len(reach), 1)
-    near = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
+    may_switch = law.margins(pieces, series[0]).inside <= (reach[rows] + reach[columns]) * (1.0 + 1e-9)
     times_of_turns: set[float] = set()
-    for i, j in zip(rows[near].tolist(), columns[near].tolist(), strict=True):
-        squared = _TO_SERIES @ np.sum((places[:, j] - places[:, i]) ** 2, axis=1)
+    for i, j in zip(rows[may_switch].tolist(), columns[may_switch].tolist(), strict=True):
+        squared = _TO_SERIES @ np.sum((positions[:, j] - positions[:, i]) ** 2, axis=1)
         roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebtrim(squared, 1e-15 * abs(squared).max())))
         real = roots.real[np.abs(roots.imag) < 1e-6]
         times_of_turns.update((0.5 * (start + end) + 0.5 * (end - start) * real[np.abs(real) < 1.0]).tolist())

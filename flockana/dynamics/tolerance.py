@@ -50,11 +50,11 @@ def options_in_units(options: Mapping[str, Any], length: float, time: float) -> 
     """Return options of `simulate`, or the statistics of a run, in other units."""
     speed = length / time
     factors = {"t_eval": time, "dt": time, "max_step": time, "atol": length}
-    scaled = {key: times(value, factors[key]) if key in factors else value for key, value in options.items()}
+    scaled_options = {key: times(value, factors[key]) if key in factors else value for key, value in options.items()}
     for key, powers in (("atol", (length, speed)), ("floors", (length, speed, speed**2))):
         if isinstance(options.get(key), tuple | list):
-            scaled[key] = tuple(value * factor for value, factor in zip(options[key], powers, strict=True))
-    return scaled
+            scaled_options[key] = tuple(value * factor for value, factor in zip(options[key], powers, strict=True))
+    return scaled_options
 
 
 def error_floor(scales: Scales | None, start: Start, duration: float, rtol: float, atol: Atol) -> ErrorFloors:
@@ -66,24 +66,24 @@ def error_floor(scales: Scales | None, start: Start, duration: float, rtol: floa
     """
     q0, p0 = start.q, start.p
     if scales is None:
-        extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
-        scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
+        extent, largest_travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
+        scales = Scales(extent or largest_travel or float(np.abs(p0).max()) * duration or 1.0, duration)
     if isinstance(atol, tuple):
-        length, speed = atol
+        length_scale, speed = atol
     else:
-        length = FLOOR * rtol * scales.length if atol is None else atol
-        speed = length / scales.length * scales.speed
-    energy = min(length / scales.length, speed / scales.speed) * len(q0) * scales.energy
+        length_scale = FLOOR * rtol * scales.length if atol is None else atol
+        speed = length_scale / scales.length * scales.speed
+    energy = min(length_scale / scales.length, speed / scales.speed) * len(q0) * scales.energy
     reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * duration)
-    blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
-    length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
-    energy = max(energy, blur * len(q0) * scales.energy)
-    return ErrorFloors(length, speed, max(energy, rtol * abs(start.energy)) if start.energetic else energy)
+    rounding_width = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
+    length_scale, speed = max(length_scale, rounding_width * scales.length), max(speed, rounding_width * scales.speed)
+    energy = max(energy, rounding_width * len(q0) * scales.energy)
+    return ErrorFloors(length_scale, speed, max(energy, rtol * abs(start.energy)) if start.energetic else energy)
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:
     """Return rounding errors of a run's largest numbers, and of the distances moved within the time's rounding."""
-    late, far, fast, hard, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
+    late, far, fast, largest_input, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
     tick = float(np.spacing(late))
-    place, speed, work = (float(np.spacing(x)) for x in (far, fast, much))
-    return ErrorFloors(place + tick * fast, speed + tick * hard, work)
+    position_error, speed, work_floor = (float(np.spacing(x)) for x in (far, fast, much))
+    return ErrorFloors(position_error + tick * fast, speed + tick * largest_input, work_floor)

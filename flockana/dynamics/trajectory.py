@@ -104,12 +104,12 @@ class Trajectory(MeasuredRun):
         ensure_atol("stats['atol']", self.stats.get("atol"))
         try:
             shape = np.shape(self.q)
-            others = [np.shape(each) for each in (self.t, self.p, self.u)]
+            other_shapes = [np.shape(item) for item in (self.t, self.p, self.u)]
         except ValueError:
             raise ArgumentError("t, q, p, u: expected arrays, got rows of different lengths") from None
-        if len(shape) != 3 or others != [shape[:1], shape, shape]:
+        if len(shape) != 3 or other_shapes != [shape[:1], shape, shape]:
             raise ArgumentError(
-                f"t {others[0]}, q {shape}, p {others[1]}, u {others[2]}: "
+                f"t {other_shapes[0]}, q {shape}, p {other_shapes[1]}, u {other_shapes[2]}: "
                 "expected shapes (T,), (T, n, m), (T, n, m), (T, n, m)"
             )
         if 0 in shape or shape[2] > 3:
@@ -119,8 +119,8 @@ class Trajectory(MeasuredRun):
         k = int(np.argmin(np.diff(self.t))) if shape[0] > 1 else 0
         if shape[0] > 1 and not self.t[k + 1] > self.t[k]:
             raise ArgumentError(f"t[{k}] = {self.t[k]:g} and t[{k + 1}] = {self.t[k + 1]:g}: expected rising times")
-        extra = {str(key): _frozen_series(f"extra[{key!r}]", x, shape[0]) for key, x in self.extra.items()}
-        object.__setattr__(self, "extra", extra)
+        extra_series = {str(key): _frozen_series(f"extra[{key!r}]", x, shape[0]) for key, x in self.extra.items()}
+        object.__setattr__(self, "extra", extra_series)
         if self.between is not None:
             self.between.check_fits(self.t, self.q)
 
@@ -151,9 +151,9 @@ class Trajectory(MeasuredRun):
             return self.law.scales
         with np.errstate(over="ignore"):
             extent = float(lengths(self.q - centres(self.q)[:, None]).max())
-            travel = float(lengths(self.q - self.q[0]).max())
-        length, time = extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0
-        return Scales(*np.clip([length, time], LEAST, MOST).tolist())
+            largest_travel = float(lengths(self.q - self.q[0]).max())
+        length_scale, time = extent or largest_travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0
+        return Scales(*np.clip([length_scale, time], LEAST, MOST).tolist())
 
     def in_units(self, length: float, time: float) -> Trajectory:
         """The same run in other units (`flockana.rescale`).
@@ -246,11 +246,11 @@ class Trajectory(MeasuredRun):
         extra = {name: series[keep] for name, series in self.extra.items()}
         if "work" in extra:
             extra["work"] = extra["work"] - extra["work"][0]
-        between, stats = None if self.between is None else self.between.within(self.t, self.t[keep]), self.stats
+        between_samples, stats = None if self.between is None else self.between.within(self.t, self.t[keep]), self.stats
         if self.resolved and self.between is None and "steps" in stats:
             stats = {**stats, "steps": min(stats["steps"], int(keep.sum()) - 1)}
-        part = {name: getattr(self, name)[keep] for name in ("t", "q", "p", "u")}
-        return replace_sealed(self, **part, extra=extra, between=between, stats=stats)
+        window_series = {name: getattr(self, name)[keep] for name in ("t", "q", "p", "u")}
+        return replace_sealed(self, **window_series, extra=extra, between=between_samples, stats=stats)
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""

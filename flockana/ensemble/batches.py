@@ -37,22 +37,22 @@ def map_in_batches(
     """Call a function on batches of items, and yield each item with its result as batches complete."""
     # The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
     # items to send together; `watch` is told what is under way. An error of the function ends all.
-    waiting, suspects = deque(items), deque[Any]()
+    waiting_items, suspects = deque(items), deque[Any]()
     pending: Pending = {}
-    dead: list[tuple[Item, None]] = []  # kept back until a batch is done: only then the fault was theirs
+    dead_items: list[tuple[Item, None]] = []  # kept back until a batch is done: only then the fault was theirs
     size = 1
     try:
-        while waiting or suspects or pending:
+        while waiting_items or suspects or pending:
             width = workers.width()
-            for batch in next_batches(waiting, suspects, len(pending), width, size):
+            for batch in next_batches(waiting_items, suspects, len(pending), width, size):
                 watch((*_under_way(pending), *batch)[:width])
                 try:
-                    sent = workers.executor.submit(function, batch)
+                    sent_future = workers.executor.submit(function, batch)
                 except Exception as error:  # the pool broke earlier: this batch is not the cause
                     suspects.extend(_suspected(error, batch, pending, workers))
                     break
-                pending[sent] = batch
-                if sent.done():  # this process works itself: what is done is given before more is begun
+                pending[sent_future] = batch
+                if sent_future.done():  # this process works itself: what is done is given before more is begun
                     break
             finished, _ = wait_for(pending, timeout=_TICK, return_when=FIRST_COMPLETED)
             for future in finished:
@@ -60,21 +60,21 @@ def map_in_batches(
                 try:
                     results = future.result()
                 except Exception as error:
-                    alone = len(batch) == 1 and not pending
-                    suspected = _suspected(error, batch, pending, workers)
-                    if not alone:
-                        suspects.extend(suspected)
+                    is_single = len(batch) == 1 and not pending
+                    suspect_items = _suspected(error, batch, pending, workers)
+                    if not is_single:
+                        suspects.extend(suspect_items)
                         break  # what else is done is still pending, or under suspicion
-                    dead.append((batch[0], None))
-                    if len(dead) == HOPELESS:
+                    dead_items.append((batch[0], None))
+                    if len(dead_items) == HOPELESS:
                         raise SolverError(f"{HOPELESS} worker processes died one after the other: {_REMEDY}") from error
                 else:
                     size = batch_size(results)
-                    yield (*dead, *zip(batch, results, strict=True))
-                    dead.clear()
+                    yield (*dead_items, *zip(batch, results, strict=True))
+                    dead_items.clear()
             watch(_under_way(pending)[:width])
-        if dead:
-            yield tuple(dead)
+        if dead_items:
+            yield tuple(dead_items)
     except BaseException:
         for future in pending:
             future.cancel()
@@ -91,8 +91,8 @@ def next_batches(
         return
     for _ in range(_QUEUED * width - out):
         if waiting:
-            fair = max(1, len(waiting) // (_QUEUED * width))  # so that all workers end together
-            yield tuple(waiting.popleft() for _ in range(min(size, fair)))
+            fair_count = max(1, len(waiting) // (_QUEUED * width))  # so that all workers end together
+            yield tuple(waiting.popleft() for _ in range(min(size, fair_count)))
 
 
 def _under_way(pending: Pending) -> Batch:
@@ -105,8 +105,8 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Wo
     if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
         return batch
     if isinstance(error, BrokenExecutor) and workers.renew is not None:
-        suspected = (*batch, *(item for other in pending.values() for item in other))
+        suspect_items = (*batch, *(item for pending_batch in pending.values() for item in pending_batch))
         pending.clear()
         workers.executor = workers.renew()
-        return suspected
+        return suspect_items
     raise error

@@ -141,8 +141,8 @@ def ensemble(
         name, checked = _ensure_scenario(chosen, grid), _ensure_theorems(theorems)
     else:
         name, checked = flock.name, _ensure_flock(flock, grid, theorems)
-    own_theorems = tuple(each for each in checked or () if isinstance(each, Theorem))
-    ids = None if checked is None else tuple(each.id if isinstance(each, Theorem) else each for each in checked)
+    own_theorems = tuple(item for item in checked or () if isinstance(item, Theorem))
+    ids = None if checked is None else tuple(item.id if isinstance(item, Theorem) else item for item in checked)
     request = Request(name, ids, chosen_metrics, tolerances or Tolerances(), flock=flock, own=own_theorems)
     all_jobs = grid.jobs()
     with ExitStack() as stack:
@@ -162,19 +162,19 @@ def ensemble(
             try:
                 with worker_pool(executor, jobs=jobs) as workers:
                     for batch in make_runs(request, missing, workers):
-                        new = {keys[record.job]: record for record in batch}
+                        new_records = {keys[record.job]: record for record in batch}
                         if open_store is not None:
-                            open_store.add(name, new)
-                        records |= new
-                        count_done += len(new)
+                            open_store.add(name, new_records)
+                        records |= new_records
+                        count_done += len(new_records)
                         advance(count_done, text)
             except KeyboardInterrupt:
-                how = (
+                description = (
                     "a store would keep them"
                     if store is None
                     else f"they are stored in {store}, and the same call goes on"
                 )
-                raise KeyboardInterrupt(f"{len(records)} of {len(all_jobs)} runs done; {how}") from None
+                raise KeyboardInterrupt(f"{len(records)} of {len(all_jobs)} runs done; {description}") from None
     return to_dataset(request, grid, [records[keys[job]] for job in all_jobs])
 
 
@@ -199,12 +199,12 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
     """Return options split into (axes with several values, fixed ones)."""
     axes: dict[str, list[Scalar]] = {}
-    fixed: dict[str, Scalar] = {}
+    fixed_values: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
         raise ArgumentError(f"parameters = {parameters!r}: expected a dictionary, such as {{'n': [20, 40]}}")
     for name, options in (parameters or {}).items():
         if isinstance(options, str) or not isinstance(options, Iterable):
-            fixed[name] = _scalar(name, options)
+            fixed_values[name] = _scalar(name, options)
             continue
         values = [_scalar(name, value) for value in islice(options, MOST + 1)]
         if len(values) > MOST:
@@ -212,14 +212,14 @@ def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]
         if not values or len(set(values)) < len(values) or len({isinstance(v, str) for v in values}) > 1:
             raise ArgumentError(f"{name} = {values}: expected at least one value, all different and of one kind")
         axes[name] = values
-    return axes, fixed
+    return axes, fixed_values
 
 
 def _scalar(name: str, value: Any) -> Scalar:
-    plain = value.item() if isinstance(value, np.generic) else value
-    if not isinstance(plain, bool | int | float | str) or plain != plain:
+    plain_value = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(plain_value, bool | int | float | str) or plain_value != plain_value:
         raise ArgumentError(f"{name} = {value!r}: expected numbers, texts or truth values that an option can have")
-    return plain
+    return plain_value
 
 
 def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
@@ -235,23 +235,23 @@ def _ensure_theorems(given: Any) -> tuple[str | Theorem, ...] | None:
         return None
     if isinstance(given, str | Theorem) or not isinstance(given, Iterable):
         raise ArgumentError(f"theorems = {given!r}: expected several, such as ['os-1', '{SOURCE}', claim(...)]")
-    items, catalogue = {(each.id if isinstance(each, Theorem) else each): each for each in _named(given)}, theorems()
-    for name, each in items.items():
-        if not isinstance(each, Theorem):
+    items, catalogue = {(item.id if isinstance(item, Theorem) else item): item for item in _named(given)}, theorems()
+    for name, item in items.items():
+        if not isinstance(item, Theorem):
             ensure_known("theorem", name, (SOURCE, *catalogue))
-        elif name == SOURCE or (name in catalogue and each is not theorem(name)):
+        elif name == SOURCE or (name in catalogue and item is not theorem(name)):
             raise ArgumentError(f"theorems: your claim {name!r} has the name of one in the catalogue; rename it")
-        if name != SOURCE and theorem(each).kind != "trajectory":
+        if name != SOURCE and theorem(item).kind != "trajectory":
             raise ArgumentError(f"{name} is not about a run: expected theorems about motion, such as os-1")
-    return tuple(name if name in catalogue else each for name, each in items.items())
+    return tuple(name if name in catalogue else item for name, item in items.items())
 
 
 def _named(given: Iterable[Any]) -> Iterator[Any]:
     """Yield the given theorems with their names; raise on other values."""
-    for each in given:
-        if not isinstance(each, str | Theorem):
-            raise ArgumentError(f"theorems: {format_value(each)}: expected names of theorems, or claims of your own")
-        yield each
+    for item in given:
+        if not isinstance(item, str | Theorem):
+            raise ArgumentError(f"theorems: {format_value(item)}: expected names of theorems, or claims of your own")
+        yield item
 
 
 def _ensure_scenario(scenario: Any, grid: Grid) -> str:
@@ -285,27 +285,27 @@ def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str | Theore
 
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
     """Return the key of each run, including the source of user functions."""
-    shared = request.to_dict(strict=strict)
+    shared_settings = request.to_dict(strict=strict)
     own_names = {name for name in (request.scenario, *request.metrics) if ":" in name}
-    shared["own"] = {name: _file_digest(resolve_name(name), name, strict) for name in sorted(own_names)}
-    margins = {f"claim {each.id}": getattr(each.check, "margin", each.check) for each in request.own}
+    shared_settings["own"] = {name: _file_digest(resolve_name(name), name, strict) for name in sorted(own_names)}
+    margins = {f"claim {item.id}": getattr(item.check, "margin", item.check) for item in request.own}
     starts = {} if request.flock is None else {key: getattr(request.flock, key) for key in ("q0", "p0")}
     for key, function in (margins | {key: start for key, start in starts.items() if callable(start)}).items():
-        shared["own"][key] = [_file_digest(function, key, strict), *_written(function, key, strict)]
-    return {job: digest(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
+        shared_settings["own"][key] = [_file_digest(function, key, strict), *_written(function, key, strict)]
+    return {job: digest(shared_settings | {"seed": job.seed, "options": dict(job.options)}) for job in grid}
 
 
 def _written(function: Any, name: str, strict: bool) -> list[Any]:
     """Return the source line of a user's function, and the values captured by the function."""
     cells = (cell.cell_contents for cell in getattr(function, "__closure__", None) or ())
-    given = getattr(function, "__defaults__", None), (getattr(function, "__kwdefaults__", None) or {}).values()
-    held = (*cells, *(given[0] or ()), *given[1])
+    default_values = getattr(function, "__defaults__", None), (getattr(function, "__kwdefaults__", None) or {}).values()
+    closure_values = (*cells, *(default_values[0] or ()), *default_values[1])
     try:
-        values: Any = [to_data(value) for value in held]
+        values: Any = [to_data(value) for value in closure_values]
     except ArgumentError as error:
         if strict:
             raise ArgumentError(f"{name}: its function holds a value that a store cannot write: {error}") from None
-        values = repr(held)
+        values = repr(closure_values)
     return [getattr(getattr(function, "__code__", None), "co_firstlineno", 0), values]
 
 

@@ -39,7 +39,7 @@ class Grid:
         """Return all runs, or the runs of the first seeds."""
         points = (dict(zip(self.axes, values, strict=True)) for values in product(*self.axes.values()))
         options = (tuple(sorted({**point, **self.fixed}.items())) for point in points)
-        return [Job(seed, each) for each in options for seed in self.seeds[:most]]
+        return [Job(seed, option) for option in options for seed in self.seeds[:most]]
 
 
 def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> "xarray.Dataset":

@@ -44,8 +44,8 @@ def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
     # To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     # named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
     exact: list[str | bytes] = [repr((sys.version, _libraries(), Path(__file__).read_bytes()))]
-    for name, source in sorted(sources.items()):
-        exact += [f"\0{name}\0{len(source)}\0", source]
+    for name, file_bytes in sorted(sources.items()):
+        exact += [f"\0{name}\0{len(file_bytes)}\0", file_bytes]
     cache_file = folder / f"mathematics.{sha256(exact)[:32]}.txt"
     with suppress(OSError, UnicodeDecodeError):
         if _DIGEST.fullmatch(digest := cache_file.read_text(encoding="ascii")):
@@ -72,8 +72,8 @@ def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     """Return the digest of source files by name; comments, layout and docstrings do not count."""
     # each version of Python writes the syntax tree differently; the version is part of the digest anyway
     parts: list[str | bytes] = [json.dumps([platform.python_version_tuple()[:2], _libraries()])]
-    for name, source in sorted(sources.items()):
-        parts += [f"\0{name}\0", _code_without_comments(source) if name.endswith(".py") else source]
+    for name, file_bytes in sorted(sources.items()):
+        parts += [f"\0{name}\0", _code_without_comments(file_bytes) if name.endswith(".py") else file_bytes]
     return sha256(parts)[:16]
 
 
@@ -82,7 +82,7 @@ def _code_without_comments(source: bytes) -> str:
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
         if isinstance(body, list) and isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and body:
-            first = body[0]
-            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+            first_statement = body[0]
+            if isinstance(first_statement, ast.Expr) and isinstance(first_statement.value, ast.Constant):
                 del body[0]
     return ast.dump(tree)

@@ -48,19 +48,19 @@ class Request:
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
         """Return plain data for the key of a run; with `strict`, raise on a flock without a written form."""
-        plain: Any = None
+        plain_value: Any = None
         if (flock := self.flock) is not None:
-            start = ("drawn" if callable(part) else part for part in (flock.q0, flock.p0))  # digested apart
+            start = ("drawn" if callable(item) else item for item in (flock.q0, flock.p0))  # digested apart
             parts = flock.law, *start, flock.t_span
             try:
-                plain = [*map(to_data, parts), to_data_mapping(flock.options)]
+                plain_value = [*map(to_data, parts), to_data_mapping(flock.options)]
             except ArgumentError as error:
                 if strict:
                     raise ArgumentError(f"store: {error}") from None
-                plain = repr((*parts, flock.options))  # functions as their names, which tell no versions apart
+                plain_value = repr((*parts, flock.options))  # functions as their names, which tell no versions apart
         data = asdict(replace(self, flock=None, own=()))
         del data["own"]  # their ids are among the theorems, their sources in the key
-        return {**data, "flock": plain}
+        return {**data, "flock": plain_value}
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
 
 def run_one(request: Request, job: Job) -> Record:
     """Make one run; errors become part of its record."""
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     try:
         with restore_interrupts():
             item = build(request, job)
@@ -128,7 +128,7 @@ def run_one(request: Request, job: Job) -> Record:
                 record = Record(job, FAILED, run.message, stats=_stats(run))
     except Exception as error:
         record = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
-    return replace(record, seconds=time.perf_counter() - started)
+    return replace(record, seconds=time.perf_counter() - start_time)
 
 
 def build(request: Request, job: Job) -> Scenario:
@@ -149,8 +149,8 @@ def _judge_run(request: Request, job: Job, item: Scenario, run: Trajectory) -> R
     claims: dict[str, Any] = {}
     for verdict in verdicts:
         for claim in verdict.claims:
-            numbers = (None if x is None else float(x) for x in (claim.margin, claim.error))
-            claims[f"{verdict.theorem}:{claim.name}"] = (claim.status, *numbers)
+            margin_values = (None if x is None else float(x) for x in (claim.margin, claim.error))
+            claims[f"{verdict.theorem}:{claim.name}"] = (claim.status, *margin_values)
     metrics = {
         name: float((resolve_name(name) if ":" in name else measures()[name].number)(run)) for name in request.metrics
     }
@@ -162,7 +162,7 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     tolerances = request.tolerances
     if request.theorems is None:
         return item.verify(run, tolerances=tolerances)
-    own_theorems = {each.id: each for each in request.own}
+    own_theorems = {entry.id: entry for entry in request.own}
     names = [name for name in request.theorems if name != SOURCE]
     verdicts = [item.verdict(own_theorems.get(name, name), run, tolerances=tolerances) for name in names]
     if SOURCE in request.theorems:

@@ -34,8 +34,8 @@ def phases(
         raise ArgumentError(f"the dataset lacks {', '.join(missing)}: call ensemble with these metrics")
     limits = tolerances or Tolerances()
     distance, components, mismatch, deviation = (dataset[name] for name in _NEEDED)
-    settled = (mismatch <= limits.mismatch) & (deviation <= limits.deviation)
-    kinds = [distance < ensure_nonnegative("contact", contact), components > 1.0, settled]
+    is_settled = (mismatch <= limits.mismatch) & (deviation <= limits.deviation)
+    kinds = [distance < ensure_nonnegative("contact", contact), components > 1.0, is_settled]
     names = ("collapse", "fragmentation", "flocking")
     codes = np.select([kind.values for kind in kinds], [PHASES.index(name) for name in names], PHASES.index("other"))
     is_finite = np.isfinite(distance.values) & np.isfinite(components.values)

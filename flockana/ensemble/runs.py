@@ -34,5 +34,5 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
 
 def _batch_size(records: tuple[Record, ...]) -> int:
     """Return the number of runs in a batch of about half a second, from recent timings."""
-    each = sum(record.seconds for record in records) / len(records)
-    return int(min(_LONGEST_BATCH, max(1.0, BATCH_SECONDS / max(each, 1e-6))))
+    seconds_per_run = sum(record.seconds for record in records) / len(records)
+    return int(min(_LONGEST_BATCH, max(1.0, BATCH_SECONDS / max(seconds_per_run, 1e-6))))

@@ -22,8 +22,8 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
         return tuple(zip(*columns, strict=True))
 
     def __str__(self) -> str:
-        heads, *rows = self._table() or ((),)
-        return f"{self._title()}\n{text_table(rows, heads)}" if rows else super().__repr__()
+        column_heads, *rows = self._table() or ((),)
+        return f"{self._title()}\n{text_table(rows, column_heads)}" if rows else super().__repr__()
 
     def __repr__(self) -> str:
         lines = str(self).splitlines()
@@ -32,12 +32,12 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
         return "\n".join([*lines[: _LINES - 1], f"… {len(lines) - _LINES + 1} more rows; print(...) shows all"])
 
     def _repr_html_(self) -> str:
-        heads, *rows = self._table() or ((),)
+        column_heads, *rows = self._table() or ((),)
         variables = super()._repr_html_()
-        table = html_table(rows, heads, self._title()) if rows else ""
+        table = html_table(rows, column_heads, self._title()) if rows else ""
         return f"{table}<details><summary>variables</summary>{variables}</details>" if rows else variables
 
     def _title(self) -> str:
-        lost = int((self.run != 0).sum())
-        lacking = f", {lost} did not complete" if lost else ""
-        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{lacking}"
+        failed_runs = int((self.run != 0).sum())
+        missing_names = f", {failed_runs} did not complete" if failed_runs else ""
+        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{missing_names}"

@@ -55,12 +55,12 @@ def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset
     ensure_level(level)
     counts = {name: (dataset.status == code).sum("seed") for code, name in enumerate(STATUSES)}
     runs = (dataset.status >= 0).sum("seed")
-    judged = xarray.concat([counts["verified"], counts["refuted"]], dim="of")
-    trials = runs.broadcast_like(judged)
-    low, high = clopper_pearson(judged.values, trials.values, level=level)
-    share = (judged / trials.where(trials > 0)).assign_attrs(long_name="share of the runs")
+    judged_counts = xarray.concat([counts["verified"], counts["refuted"]], dim="of")
+    trials = runs.broadcast_like(judged_counts)
+    low, high = clopper_pearson(judged_counts.values, trials.values, level=level)
+    share = (judged_counts / trials.where(trials > 0)).assign_attrs(long_name="share of the runs")
     incomplete = (dataset.run != RUNS.index(COMPLETE)).sum("seed")
-    table = {"share": share, "low": judged.copy(data=low), "high": judged.copy(data=high), "runs": runs}
+    table = {"share": share, "low": judged_counts.copy(data=low), "high": judged_counts.copy(data=high), "runs": runs}
     table |= {"incomplete": incomplete, **counts}
     return xarray.Dataset(table, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])
 
@@ -76,8 +76,8 @@ def share_cells(table: "xarray.Dataset") -> Iterator[tuple[str, str, str, str, s
             if int(counts.runs):
                 vacuous, inconclusive = (str(int(counts[of]) or "") for of in ("vacuous", "inconclusive"))
                 verified, refuted = (_interval(counts.sel(of=of)) for of in ("verified", "refuted"))
-                where = ", ".join(f"{name} = {value}" for name, value in point.items())
-                yield where, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
+                place_text = ", ".join(f"{name} = {value}" for name, value in point.items())
+                yield place_text, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
 
 
 def _interval(entry: "xarray.Dataset") -> str:

@@ -112,10 +112,10 @@ class Store(AbstractContextManager["Store"]):
         """Return the stored runs among the keys."""
         keys_left, records = list(keys), {}
         with self._explained():
-            for first in range(0, len(keys_left), _AT_ONCE):
-                part = keys_left[first : first + _AT_ONCE]
-                marks = ", ".join("?" * len(part))
-                rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", part)
+            for start_index in range(0, len(keys_left), _AT_ONCE):
+                key_block = keys_left[start_index : start_index + _AT_ONCE]
+                marks = ", ".join("?" * len(key_block))
+                rows = self._file.execute(f"SELECT key, record FROM runs WHERE key IN ({marks})", key_block)
                 for key, text in rows:
                     try:
                         records[key] = Record.from_json(text, key)

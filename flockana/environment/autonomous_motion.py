@@ -34,21 +34,21 @@ class Motion:
         """Return y(t); raise SolverError at an invalid or unreachable time."""
         if not isfinite(t):
             raise SolverError(f"the γ-agent's own motion was asked for at t = {t}: expected a finite time")
-        ahead, k = t >= 0.0, int(abs(t) // self._piece)
-        pieces = self._pieces[ahead]
+        is_forward, k = t >= 0.0, int(abs(t) // self._piece)
+        pieces = self._pieces[is_forward]
         if len(pieces) <= k:
             with self._lock:
                 while len(pieces) <= k:
-                    pieces.append(self._next(ahead, pieces))
+                    pieces.append(self._next(is_forward, pieces))
         return pieces[k](t)
 
     def _next(self, ahead: bool, pieces: list[Any]) -> Any:
         from scipy.integrate import solve_ivp
 
-        ends = np.array([len(pieces), len(pieces) + 1]) * (self._piece if ahead else -self._piece)
-        start = pieces[-1](ends[0]) if pieces else self._start
-        how: Any = {"method": "DOP853", "dense_output": True, "rtol": _RTOL, "atol": 1e-13 * self._units}
-        solution = solve_ivp(lambda _, y: self._rate(y), tuple(ends.tolist()), start, **how)
+        segment_ends = np.array([len(pieces), len(pieces) + 1]) * (self._piece if ahead else -self._piece)
+        start = pieces[-1](segment_ends[0]) if pieces else self._start
+        run_options: Any = {"method": "DOP853", "dense_output": True, "rtol": _RTOL, "atol": 1e-13 * self._units}
+        solution = solve_ivp(lambda _, y: self._rate(y), tuple(segment_ends.tolist()), start, **run_options)
         if not (solution.success and np.isfinite(solution.y).all()):
             raise SolverError(
                 f"the γ-agent's own motion cannot be integrated beyond t = {solution.t[-1]:.6g} ({solution.message}): "
@@ -88,11 +88,11 @@ class Forced(ABC):
             first = self._acceleration(q, p)
         if first.shape != q.shape or not np.isfinite(first).all():
             raise ArgumentError(f"force gives {format_value(first)} at first: expected {q.shape[-1]} finite components")
-        sizes = [float(np.abs(x).max()) for x in (q, p, first)]
-        length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
-        if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):
+        magnitudes = [float(np.abs(x).max()) for x in (q, p, first)]
+        length_scale = max(magnitudes[0], magnitudes[1] * time, magnitudes[2] * (time * time)) or 1.0
+        if not (isfinite(time * time * _PIECE) and 0.0 < length_scale / time < inf and isfinite(length_scale)):
             raise ArgumentError(f"time = {time:g}: expected about the time in which the motion changes, such as 1")
-        units = np.repeat([length, length / time], q.size)
+        units = np.repeat([length_scale, length_scale / time], q.size)
 
         def rate(y: FloatArray) -> FloatArray:
             x, v = y.reshape(2, *q.shape)
@@ -104,7 +104,7 @@ class Forced(ABC):
         """Return f_r at one or several positions, calling a user's function position by position."""
         if q.ndim == 1 or isinstance(self.force, Spring):
             return np.asarray(self.force(q, p), dtype=np.float64)
-        return np.array([self.force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
+        return np.array([self.force(*item) for item in zip(q, p, strict=True)], dtype=np.float64)
 
     def in_units(self, length: float, time: float) -> Self:
         """Return the motion in other units (`flockana.rescale`)."""
@@ -112,8 +112,8 @@ class Forced(ABC):
         def scaled(q: FloatArray, p: FloatArray) -> FloatArray:
             return np.asarray(self.force(q / length, p * (time / length)), dtype=np.float64) * (length / time**2)
 
-        changed = scaled_fields(self, length, time)
-        return type(self)(**(changed if is_dataclass(self.force) else changed | {"force": scaled}))
+        changed_fields = scaled_fields(self, length, time)
+        return type(self)(**(changed_fields if is_dataclass(self.force) else changed_fields | {"force": scaled}))
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
         """Return positions and velocities at a time."""

@@ -48,11 +48,11 @@ class ObstacleField:
     @cached_property
     def kinds(self) -> tuple[Kind, ...]:
         """Obstacles grouped by kind."""
-        grouped: dict[int, list[Obstacle]] = {}
+        obstacles_by_kind: dict[int, list[Obstacle]] = {}
         for obstacle in self.obstacles:
-            grouped.setdefault(id(obstacle.kernels), []).append(obstacle)
+            obstacles_by_kind.setdefault(id(obstacle.kernels), []).append(obstacle)
         kinds = []
-        for group in grouped.values():
+        for group in obstacles_by_kind.values():
             pars = [obstacle.par for obstacle in group]
             starts = np.concatenate([[0], np.cumsum([par.size for par in pars])]).astype(np.int64)
             balls = np.array([[*centre, radius] for centre, radius in (obstacle.ball for obstacle in group)])
@@ -96,14 +96,14 @@ class ObstacleField:
 
     def links(self, q: FloatArray, p: FloatArray) -> BetaLinks:
         """Return the obstacles k with ‖q̂_ik − q_i‖ < r' of every agent i."""
-        by_obstacle = []
+        links_by_obstacle = []
         for k, obstacle in enumerate(self.obstacles):
             agents = obstacle.beta_agents(q, p)
             distance = np.abs(agents.clearance)
             near = np.flatnonzero(distance < self.beta.r)
-            by_obstacle.append((near, np.full(near.size, k), agents.q[near], agents.p[near], distance[near]))
-        empty = np.empty(0, np.int64), np.empty(0, np.int64), q[:0], p[:0], np.empty(0)
-        return BetaLinks(*map(np.concatenate, zip(empty, *by_obstacle, strict=True)))
+            links_by_obstacle.append((near, np.full(near.size, k), agents.q[near], agents.p[near], distance[near]))
+        no_links = np.empty(0, np.int64), np.empty(0, np.int64), q[:0], p[:0], np.empty(0)
+        return BetaLinks(*map(np.concatenate, zip(no_links, *links_by_obstacle, strict=True)))
 
 
 class InsideObstacleError(ArgumentError):
@@ -112,33 +112,33 @@ class InsideObstacleError(ArgumentError):
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
     """Raise if an agent is inside or on an obstacle; the error names the first one."""
-    inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
-    agents = np.flatnonzero(inside.any(axis=0))
+    is_inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
+    agents = np.flatnonzero(is_inside.any(axis=0))
     if agents.size == 0:
         return
     i = int(agents[0])
-    holders = np.flatnonzero(inside[:, i]).tolist()
-    where = " and ".join(f"obstacles[{k}] = {obstacles[k]}" for k in holders)
-    others = f" ({agents.size} agents do)" if agents.size > 1 else ""
-    free = _free_point(q[i], obstacles)
+    obstacle_indices = np.flatnonzero(is_inside[:, i]).tolist()
+    place_text = " and ".join(f"obstacles[{k}] = {obstacles[k]}" for k in obstacle_indices)
+    count_text = f" ({agents.size} agents do)" if agents.size > 1 else ""
+    free_point = _free_point(q[i], obstacles)
     remedy = ", and no free point was found by pushing it out of all obstacles: move the agent or an obstacle"
-    if free is not None:
-        remedy = f": expected every agent outside; {free.tolist()} is free"
-    raise InsideObstacleError(f"agent {i} at {q[i].tolist()} starts inside {where}{others}{remedy}")
+    if free_point is not None:
+        remedy = f": expected every agent outside; {free_point.tolist()} is free"
+    raise InsideObstacleError(f"agent {i} at {q[i].tolist()} starts inside {place_text}{count_text}{remedy}")
 
 
 def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray | None:
     """Return a point moved out of all obstacles."""
-    here = point[None, :].copy()
+    candidate = point[None, :].copy()
     for _ in range(_PUSHES):
-        depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]
+        depth = [float(obstacle.clearance(candidate)[0]) for obstacle in obstacles]
         k = int(np.argmin(depth))
         if depth[k] > 0.0:
-            return here[0]
-        foot = obstacles[k].beta_agents(here, np.zeros_like(here)).q
-        step = foot - here
+            return candidate[0]
+        foot = obstacles[k].beta_agents(candidate, np.zeros_like(candidate)).q
+        step = foot - candidate
         if np.isfinite(step).all() and step.any():
-            here = foot + _OUTWARD * step
+            candidate = foot + _OUTWARD * step
         else:  # at a centre, or on the surface: any direction will do
-            here[0, 0] += max(abs(depth[k]), 1e-6 * float(np.abs(here).max()), 1e-9)
+            candidate[0, 0] += max(abs(depth[k]), 1e-6 * float(np.abs(candidate).max()), 1e-9)
     return None

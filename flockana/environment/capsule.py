@@ -17,13 +17,13 @@ from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 @register_jitable
 def _slide(q, p, par, foot, rate):  # type: ignore[no-untyped-def]
     """Return the closest point of the segment, and its velocity; par = (a, b, R)."""
-    m, length2, along, speed = q.size, 0.0, 0.0, 0.0
+    m, length2, axial_part, speed = q.size, 0.0, 0.0, 0.0
     for c in range(m):
         side = par[m + c] - par[c]
         length2 += side * side
-        along += side * (q[c] - par[c])
+        axial_part += side * (q[c] - par[c])
         speed += side * p[c]
-    share = min(1.0, max(0.0, along / length2))
+    share = min(1.0, max(0.0, axial_part / length2))
     for c in range(m):
         side = par[m + c] - par[c]
         foot[c] = par[c] + share * side

@@ -84,5 +84,5 @@ class Copies(ShortRepr, Forced):
 
     def _acceleration(self, q: FloatArray, p: FloatArray) -> FloatArray:
         k1, k2 = self.position_coupling, self.velocity_coupling
-        coupled = k1 * (q.mean(axis=0) - q) + k2 * (p.mean(axis=0) - p)
-        return super()._acceleration(q, p) + coupled
+        coupling_term = k1 * (q.mean(axis=0) - q) + k2 * (p.mean(axis=0) - p)
+        return super()._acceleration(q, p) + coupling_term

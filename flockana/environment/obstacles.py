@@ -102,8 +102,8 @@ def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def _turn_sphere(q, p, e, par, out):  # type: ignore[no-untyped-def]
-    still = np.zeros(q.size)
-    turn_ball(q, p, e, par[:-1], par[-1], still, still, out)
+    zero_velocity = np.zeros(q.size)
+    turn_ball(q, p, e, par[:-1], par[-1], zero_velocity, zero_velocity, out)
 
 
 @register_jitable

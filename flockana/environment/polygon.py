@@ -101,11 +101,11 @@ class SimplePolygon:
         return _in_parts(self._signed_along, start, end, *ends)
 
     def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-        ways = shapely.linestrings(np.stack([start, end], axis=1))
-        distances = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
-        deepest = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
-        met = shapely.intersects(self._shape, ways) | (first < 0.0) | (last < 0.0)
-        return np.where(met, np.minimum(distances, deepest), distances)
+        line_strings = shapely.linestrings(np.stack([start, end], axis=1))
+        distances = np.minimum(shapely.distance(self._shape.boundary, line_strings), np.minimum(first, last))
+        depth_bound = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
+        is_met = shapely.intersects(self._shape, line_strings) | (first < 0.0) | (last < 0.0)
+        return np.where(is_met, np.minimum(distances, depth_bound), distances)
 
     def enclosing_circle(self) -> Sphere:
         """Return the smallest enclosing disc, the buffer zone of the conventional method."""
@@ -116,31 +116,31 @@ class SimplePolygon:
 
 def _in_parts(function: Any, *rows: FloatArray) -> FloatArray:
     """Return a function of many rows, evaluated in parts to limit shapely's memory."""
-    parts = [function(*(each[k : k + _ROWS] for each in rows)) for k in range(0, len(rows[0]), _ROWS)]
+    parts = [function(*(row[k : k + _ROWS] for row in rows)) for k in range(0, len(rows[0]), _ROWS)]
     return np.concatenate([np.empty(0), *parts])
 
 
 @register_jitable
 def _onto_polygon(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     """Project onto the closest edge; the β-agent slides along an edge and rests at a corner; par = vertices."""
-    best, inside, count = inf, True, par.size // 2
+    least_square, is_inside, count = inf, True, par.size // 2
     for k in range(count):
         x0, y0 = par[2 * k], par[2 * k + 1]
         x1, y1 = par[2 * ((k + 1) % count)], par[2 * ((k + 1) % count) + 1]
         sx, sy, ex, ey = x1 - x0, y1 - y0, q[0] - x0, q[1] - y0
         if sx * ey - sy * ex < 0.0:
-            inside = False
+            is_inside = False
         length2 = sx * sx + sy * sy
-        along = (sx * ex + sy * ey) / length2
-        share = min(1.0, max(0.0, along))
+        axial_part = (sx * ex + sy * ey) / length2
+        share = min(1.0, max(0.0, axial_part))
         gx, gy = share * sx - ex, share * sy - ey
         s2 = gx * gx + gy * gy
-        if s2 < best:
-            best = s2
+        if s2 < least_square:
+            least_square = s2
             gap[0], gap[1] = gx, gy
-            speed = (sx * p[0] + sy * p[1]) / length2 if 0.0 < along < 1.0 else 0.0
+            speed = (sx * p[0] + sy * p[1]) / length2 if 0.0 < axial_part < 1.0 else 0.0
             rate[0], rate[1] = speed * sx, speed * sy
-    return -sqrt(best) if inside else sqrt(best)
+    return -sqrt(least_square) if is_inside else sqrt(least_square)
 
 
 _POLYGON = lift_obstacle(_onto_polygon, no_turn)
@@ -172,8 +172,8 @@ class Polygon(Obstacle, SimplePolygon):
     def __post_init__(self) -> None:
         SimplePolygon.__post_init__(self)
         sides = self.edges[:, 2:] - self.edges[:, :2]
-        after = np.roll(sides, -1, axis=0)
-        turns = sides[:, 0] * after[:, 1] - sides[:, 1] * after[:, 0]
+        next_sides = np.roll(sides, -1, axis=0)
+        turns = sides[:, 0] * next_sides[:, 1] - sides[:, 1] * next_sides[:, 0]
         if not (np.all(turns > 0.0) or np.all(turns < 0.0)):
             raise ArgumentError(
                 f"vertices = {[list(corner) for corner in self.vertices]}: expected the corners of a strictly convex "

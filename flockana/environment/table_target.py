@@ -62,8 +62,8 @@ class TableTarget(Target):
 
         if self.p is not None:
             return CubicHermiteSpline(self.t, np.array(self.q), np.array(self.p))
-        ends: Any = "natural" if len(self.t) == 3 else "not-a-knot"
-        return CubicSpline(self.t, np.array(self.q), bc_type=ends)
+        spline_ends: Any = "natural" if len(self.t) == 3 else "not-a-knot"
+        return CubicSpline(self.t, np.array(self.q), bc_type=spline_ends)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return self._path(min(max(t, self.t[0]), self.t[-1]))
@@ -82,14 +82,14 @@ class TableTarget(Target):
         t0 : float
             Time from which on the bound holds.
         """
-        ends = [t for t in (self.t[0], self.t[-1]) if t >= t0]
-        if any(self._path(t, 1).any() for t in ends):
+        end_times = [t for t in (self.t[0], self.t[-1]) if t >= t0]
+        if any(self._path(t, 1).any() for t in end_times):
             return inf
         bends = self._path.derivative(2)  # linear on each piece
         start, slope = bends.c[1], bends.c[0]
-        last = start + slope * np.diff(self.t)[:, None]
-        sizes = np.maximum(*(np.linalg.norm(x, axis=1) for x in (start, last)))
-        return float(sizes[np.array(self.t[1:]) > t0].max(initial=0.0))
+        last_acceleration = start + slope * np.diff(self.t)[:, None]
+        magnitudes = np.maximum(*(np.linalg.norm(x, axis=1) for x in (start, last_acceleration)))
+        return float(magnitudes[np.array(self.t[1:]) > t0].max(initial=0.0))
 
     @property
     def feature(self) -> float | None:

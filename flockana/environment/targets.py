@@ -25,7 +25,7 @@ _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the
 
 def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:
     """Return a path from its summands; omitted ones are zero."""
-    return Harmonic(np.array([np.broadcast_to(one, np.shape(a)) for one in (a, b, c, s, e)], dtype=np.float64), omega)
+    return Harmonic(np.array([np.broadcast_to(item, np.shape(a)) for item in (a, b, c, s, e)], dtype=np.float64), omega)
 
 
 class _HarmonicTarget(Target):
@@ -207,9 +207,9 @@ class CircleTarget(_HarmonicTarget):
 
     @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
-        turn = np.zeros((2, len(self.centre)))
-        turn[:, :2] = (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
-        c, s = self.radius * turn
+        rotation_coefficients = np.zeros((2, len(self.centre)))
+        rotation_coefficients[:, :2] = (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
+        c, s = self.radius * rotation_coefficients
         return _harmonic(self.centre, c=c, s=s, omega=2.0 * pi * self.frequency)
 
 
@@ -248,8 +248,8 @@ class RescaledVelocity(Target):
     def consistent(self) -> bool | None:  # noqa: D102
         if self.target.consistent is None:
             return None
-        rests = bool(self.target.constant_velocity) and not self.target.rate(0.0).any()
-        return self.factor == 1.0 or rests
+        is_resting = bool(self.target.constant_velocity) and not self.target.rate(0.0).any()
+        return self.factor == 1.0 or is_resting
 
     def acceleration_bound(self, t0: float) -> float | None:  # noqa: D102
         return self.target.acceleration_bound(t0)
@@ -309,17 +309,17 @@ class CallableTarget(Target):
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         try:
-            start, end = (float(each) for each in self.span)
+            start, end = (float(item) for item in self.span)
         except (TypeError, ValueError):
             raise ArgumentError(f"span = {format_value(self.span)}: expected two times, (start, end)") from None
         if not end - start > 4.0 * _STEP * self.time:
             raise ArgumentError(f"span = {self.span}: expected a start and an end, more than 4e-5 time apart")
         object.__setattr__(self, "span", (start, end))
-        first = min(max(0.0, start), end)
-        q, p = self.state(first)
+        first_time = min(max(0.0, start), end)
+        q, p = self.state(first_time)
         if q.size != p.size:
             raise ArgumentError(
-                f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
+                f"function({first_time:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
             )
 
     def in_units(self, length: float, time: float) -> Self:
@@ -330,8 +330,8 @@ class CallableTarget(Target):
             return length * q, length / time * p
 
         start, end = self.span
-        slow = None if self.changes_slower_than is None else time * self.changes_slower_than
-        return type(self)(scaled, time * self.time, (time * start, time * end), slow)
+        time_constant = None if self.changes_slower_than is None else time * self.changes_slower_than
+        return type(self)(scaled, time * self.time, (time * start, time * end), time_constant)
 
     @property
     def feature(self) -> float | None:  # noqa: D102
@@ -353,6 +353,6 @@ class CallableTarget(Target):
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         if self.span[0] <= t - step and t + step <= self.span[1]:
             return (self.position(t + step) - self.position(t - step)) / (2.0 * step)
-        to = step if t - step < self.span[0] else -step
-        near, far = self.position(t + to), self.position(t + 2.0 * to)
-        return (4.0 * near - far - 3.0 * self.position(t)) / (2.0 * to)
+        time_step = step if t - step < self.span[0] else -step
+        near_position, far_position = self.position(t + time_step), self.position(t + 2.0 * time_step)
+        return (4.0 * near_position - far_position - 3.0 * self.position(t)) / (2.0 * time_step)

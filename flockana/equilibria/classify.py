@@ -37,24 +37,24 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
     """Return the potential's second-order model about a configuration, with its residual force."""
     kind = Landscape if q.size <= DENSE_SIZE else LargeLandscape
-    force, length, unit = float(np.linalg.norm(potential.force(q))), potential.pair.length, potential.force_scale
-    return kind(potential.stiffness, q, potential.symmetries(q), force=force, length=length, unit=unit)
+    force, length_scale, unit = float(np.linalg.norm(potential.force(q))), potential.pair.length, potential.force_scale
+    return kind(potential.stiffness, q, potential.symmetries(q), force=force, length=length_scale, unit=unit)
 
 
 def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
     """Return eigenvalues of the Hessian on the complement of the potential's rigid motions."""
     # What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
     # no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
-    here = landscape(potential, q)
-    values, signs, _ = here.curvatures()
-    return Spectrum(values, here.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))
+    local_landscape = landscape(potential, q)
+    values, signs, _ = local_landscape.curvatures()
+    return Spectrum(values, local_landscape.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     """Return the unit direction (n, m) of steepest second-order descent, if there is one."""
-    here = landscape(potential, q)
-    signs = here.curvatures().signs
-    return descent_direction(here) if signs.size and signs[0] < 0 else None
+    local_landscape = landscape(potential, q)
+    signs = local_landscape.curvatures().signs
+    return descent_direction(local_landscape) if signs.size and signs[0] < 0 else None
 
 
 def classify_spectrum(modes: Spectrum) -> EquilibriumKind:

@@ -107,16 +107,16 @@ def threshold(
                 f"collapse, or no result, at all ratios down to {low:.3g}: expected no collapse at the smallest"
             )
     high, doubt = factor * low, False
-    while (collapsed := seen(high)) is not True:
-        doubt = doubt or collapsed is None
+    while (is_collapsed := seen(high)) is not True:
+        doubt = doubt or is_collapsed is None
         low, high = low if doubt else high, factor * high
         if high > _RANGE * lowest:
             raise SolverError(f"no collapse at ratios up to {high:.3g}: expected one below {_RANGE * lowest:.3g}")
     for _ in range(0 if doubt else halvings):
-        middle = sqrt(low * high)
-        if (collapsed := seen(middle)) is None:
+        midpoint = sqrt(low * high)
+        if (is_collapsed := seen(midpoint)) is None:
             break
-        low, high = (low, middle) if collapsed else (middle, high)
+        low, high = (low, midpoint) if is_collapsed else (midpoint, high)
     return low, high
 
 

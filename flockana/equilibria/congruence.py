@@ -45,8 +45,8 @@ def _frame(x: FloatArray) -> list[int]:
     from scipy.linalg import qr
 
     triangle, order = qr(x.T, mode="r", pivoting=True)
-    sizes = np.abs(np.diag(triangle))
-    return [int(k) for k, size in zip(order, sizes, strict=False) if size > _FLAT * sizes[0]]
+    magnitudes = np.abs(np.diag(triangle))
+    return [int(k) for k, size in zip(order, magnitudes, strict=False) if size > _FLAT * magnitudes[0]]
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:

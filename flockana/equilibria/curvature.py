@@ -67,10 +67,10 @@ class Landscape:
         """Hessian with the eigenvalues of rigid motions shifted beyond all others."""
         hessian: FloatArray = self.here.toarray()
         rigid = self.rigid
-        off: Any = hessian - rigid @ (rigid.T @ hessian)
-        off = off - (off @ rigid) @ rigid.T
-        above = 2.0 * self.size or 1.0
-        return np.asarray(0.5 * (off + off.T) + above * (rigid @ rigid.T))
+        deflated_hessian: Any = hessian - rigid @ (rigid.T @ hessian)
+        deflated_hessian = deflated_hessian - (deflated_hessian @ rigid) @ rigid.T
+        rigid_shift = 2.0 * self.size or 1.0
+        return np.asarray(0.5 * (deflated_hessian + deflated_hessian.T) + rigid_shift * (rigid @ rigid.T))
 
     @cached_property
     def values(self) -> FloatArray:
@@ -85,21 +85,21 @@ class Landscape:
 
     def curvatures(self) -> Curvatures:
         """Return eigenvalues with their signs; 0 where residual force or rounding leaves a sign open."""
-        sizes = np.abs(self.values)
-        decided = np.zeros(sizes.size, dtype=bool)
-        left = np.flatnonzero(sizes > self.rounding)
-        if left.size and self._keeps_all(float(sizes[left].min())):
-            decided[left], left = True, left[:0]
+        magnitudes = np.abs(self.values)
+        is_decided = np.zeros(magnitudes.size, dtype=bool)
+        left = np.flatnonzero(magnitudes > self.rounding)
+        if left.size and self._keeps_all(float(magnitudes[left].min())):
+            is_decided[left], left = True, left[:0]
         while left.size:
-            group = left[sizes[left] > sizes[left].max() / _GROUP]
-            if 2.0 * self.force / float(sizes[group].min()) > _REACH * self.length:
+            group = left[magnitudes[left] > magnitudes[left].max() / _GROUP]
+            if 2.0 * self.force / float(magnitudes[group].min()) > _REACH * self.length:
                 break  # and all smaller ones with it
-            if self._keeps_all(float(sizes[group].min())):
-                decided[group] = True
+            if self._keeps_all(float(magnitudes[group].min())):
+                is_decided[group] = True
             else:
-                decided[group] = [self.change(int(k)) <= 0.5 * sizes[k] for k in group]
+                is_decided[group] = [self.change(int(k)) <= 0.5 * magnitudes[k] for k in group]
             left = np.setdiff1d(left, group)
-        signs = np.where(decided, np.sign(self.values), 0.0).astype(np.int64)
+        signs = np.where(is_decided, np.sign(self.values), 0.0).astype(np.int64)
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
@@ -109,8 +109,8 @@ class Landscape:
             return float("inf")
         v = self.vectors[:, k]
         step = reach * v.reshape(self.q.shape)
-        places = [self.q + step, self.q - step, *self._around(reach)]
-        return max(abs(float(v @ ((self.stiffness(x) - self.here) @ v))) for x in places)
+        positions = [self.q + step, self.q - step, *self._around(reach)]
+        return max(abs(float(v @ ((self.stiffness(x) - self.here) @ v))) for x in positions)
 
     @cached_property
     def distance(self) -> float:
@@ -128,9 +128,9 @@ class Landscape:
             return False
         if not self.values.size:
             return True
-        lowest = float(self.values[0])
-        reach = 2.0 * float(np.sqrt((energy + self.force**2 / lowest) / lowest)) + self.distance
-        return self._keeps(reach, lowest)
+        lowest_value = float(self.values[0])
+        reach = 2.0 * float(np.sqrt((energy + self.force**2 / lowest_value) / lowest_value)) + self.distance
+        return self._keeps(reach, lowest_value)
 
     def _keeps_all(self, least: float) -> bool:
         """Return whether no eigenvalue of at least this size changes by half on the way to the critical point."""
@@ -140,19 +140,19 @@ class Landscape:
         """Return whether the stiffness changes by less than half of `least` within `reach`."""
         if reach > _REACH * self.length:
             return False
-        turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
-        return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
+        angle_bound = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
+        return angle_bound + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
         """Return the configuration scaled up, scaled down, and shifted if translations matter."""
         # Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
         centre = self.q.mean(axis=0)
-        places = [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
+        positions = [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
         shifts = np.tile(np.eye(m), (n, 1))
         if np.abs(shifts - self.rigid @ (self.rigid.T @ shifts)).max() > _FREE:
-            places += [self.q + sign * reach * axis for axis in np.eye(m) for sign in (1.0, -1.0)]
-        return places
+            positions += [self.q + sign * reach * axis for axis in np.eye(m) for sign in (1.0, -1.0)]
+        return positions
 
 
 def least_curvature(landscape: Landscape) -> tuple[float, float]:
@@ -170,10 +170,10 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
 def descent_direction(landscape: Landscape) -> FloatArray:
     """Return the unit direction (n, m) of steepest second-order descent."""
     # The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
-    near = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
-    basis = landscape.vectors[:, near]
-    fixed = np.random.default_rng(0).standard_normal(landscape.q.size)
-    direction = basis @ (basis.T @ fixed)
+    is_near_zero = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
+    basis = landscape.vectors[:, is_near_zero]
+    random_direction = np.random.default_rng(0).standard_normal(landscape.q.size)
+    direction = basis @ (basis.T @ random_direction)
     return np.ascontiguousarray((direction / np.linalg.norm(direction)).reshape(landscape.q.shape))
 
 

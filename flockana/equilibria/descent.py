@@ -42,63 +42,63 @@ class Descent(NamedTuple):
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """Return a minimum reached downhill from q; anneal if pairs collapsed on the way."""
     steps, message = 100 * max_iter, "Converged"
-    best = relax(potential, q, steps, tol=_ROUGH)
-    for heat in _HEATS if pairs_collapsed(potential, q, best) else ():
-        other = relax(potential, anneal(potential, best, heat), steps, tol=_ROUGH)
-        if potential.energy(other) < potential.energy(best):
-            best, message = other, "Converged, annealed"
-    best, converged = newton(potential, relax(potential, best, steps), max_iter)
-    return Descent(best, converged, message if converged else "Newton's method did not converge")
+    best_value = relax(potential, q, steps, tol=_ROUGH)
+    for heat in _HEATS if pairs_collapsed(potential, q, best_value) else ():
+        annealed_state = relax(potential, anneal(potential, best_value, heat), steps, tol=_ROUGH)
+        if potential.energy(annealed_state) < potential.energy(best_value):
+            best_value, message = annealed_state, "Converged, annealed"
+    best_value, converged = newton(potential, relax(potential, best_value, steps), max_iter)
+    return Descent(best_value, converged, message if converged else "Newton's method did not converge")
 
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
     """Follow x'' = −∇U with a drag that keeps the motion downhill (FIRE: Bitzek et al. 2006)."""
     time_unit, stride = sqrt(potential.pair.length / potential.force_scale), _STRIDE * potential.pair.length
-    enough = tol * potential.force_scale
-    step, mixing, downhill, v = _STEP * time_unit, 0.1, 0, np.zeros_like(q)
+    force_tolerance = tol * potential.force_scale
+    step, mixing_factor, downhill_steps, v = _STEP * time_unit, 0.1, 0, np.zeros_like(q)
     for _ in range(steps):
         force = potential.force(q)
-        if _largest(force) <= enough:
+        if _largest(force) <= force_tolerance:
             break
         if float(np.vdot(force, v)) > 0.0:
-            v = (1.0 - mixing) * v + mixing * sqrt(float(np.vdot(v, v) / np.vdot(force, force))) * force
-            downhill += 1
-            if downhill > 5:
-                step, mixing = min(1.1 * step, _LONGEST * time_unit), 0.99 * mixing
+            v = (1.0 - mixing_factor) * v + mixing_factor * sqrt(float(np.vdot(v, v) / np.vdot(force, force))) * force
+            downhill_steps += 1
+            if downhill_steps > 5:
+                step, mixing_factor = min(1.1 * step, _LONGEST * time_unit), 0.99 * mixing_factor
         else:
-            v, step, mixing, downhill = np.zeros_like(q), 0.5 * step, 0.1, 0
+            v, step, mixing_factor, downhill_steps = np.zeros_like(q), 0.5 * step, 0.1, 0
         v = v + step * force
-        far = step * _largest(v)
-        ahead = q + step * min(1.0, stride / far) * v
-        if inside_obstacle(potential.law, ahead):
+        step_length = step * _largest(v)
+        next_state = q + step * min(1.0, stride / step_length) * v
+        if inside_obstacle(potential.law, next_state):
             v, step = np.zeros_like(q), 0.5 * step
         else:
-            q = ahead
+            q = next_state
     return q
 
 
 def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
     """Return whether neighbours moved against each other by more than their distance."""
     i, j = links(start, potential.pair.range).T
-    way = end - start
-    return bool(np.any(np.linalg.norm(way[j] - way[i], axis=1) > _PARTED * potential.pair.length))
+    direction = end - start
+    return bool(np.any(np.linalg.norm(direction[j] - direction[i], axis=1) > _PARTED * potential.pair.length))
 
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
     """Simulate Langevin's equation while the temperature falls to zero."""
-    length, scale = potential.pair.length, potential.force_scale
-    step = _QUIET / sqrt(float(abs(potential.stiffness(q)).sum(axis=1).max()) or scale / length)
+    length_scale, scale = potential.pair.length, potential.force_scale
+    step = _QUIET / sqrt(float(abs(potential.stiffness(q)).sum(axis=1).max()) or scale / length_scale)
     share_kept, rng, v = 1.0 - _DRAG, np.random.default_rng(0), np.zeros_like(q)
     for k in range(_COOLING):
-        heat = warm * scale * length * (1.0 - k / _COOLING)
+        heat = warm * scale * length_scale * (1.0 - k / _COOLING)
         noise = rng.standard_normal(q.shape)
         v = share_kept * v + step * potential.force(q)
         v += sqrt(heat * (1.0 - share_kept**2)) * (noise if potential.pinned else moving_frame(noise))
-        ahead = q + step * v
-        if inside_obstacle(potential.law, ahead):
+        next_state = q + step * v
+        if inside_obstacle(potential.law, next_state):
             v = -v
         else:
-            q = ahead
+            q = next_state
     return q
 
 
@@ -117,13 +117,13 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
         step = Elimination(hessian, q, least=threshold).solve(force.ravel()).reshape(q.shape)
         for _ in range(_TRIES):
             step = step * min(1.0, trust / _largest(step))
-            ahead, after = q + step, potential.force(q + step)
-            if not inside_obstacle(potential.law, ahead) and _better(force, after, step, hessian, _NEAR * scale):
+            next_state, after = q + step, potential.force(q + step)
+            if not inside_obstacle(potential.law, next_state) and _better(force, after, step, hessian, _NEAR * scale):
                 break
             trust = 0.25 * _largest(step)
         else:
             break
-        q, force, trust = ahead, after, max(trust, 2.0 * _largest(step))
+        q, force, trust = next_state, after, max(trust, 2.0 * _largest(step))
     return q, _largest(force) <= _NEAR * scale
 
 
@@ -132,8 +132,8 @@ def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any
     # The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
     if _largest(force) <= near:
         return _largest(after) < _largest(force)
-    promised = float(np.vdot(force, step)) - 0.5 * float(step.ravel() @ (hessian @ step.ravel()))
-    return 0.5 * float(np.vdot(force + after, step)) > _ENOUGH * abs(promised)
+    expected_gain = float(np.vdot(force, step)) - 0.5 * float(step.ravel() @ (hessian @ step.ravel()))
+    return 0.5 * float(np.vdot(force + after, step)) > _ENOUGH * abs(expected_gain)
 
 
 def _largest(vectors: FloatArray) -> float:

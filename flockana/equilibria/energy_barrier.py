@@ -50,32 +50,32 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     from flockana.equilibria.ipopt_program import Program
 
     n, m = ensure_count("n", n), ensure_dimension(m)
-    free = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), m)
-    tied = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), 2 * m)
+    free_program = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), m)
+    tied_program = Program(Potential(Algorithm1(alpha)), (n, m), all_pairs(n), 2 * m)
     translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
-    apart = np.zeros((n, m, m))
-    apart[0], apart[1] = np.eye(m), -np.eye(m)
-    tie = np.hstack([translations, apart.reshape(n * m, m)])
-    lowest, together, state, solves = inf, inf, np.full((n, m), np.nan), 0
+    constraint_rows = np.zeros((n, m, m))
+    constraint_rows[0], constraint_rows[1] = np.eye(m), -np.eye(m)
+    tie_rows = np.hstack([translations, constraint_rows.reshape(n * m, m)])
+    lowest_value, barrier_energy, state, solves = inf, inf, np.full((n, m), np.nan), 0
     for q in _starts(alpha, n, m, starts, seed):
-        low, converged, _ = free.solve(q, basis=translations)
+        low, converged, _ = free_program.solve(q, basis=translations)
         if converged:
-            lowest, solves = min(lowest, alpha.potential_energy(low)), solves + 1
+            lowest_value, solves = min(lowest_value, alpha.potential_energy(low)), solves + 1
     for q in _starts(alpha, n - 1, m, starts, seed):
-        doubled = _most_linked_first(q, alpha)
-        doubled = np.vstack([doubled[:1], doubled])
-        low, converged, _ = tied.solve(doubled, basis=tie)
+        lattice_with_double = _most_linked_first(q, alpha)
+        lattice_with_double = np.vstack([lattice_with_double[:1], lattice_with_double])
+        low, converged, _ = tied_program.solve(lattice_with_double, basis=tie_rows)
         if converged:
             solves += 1
-            if (value := alpha.potential_energy(low)) < together:
-                together, state = value, low
-    return Barrier(n, m, together, lowest, state, solves)
+            if (value := alpha.potential_energy(low)) < barrier_energy:
+                barrier_energy, state = value, low
+    return Barrier(n, m, barrier_energy, lowest_value, state, solves)
 
 
 def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> list[FloatArray]:
-    best = [hexagonal_spiral(n, alpha.d)] if m == 2 else []
-    grown = lattice_starts(n, m, alpha.d, count, seed=seed)
-    return best + grown + random_starts(n, m, alpha.d, count, seed=seed, density=2.0)
+    best_starts = [hexagonal_spiral(n, alpha.d)] if m == 2 else []
+    grown_lattices = lattice_starts(n, m, alpha.d, count, seed=seed)
+    return best_starts + grown_lattices + random_starts(n, m, alpha.d, count, seed=seed, density=2.0)
 
 
 def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
@@ -94,9 +94,9 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
         return 0.0, alpha.r
     low, high = 0.0, alpha.d  # ψ_α falls from c* to 0; scipy.optimize takes longer to load than this
     while high - low > 1e-12 * alpha.d:
-        middle = 0.5 * (low + high)
-        above = float(alpha.psi_alpha(alpha.sigma_norm(middle))) > alpha.far_potential
-        low, high = (middle, high) if above else (low, middle)
+        midpoint = 0.5 * (low + high)
+        exceeds_bound = float(alpha.psi_alpha(alpha.sigma_norm(midpoint))) > alpha.far_potential
+        low, high = (midpoint, high) if exceeds_bound else (low, midpoint)
     return high, alpha.r
 
 
@@ -107,16 +107,16 @@ def largest_clique(ratio: float, m: int) -> int | None:
     # ball.
     if not isfinite(ratio):
         return None
-    packed = floor((1.0 + 2.0 * ratio * sqrt(m / (2.0 * (m + 1.0)))) ** m)
+    clique_limit = floor((1.0 + 2.0 * ratio * sqrt(m / (2.0 * (m + 1.0)))) ** m)
     reachable = [points - 1 for points, least_ratio in _LEAST_RATIO.get(m, {}).items() if ratio <= least_ratio]
-    return min([packed, ceil(ratio)] if m == 1 else [packed, *reachable])
+    return min([clique_limit, ceil(ratio)] if m == 1 else [clique_limit, *reachable])
 
 
 def turan_pairs(n: int, clique: int) -> int:
     """Return the most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941)."""
-    size, more = divmod(n, clique)
-    inside = more * (size + 1) * size // 2 + (clique - more) * size * (size - 1) // 2
-    return n * (n - 1) // 2 - inside
+    group_size, more = divmod(n, clique)
+    inner_pairs = more * (group_size + 1) * group_size // 2 + (clique - more) * group_size * (group_size - 1) // 2
+    return n * (n - 1) // 2 - inner_pairs
 
 
 def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
@@ -154,5 +154,5 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
 def coincident_lattice(alpha: AlphaInteraction, n: int, m: int = 2) -> FloatArray:
     """Return a compact lattice of n − 1 agents with its most linked agent doubled, n >= 2."""
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
-    doubled = _most_linked_first(lattice, alpha)
-    return np.vstack([doubled[:1], doubled])
+    lattice_with_double = _most_linked_first(lattice, alpha)
+    return np.vstack([lattice_with_double[:1], lattice_with_double])

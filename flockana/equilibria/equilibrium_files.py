@@ -84,9 +84,9 @@ def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
     potential = Potential(equilibrium.law)
     unit = potential.force_scale * potential.pair.length  # of energies: a lattice may have none but rounding
     largest = max(float(np.abs(equilibrium.hessian_eigenvalues).max(initial=0.0)), unit / potential.pair.length**2)
-    claimed = np.array(data["hessian_eigenvalues"], dtype=np.float64)
-    if claimed.shape != equilibrium.hessian_eigenvalues.shape or np.any(
-        np.abs(claimed - equilibrium.hessian_eigenvalues) > _AGREE * largest
+    stated_eigenvalues = np.array(data["hessian_eigenvalues"], dtype=np.float64)
+    if stated_eigenvalues.shape != equilibrium.hessian_eigenvalues.shape or np.any(
+        np.abs(stated_eigenvalues - equilibrium.hessian_eigenvalues) > _AGREE * largest
     ):
         raise ValueError("its Hessian eigenvalues are not those computed from its positions")
     if not isclose(data["energy"], equilibrium.energy, rel_tol=_AGREE, abs_tol=_AGREE * unit):

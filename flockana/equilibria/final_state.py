@@ -50,17 +50,17 @@ def terminal_state(
     still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
     forces = moving_frame(law.flow(0.0, q, still)[0])
     force = float(np.linalg.norm(forces, axis=1).max())
-    lengths = link_lengths(q, links(q, alpha.range))
-    empty = lengths.size == 0
+    distances = link_lengths(q, links(q, alpha.range))
+    has_no_links = distances.size == 0
     landscape = surroundings(law, q, force=float(np.linalg.norm(forces)))
     curvature, error = least_curvature(landscape) if landscape else (float("nan"), float("inf"))
     return TerminalState(
         force=force / law.scales.force,
         mismatch=velocity_mismatch(p) / len(q),
-        strain=float("nan") if empty else float(np.abs(lengths - alpha.length).max() / alpha.length),
-        shortest=float("nan") if empty else float(lengths.min()),
-        longest=float("nan") if empty else float(lengths.max()),
-        links=int(lengths.size),
+        strain=float("nan") if has_no_links else float(np.abs(distances - alpha.length).max() / alpha.length),
+        shortest=float("nan") if has_no_links else float(distances.min()),
+        longest=float("nan") if has_no_links else float(distances.max()),
+        links=int(distances.size),
         coincident=coincident_pairs(q, contact * alpha.length),
         connected=connectivity(q, alpha.range) == 1.0,
         curvature=curvature,
@@ -71,21 +71,21 @@ def terminal_state(
 
 def generators(m: int) -> list[FloatArray]:
     """Return the skew matrices of rotations in each coordinate plane."""
-    one = np.eye(m)
-    return [np.outer(one[a], one[b]) - np.outer(one[b], one[a]) for a in range(m) for b in range(a)]
+    identity = np.eye(m)
+    return [np.outer(identity[a], identity[b]) - np.outer(identity[b], identity[a]) for a in range(m) for b in range(a)]
 
 
 def rigid_motions(q: FloatArray) -> FloatArray:
     """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k)."""
     n, m = q.shape
     x = moving_frame(q)
-    size = float(np.linalg.norm(x))
+    magnitude = float(np.linalg.norm(x))
     motions = [np.broadcast_to(axis, (n, m)).ravel() / np.sqrt(n) for axis in np.eye(m)]
-    motions += [(x @ generator.T).ravel() / (size or 1.0) for generator in generators(m)]
-    basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
+    motions += [(x @ generator.T).ravel() / (magnitude or 1.0) for generator in generators(m)]
+    basis, singular_values, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
     # a flock that is on a line but for rounding has no rotation about it
-    rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
-    return basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
+    rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / magnitude if magnitude > 0.0 else 0.0
+    return basis[:, singular_values > max(_ON_A_LINE, _ROUNDINGS * rounding)]
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:

@@ -69,12 +69,12 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, horizon: float = 1e4
             solver.step()
             if nearby > _NOT_YET * level * scale:
                 continue
-            here = solver.y.reshape(shape)
-            force = potential.residual(here)
+            state = solver.y.reshape(shape)
+            force = potential.residual(state)
             if force <= level:
-                polished = polish(potential, here)
+                polished = polish(potential, state)
                 if (residual := potential.residual(polished)) <= _TOL:
                     return GradientLimit(polished, residual, float(solver.t), True)
                 level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
-        here = solver.y.reshape(shape)
-        return GradientLimit(here, potential.residual(here), float(solver.t), False)
+        state = solver.y.reshape(shape)
+        return GradientLimit(state, potential.residual(state), float(solver.t), False)

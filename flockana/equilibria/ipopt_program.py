@@ -55,7 +55,7 @@ class _Derivatives(_Callback):
 
     def __init__(self, program: Program) -> None:
         self._at = _upper_triangle(program.shape, program.pairs)
-        self._pattern = ca.Sparsity.triplet(program.size, program.size, *(each.tolist() for each in self._at))
+        self._pattern = ca.Sparsity.triplet(program.size, program.size, *(item.tolist() for item in self._at))
         super().__init__("derivatives", program)
 
     def get_n_out(self) -> int:
@@ -111,12 +111,12 @@ class Program:
             _Derivatives(self),
         )  # kept alive: CasADi holds no reference
         self._watch, (slope, hessian) = _Watch(self.size, gauge), self.derivatives(x)
-        value, multiplier, ignored = self._value(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
+        value, multiplier, ignored_input = self._value(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         fixed_motions = ca.reshape(c, self.size, gauge).T @ x
         self._program: Any = {"x": x, "p": c, "f": value, "g": fixed_motions}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
-            "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored], [multiplier * hessian]),
+            "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored_input], [multiplier * hessian]),
         }
         self._solvers: dict[int, Any] = {}
 

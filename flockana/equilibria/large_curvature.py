@@ -34,17 +34,17 @@ class LargeLandscape(Landscape):
 
     @cached_property
     def _extremes(self) -> tuple[FloatArray, FloatArray]:
-        few = max(_FEW, 2 * self._count(_BELOW * self.size))
-        while few <= _MOST:
-            values, vectors = self._smallest(few)
-            gaps = np.diff(values[few // 2 :])
-            last = few // 2 + int(np.argmax(gaps))  # what is beyond the widest gap is not needed
-            between = 0.5 * float(values[last] + values[last + 1])
-            clear = gaps.max() > _GAP * self.size and between > self.rounding
-            if clear and self._count(between) == last + 1 and self._keeps_all(float(values[last])):
-                top, its = self._lanczos(lambda x: self._off_rigid(self.here @ self._off_rigid(x)), 1, "LA")
-                return np.append(values, top), np.column_stack([vectors, its])
-            few *= 2
+        vector_count = max(_FEW, 2 * self._count(_BELOW * self.size))
+        while vector_count <= _MOST:
+            values, vectors = self._smallest(vector_count)
+            gaps = np.diff(values[vector_count // 2 :])
+            gap_index = vector_count // 2 + int(np.argmax(gaps))  # what is beyond the widest gap is not needed
+            gap_middle = 0.5 * float(values[gap_index] + values[gap_index + 1])
+            has_gap = gaps.max() > _GAP * self.size and gap_middle > self.rounding
+            if has_gap and self._count(gap_middle) == gap_index + 1 and self._keeps_all(float(values[gap_index])):
+                top, top_vectors = self._lanczos(lambda x: self._off_rigid(self.here @ self._off_rigid(x)), 1, "LA")
+                return np.append(values, top), np.column_stack([vectors, top_vectors])
+            vector_count *= 2
         if self.q.size <= _WHOLE:
             return super().values, super().vectors
         raise SolverError(
@@ -74,13 +74,13 @@ class LargeLandscape(Landscape):
     def _lanczos(self, act: Any, count: int, which: Any) -> tuple[FloatArray, FloatArray]:
         from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
-        size = self.q.size
-        operator: Any = LinearOperator((size, size), matvec=act, dtype=np.float64)
-        start = self._off_rigid(np.random.default_rng(0).standard_normal(size))
+        dimension = self.q.size
+        operator: Any = LinearOperator((dimension, dimension), matvec=act, dtype=np.float64)
+        start = self._off_rigid(np.random.default_rng(0).standard_normal(dimension))
         try:
-            _, vectors = eigsh(operator, k=count, which=which, v0=start, ncv=min(size, 2 * count + 20))
+            _, vectors = eigsh(operator, k=count, which=which, v0=start, ncv=min(dimension, 2 * count + 20))
         except ArpackError as error:
-            raise SolverError(f"ARPACK found no {count} curvatures of {size} ({error})") from error
+            raise SolverError(f"ARPACK found no {count} curvatures of {dimension} ({error})") from error
         vectors = np.linalg.qr(self._off_rigid(vectors))[0]
         values, turns = np.linalg.eigh(vectors.T @ (self.here @ vectors))
         return values, vectors @ turns

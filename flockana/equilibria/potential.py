@@ -83,10 +83,10 @@ class Potential:
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
         """Return the energy of listed pairs less their far potential, without a large constant to round."""
-        lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
-        total = self.gain * float(np.sum(self.pair.energy(lengths) - self.pair.far_potential))
-        others = (term for term in self.law.terms if term is not self.pairs and not term.idle)
-        return total + sum(term.energy(self.t, q) for term in others)
+        link_lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
+        total = self.gain * float(np.sum(self.pair.energy(link_lengths) - self.pair.far_potential))
+        other_terms = (term for term in self.law.terms if term is not self.pairs and not term.idle)
+        return total + sum(term.energy(self.t, q) for term in other_terms)
 
     def force(self, q: FloatArray) -> FloatArray:
         """Return the negative gradient of the potential from the law's kernels, shape (n, m)."""
@@ -113,12 +113,12 @@ class Potential:
             return rigid_motions(q)
         if (centre := self.target) is None or any(term.invariance == "none" for term in self.law.terms):
             return np.zeros((q.size, 0))
-        x, free = q - centre, _free_rotations(self.law.obstacles, centre, self.pair.length)
-        turns = [(x @ generator.T).ravel() for generator in free]
+        x, free_rotations = q - centre, _free_rotations(self.law.obstacles, centre, self.pair.length)
+        turns = [(x @ generator.T).ravel() for generator in free_rotations]
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
-        basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
-        return basis[:, sizes > 1e-9 * sizes.max()]
+        basis, singular_values, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
+        return basis[:, singular_values > 1e-9 * singular_values.max()]
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:

@@ -31,21 +31,21 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
     def push(x: FloatArray) -> FloatArray:
         return np.asarray(law.velocity(t, x) if first_order else law.flow(t, x, np.zeros_like(x))[0])
 
-    size = float(np.abs(q - q.mean(axis=0)).max()) or 1.0
+    magnitude = float(np.abs(q - q.mean(axis=0)).max()) or 1.0
     force = push(q)
     for _ in range(_STEPS):
         by_position: Any = law.slopes(t, q) if first_order else law.derivatives(t, q, np.zeros_like(q))[0]
         stiffness = by_position.toarray()
-        if np.abs(force).max() <= _CONVERGED * float(np.abs(stiffness).max()) * size:
+        if np.abs(force).max() <= _CONVERGED * float(np.abs(stiffness).max()) * magnitude:
             return q
         step = -np.linalg.lstsq(stiffness, force.ravel(), rcond=_RANK)[0].reshape(q.shape)
         share = 1.0
         while True:
-            after = push(q + share * step)
-            if np.linalg.norm(after) < np.linalg.norm(force) or share < 1e-3:
+            next_force = push(q + share * step)
+            if np.linalg.norm(next_force) < np.linalg.norm(force) or share < 1e-3:
                 break
             share *= _SHORTEN
-        q, force = q + share * step, after
+        q, force = q + share * step, next_force
     raise SolverError(
         f"no state of rest of {law.title} found near there: the largest force left is "
         f"{float(np.linalg.norm(force, axis=1).max()):.3g}; start nearer to one, or linearise as it is"

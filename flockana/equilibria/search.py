@@ -53,9 +53,9 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     for _ in range(count):
         cells: set[tuple[int, ...]] = {(0,) * m}
         while len(cells) < n:
-            free = sorted({place for site in cells for place in beside(site)} - cells)
-            tried = [free[k] for k in rng.integers(len(free), size=3)]
-            cells.add(max(tried, key=lambda site: sum(place in cells for place in beside(site))))
+            free_sites = sorted({free_site for site in cells for free_site in beside(site)} - cells)
+            tried_sites = [free_sites[k] for k in rng.integers(len(free_sites), size=3)]
+            cells.add(max(tried_sites, key=lambda site: sum(free_site in cells for free_site in beside(site))))
         sites = np.array(sorted(cells), dtype=float) @ basis
         starts.append(d * (sites + noise * rng.standard_normal((n, m))))
     return starts
@@ -104,7 +104,7 @@ def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executo
         raise ArgumentError(f"starts: expected at least one, all of one shape, got {sorted({p.shape for p in points})}")
     outcomes = list((executor.map if executor else map)(partial(_attempt, law, method), points))
     failures = tuple(outcome for outcome in outcomes if isinstance(outcome, str))
-    return Search(distinct([each for each in outcomes if isinstance(each, Equilibrium)]), len(points), failures)
+    return Search(distinct([item for item in outcomes if isinstance(item, Equilibrium)]), len(points), failures)
 
 
 def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:
@@ -122,8 +122,8 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:
                 break
         else:
             groups.append([equilibrium])
-    contact = Potential(equilibria[0].law).pair.length * _CONTACT if equilibria else 1.0
-    return tuple(Distinct(group[0], len(group), coincident_pairs(group[0].q, contact)) for group in groups)
+    contact_distance = Potential(equilibria[0].law).pair.length * _CONTACT if equilibria else 1.0
+    return tuple(Distinct(group[0], len(group), coincident_pairs(group[0].q, contact_distance)) for group in groups)
 
 
 def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:
@@ -131,19 +131,19 @@ def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:
     if not equilibria:
         return []
     potential, n = Potential(equilibria[0].law), len(equilibria[0].q)
-    tie = _TIE * n * n * potential.force_scale * potential.pair.length
-    rising = sorted(range(len(equilibria)), key=lambda k: equilibria[k].energy)
+    tie_tolerance = _TIE * n * n * potential.force_scale * potential.pair.length
+    energy_order = sorted(range(len(equilibria)), key=lambda k: equilibria[k].energy)
     ordered: list[list[int]] = []
-    for k in rising:
-        if ordered and equilibria[k].energy - equilibria[ordered[-1][0]].energy <= tie:
+    for k in energy_order:
+        if ordered and equilibria[k].energy - equilibria[ordered[-1][0]].energy <= tie_tolerance:
             ordered[-1].append(k)
         else:
             ordered.append([k])
-    return [equilibria[k] for equal in ordered for k in sorted(equal)]
+    return [equilibria[k] for equal_energies in ordered for k in sorted(equal_energies)]
 
 
 def _same(first: Equilibrium, second: Equilibrium) -> bool:
     if (first.kind, first.index) != (second.kind, second.index):
         return False
-    loose = bool(first.zero_modes or second.zero_modes)
-    return loose or congruent(first.q, second.q, tol=SAME * Potential(first.law).pair.length)
+    is_loose = bool(first.zero_modes or second.zero_modes)
+    return is_loose or congruent(first.q, second.q, tol=SAME * Potential(first.law).pair.length)

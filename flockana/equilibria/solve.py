@@ -91,14 +91,14 @@ class Equilibrium:
 
     def facts(self) -> dict[str, str]:
         """Return the rows of the table that a notebook shows."""
-        lowest = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
+        eigenvalue_text = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
         return {
             "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
             "kind": self.kind + (f" of index {self.index}" if self.index else ""),
             "energy": f"{self.energy:.6g}",
             "residual": f"{self.residual:.2g} of the law's forces",
-            "lowest curvature": lowest,
+            "lowest curvature": eigenvalue_text,
             "rigid, soft modes": f"{self.rigid_modes}, {self.zero_modes}",
             "success": f"{'yes' if self.success else 'no'}: {self.message}",
         }
@@ -115,9 +115,9 @@ class Equilibrium:
         Under dead-zone flocking of contacts only, the pairs that repel, with d₁ for d; NaN if no pair does.
         """
         pair = Potential(self.law).pair
-        lengths, d = link_lengths(self.q, self.links), pair.length
-        lengths = lengths[lengths < pair.bond_range]
-        return round(float(np.abs(lengths - d).max() / d), 12) if lengths.size else float("nan")
+        distances, d = link_lengths(self.q, self.links), pair.length
+        distances = distances[distances < pair.bond_range]
+        return round(float(np.abs(distances - d).max() / d), 12) if distances.size else float("nan")
 
     @property
     def curvature(self) -> float:
@@ -174,24 +174,24 @@ def find_equilibrium(
     potential = Potential(law, ensure_finite_scalar("t", t))
     max_iter = ensure_count("max_iter", max_iter)
     law.check_start(q, np.zeros_like(q))
-    solve = {"descent": descend, "ipopt": _minimise, "root": _root}[method]
-    last, converged, message = solve(potential, q, max_iter)
-    if shared := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
-        message += f"; {shared} pair{'s' * (shared > 1)} of agents began at one place"
-    return finish(potential, last, converged, message, strict=strict)
+    solve_method = {"descent": descend, "ipopt": _minimise, "root": _root}[method]
+    final_state, converged, message = solve_method(potential, q, max_iter)
+    if coincident_pairs := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
+        message += f"; {coincident_pairs} pair{'s' * (coincident_pairs > 1)} of agents began at one place"
+    return finish(potential, final_state, converged, message, strict=strict)
 
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
     """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
     q = polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
     pull = potential.law.term(Navigation)
-    unpulled = pull is not None and pull.gains.c1_gamma == 0.0
-    if potential.target is not None and not (potential.pinned or unpulled):  # as Algorithm 2 holds the centre
+    idle_gains = pull is not None and pull.gains.c1_gamma == 0.0
+    if potential.target is not None and not (potential.pinned or idle_gains):  # as Algorithm 2 holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
-    blocked = inside_obstacle(potential.law, q)
-    success = converged and residual <= RESIDUAL and not blocked
-    if blocked:
+    is_blocked = inside_obstacle(potential.law, q)
+    success = converged and residual <= RESIDUAL and not is_blocked
+    if is_blocked:
         message = f"{message}, but with an agent inside an obstacle"
     elif converged and not success:
         message = (
@@ -223,8 +223,8 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
 
 def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
     """Raise unless an equilibrium is unchanged since a solver returned it."""
-    source = "one as find_equilibrium returned it or read it from a file"
-    ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
+    origin_text = "one as find_equilibrium returned it or read it from a file"
+    ensure_sealed(name, equilibrium, origin_text, "find it anew, or give its positions alone")
 
 
 def all_pairs(n: int) -> LinkArray:
@@ -238,26 +238,26 @@ def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[Float
     # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.ipopt_program import Program
 
-    (n, m), escapes, margin = q.shape, 0, _MARGIN * potential.pair.length
+    (n, m), escape_count, margin = q.shape, 0, _MARGIN * potential.pair.length
     program: Program | None = None
     for _ in range(_ROUNDS):
         basis = potential.symmetries(q)
         if basis.shape[1] == q.size:
             return q, True, "nothing to solve: every motion is a rigid one"
         if program is None or n > ALL_PAIRS or program.gauge != basis.shape[1]:
-            listed = all_pairs(n) if n <= ALL_PAIRS else links(q, potential.pair.range + margin)
-            program = Program(potential, (n, m), listed, basis.shape[1])
+            pairs = all_pairs(n) if n <= ALL_PAIRS else links(q, potential.pair.range + margin)
+            program = Program(potential, (n, m), pairs, basis.shape[1])
         reach, start = margin / (2.0 * sqrt(m)), q
         q, converged, status = program.solve(q, basis=basis, reach=reach, max_iter=max_iter)
         if not (converged and np.isfinite(q).all()):
             return q, False, status
         if np.abs(q - start).max() > _INSIDE * reach:
             continue
-        if escapes == _ESCAPES or q.size > _SMALL:
+        if escape_count == _ESCAPES or q.size > _SMALL:
             return q, True, status
-        if (downhill := falling(potential, polished := polish(potential, q))) is None:
+        if (falling_state := falling(potential, polished_state := polish(potential, q))) is None:
             return q, True, status
-        escapes, q = escapes + 1, polished + _NUDGE * potential.pair.length * downhill
+        escape_count, q = escape_count + 1, polished_state + _NUDGE * potential.pair.length * falling_state
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 
@@ -285,21 +285,21 @@ def polish(potential: Potential, q: FloatArray) -> FloatArray:
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 
-    best, best_residual = q, potential.residual(q)
-    here = q
+    best_state, best_residual = q, potential.residual(q)
+    iterate = q
     for _ in range(_POLISH):
         if best_residual <= 1e-14:
             break
-        rigid, hessian = csc_array(potential.symmetries(here)), csc_array(potential.stiffness(here))
+        rigid, hessian = csc_array(potential.symmetries(iterate)), csc_array(potential.stiffness(iterate))
         shift = 1e-9 * float(abs(hessian).max() or 1.0)
         matrix = block_array([[hessian + shift * eye_array(q.size), rigid], [rigid.T, None]], format="csc")
-        force = np.concatenate([potential.force(here).ravel(), np.zeros(rigid.shape[1])])
+        force = np.concatenate([potential.force(iterate).ravel(), np.zeros(rigid.shape[1])])
         step = splu(matrix).solve(force)[: q.size].reshape(q.shape)
-        here = here + step
-        if not np.isfinite(step).all() or np.abs(here - q).max() > _REACH * potential.pair.length:
+        iterate = iterate + step
+        if not np.isfinite(step).all() or np.abs(iterate - q).max() > _REACH * potential.pair.length:
             break
-        residual = potential.residual(here)
+        residual = potential.residual(iterate)
         if residual >= best_residual:
             break
-        best, best_residual = here, residual
-    return np.array(best)
+        best_state, best_residual = iterate, residual
+    return np.array(best_state)

@@ -65,10 +65,10 @@ class Case:
         law, q0 = changed(start.law, tree), start.q0.copy()
         if tree:
             lines.append(f"law = {expression('law', start.law, tree)}")
-        for agent, place in sorted(self.moved.items()):
+        for agent, position in sorted(self.moved.items()):
             if agent >= len(q0):
                 raise ArgumentError(f"moved agent {agent}: expected one of 0 … {len(q0) - 1}")
-            q0[agent] = checks.ensure_vector(f"agent {agent}", place, q0.shape[1])
+            q0[agent] = checks.ensure_vector(f"agent {agent}", position, q0.shape[1])
             lines.append(f"q0[{agent}] = {tuple(q0[agent].tolist())}")
         span, options = start.t_span, dict(start.options)
         if self.duration is not None:

@@ -53,11 +53,11 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
 
 def form(case: Case, parts: Start) -> dict[str, Any]:
     """Return the form of a start: its parameters, and the equivalent Python."""
-    usual = {number.path: number.value for number in numbers(case.start().law)}
-    listed = [
-        {"path": each.path, "value": each.value, "usual": usual.get(each.path), "place": each.place}
-        for each in numbers(parts.law)
-        if not each.path.endswith(_idle(parts.law))
+    default_values = {number.path: number.value for number in numbers(case.start().law)}
+    number_rows = [
+        {"path": item.path, "value": item.value, "usual": default_values.get(item.path), "place": item.place}
+        for item in numbers(parts.law)
+        if not item.path.endswith(_idle(parts.law))
     ]
     reports = [] if parts.source is None else [{"id": SOURCE, "title": "What the source reports of this run"}]
     return {
@@ -67,7 +67,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "m": parts.q0.shape[1],
         "q0": parts.q0.tolist(),
         "duration": parts.t_span[1] - parts.t_span[0],
-        "numbers": listed,
+        "numbers": number_rows,
         "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + reports,
         "ratio": _collapses_by_ratio(parts.law),
         "python": program(parts),
@@ -76,8 +76,8 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
 
 def _idle(law: Any) -> tuple[str, ...]:
     """Return the paths of parameters that have no effect on a law, such as unused gains."""
-    unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
-    return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
+    idle_gains = () if law.target is not None else ("c1_gamma", "c2_gamma")
+    return idle_gains if law.obstacles else (*idle_gains, "c1_beta", "c2_beta")
 
 
 def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
@@ -110,22 +110,22 @@ def poles(run: Trajectory) -> dict[str, Any]:
         linear = linearise(law, q, t=t, allow_residual=True)
         note = f"Linearised at the end of the run as if at rest; it is no equilibrium (residual {linear.residual:.2g})"
         if linear.residual <= _RESTING and not law.obstacles:
-            rest = (
+            other_poles = (
                 find_equilibrium(law, q, t=t, max_iter=_SOUGHT)
                 if law.terms and law.conservative
                 else resting_state(law, q, t=t)
             )
-            linear = linearise(law, rest, t=t)
+            linear = linearise(law, other_poles, t=t)
             note = "At the equilibrium nearest to the end of the run"
         modes, eigenvalues = linear.modes[:_MODES], linear.eigenvalues
     except FlockanaError as error:
         return {"note": f"No poles: {error}"}
-    named = [mode.name for mode in linear.zero_modes if not mode.name.startswith("soft")]
-    soft = len(linear.zero_modes) - len(named)
+    mode_names = [mode.name for mode in linear.zero_modes if not mode.name.startswith("soft")]
+    soft_count = len(linear.zero_modes) - len(mode_names)
     return {
         "note": note,
         "poles": np.column_stack([eigenvalues.real, eigenvalues.imag]).tolist(),
-        "zero": [*named, f"{soft} soft ones"] if soft else named,
+        "zero": [*mode_names, f"{soft_count} soft ones"] if soft_count else mode_names,
         "abscissa": linear.spectral_abscissa if modes else None,
         "q": linear.q.tolist(),
         "links": np.asarray(linear.links).tolist(),
@@ -142,8 +142,8 @@ def _shown_mode(mode: Any) -> dict[str, Any]:
 def _collapses_by_ratio(law: Any) -> bool:
     """Return whether one linear pull acts on all agents, so that c1γ/c1α decides collapse (erratum E11)."""
     gains, decouples = getattr(law, "gains", None), getattr(law, "centre_decouples", False)
-    follows = law.target is not None and decouples and isinstance(law.pair, AlphaInteraction)
-    return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
+    is_following = law.target is not None and decouples and isinstance(law.pair, AlphaInteraction)
+    return bool(is_following and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
 
 
 @cache

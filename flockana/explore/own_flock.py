@@ -58,11 +58,11 @@ def explore(
     if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= _LAST_PORT:
         raise ArgumentError(f"port = {format_value(port)}: expected a whole number from 0 (any) to {_LAST_PORT}")
     folder = tempfile.TemporaryDirectory(prefix="flockana-")
-    first = {"kind": "scenario", "name": flock}
+    first_case = {"kind": "scenario", "name": flock}
     if isinstance(flock, str):
         ensure_known("scenario", flock, scenarios())
     else:
-        first = save_case(as_scenario(flock, seed), folder.name)
+        first_case = save_case(as_scenario(flock, seed), folder.name)
 
     def opened(address: str) -> None:
         print(f"the flock is explored at {address}")  # noqa: T201  # a page without an address cannot be opened
@@ -71,7 +71,7 @@ def explore(
 
     def serving() -> None:
         with folder:
-            asyncio.run(serve(Server(kept_token(), first, 60.0), port, opened))
+            asyncio.run(serve(Server(kept_token(), first_case, 60.0), port, opened))
 
     try:
         asyncio.get_running_loop()

@@ -22,7 +22,7 @@ def page(first: dict[str, Any], nonce: str) -> str:
     scenarios: dict[str, dict[str, str]] = {}  # titles by source and name
     for entry in scenario_entries():
         scenarios.setdefault(entry["source"], {})[entry["name"]] = entry["title"]
-    groups = [{"label": source, "kind": "scenario", "names": names} for source, names in scenarios.items()]
+    groups = [{"label": source_name, "kind": "scenario", "names": names} for source_name, names in scenarios.items()]
     groups.append({"label": "Laws, with a flock at random", "kind": "law", "names": dict.fromkeys(law_names(), "")})
     if first["kind"] == "file":
         groups.append({"label": "File", "kind": "file", "names": {first["name"]: ""}})

@@ -36,18 +36,18 @@ def numbers(law: Any) -> tuple[Number, ...]:
 
 def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
     if is_dataclass(item):
-        for name in (each.name for each in fields(item) if each.init):
+        for name in (field.name for field in fields(item) if field.init):
             yield from _listed(getattr(item, name), (*path, name))
     elif isinstance(item, bool | int | float | np.number):
         yield Number(".".join(path), item if isinstance(item, bool | int) else float(item))
     elif isinstance(item, tuple | np.ndarray):
         numeric = all(isinstance(x, int | float | np.number) and not isinstance(x, bool) for x in item)
         if numeric and 1 <= len(item) <= _COMPONENTS:
-            place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
-            yield Number(".".join(path), tuple(float(x) for x in item), place)
-        for k, each in enumerate(item):
-            if is_dataclass(each):
-                yield from _listed(each, (*path, str(k)))
+            is_place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
+            yield Number(".".join(path), tuple(float(x) for x in item), is_place)
+        for k, field in enumerate(item):
+            if is_dataclass(field):
+                yield from _listed(field, (*path, str(k)))
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
@@ -79,10 +79,10 @@ def changed(item: Any, tree: Tree) -> Any:
     if not isinstance(tree, dict):
         return tree
     if isinstance(item, tuple):
-        return tuple(changed(each, tree[str(k)]) if str(k) in tree else each for k, each in enumerate(item))
+        return tuple(changed(entry, tree[str(k)]) if str(k) in tree else entry for k, entry in enumerate(item))
     if not tree:
         return item
-    return replace(item, **{name: changed(getattr(item, name), each) for name, each in tree.items()})
+    return replace(item, **{name: changed(getattr(item, name), entry) for name, entry in tree.items()})
 
 
 def expression(name: str, item: Any, tree: Tree) -> str:
@@ -92,7 +92,7 @@ def expression(name: str, item: Any, tree: Tree) -> str:
     if not tree:
         return name
     if isinstance(item, tuple):
-        parts = (expression(f"{name}[{k}]", each, tree.get(str(k), {})) for k, each in enumerate(item))
+        parts = (expression(f"{name}[{k}]", entry, tree.get(str(k), {})) for k, entry in enumerate(item))
         return f"({', '.join(parts)},)"
-    arguments = (f"{key}={expression(f'{name}.{key}', getattr(item, key), each)}" for key, each in tree.items())
+    arguments = (f"{key}={expression(f'{name}.{key}', getattr(item, key), entry)}" for key, entry in tree.items())
     return f"replace({name}, {', '.join(arguments)})"

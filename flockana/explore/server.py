@@ -39,11 +39,11 @@ class Process:
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")
-        self.pipe, theirs = context.Pipe()
-        self.process = context.Process(target=work, args=(theirs, limit), daemon=True)
+        self.pipe, worker_pipe = context.Pipe()
+        self.process = context.Process(target=work, args=(worker_pipe, limit), daemon=True)
         with block_sigint(), single_threaded_children():
             self.process.start()
-        theirs.close()
+        worker_pipe.close()
         self.ready = False
         self.deliver: Callable[[Any], None] = lambda message: None
         loop = asyncio.get_running_loop()
@@ -78,8 +78,8 @@ class Server:
 
     def take(self) -> Process:
         """Return a worker process, ready if possible, and start a spare one."""
-        spare, self.spare = self.spare, None
-        process = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
+        spare_worker, self.spare = self.spare, None
+        process = spare_worker if spare_worker is not None and spare_worker.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return process
 
@@ -126,8 +126,8 @@ class _Page(_Guarded):
 
     def write_error(self, status_code: int, **_: Any) -> None:
         """Write the error in one line."""
-        wrong = "wrong or missing token: open the address that flockana explore printed"
-        self.finish(wrong if status_code == 403 else f"{status_code}")
+        error_text = "wrong or missing token: open the address that flockana explore printed"
+        self.finish(error_text if status_code == 403 else f"{status_code}")
 
 
 class _Run(_Guarded):
@@ -180,8 +180,8 @@ class _Tab(_Guarded, WebSocketHandler):
         self.number, self.asked = number, case
         self._ask()
         if self.analysing:
-            for seconds, at_once in zip(_PATIENCE, (True, False), strict=True):
-                asyncio.get_running_loop().call_later(seconds, self._replace_if_unresponsive, number, at_once)
+            for seconds, is_immediate in zip(_PATIENCE, (True, False), strict=True):
+                asyncio.get_running_loop().call_later(seconds, self._replace_if_unresponsive, number, is_immediate)
 
     def _ask(self) -> None:
         process = self.process or self._take()
@@ -190,8 +190,8 @@ class _Tab(_Guarded, WebSocketHandler):
 
     def _replace_if_unresponsive(self, number: int, at_once: bool) -> None:
         """Replace a process that ignores a newer question, once another is ready."""
-        spare = self.server.spare
-        if at_once and not (spare is not None and spare.ready):
+        spare_worker = self.server.spare
+        if at_once and not (spare_worker is not None and spare_worker.ready):
             return
         if self.begun < number == self.number and self.process is not None:
             self._take()
@@ -237,8 +237,8 @@ def kept_token() -> str:
     try:
         path.parent.mkdir(mode=0o700, exist_ok=True)
         flags = os.O_CREAT | os.O_EXCL | os.O_WRONLY
-        with suppress(FileExistsError), os.fdopen(os.open(path, flags, 0o600), "w") as new:
-            new.write(secrets.token_urlsafe(32))
+        with suppress(FileExistsError), os.fdopen(os.open(path, flags, 0o600), "w") as token_file:
+            token_file.write(secrets.token_urlsafe(32))
         token = path.read_text(encoding="ascii").strip()
     except (OSError, ValueError):
         token = ""

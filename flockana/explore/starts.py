@@ -60,7 +60,7 @@ def law_names() -> tuple[str, ...]:
 def _tried_laws() -> dict[str, Candidate]:
     """Return the laws that can be tried, by the name of their class."""
     targeted = Candidate(Algorithm2, span=20.0), Candidate(Algorithm3, span=40.0)
-    by_name = {each.law.__name__: each for each in (*targeted, *candidates().values())}
+    by_name = {item.law.__name__: item for item in (*targeted, *candidates().values())}
     return {name: by_name[name] for name in sorted(by_name)}
 
 
@@ -81,8 +81,8 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     """Return a law with default parameters, and agents at random in a square."""
     ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
-    length, end = _tried_laws()[name].length, _tried_laws()[name].span
-    side, speed = round(_SPREAD * length * n ** (1 / m), 3), round(_SPEED * length, 3)
+    start_length, end = _tried_laws()[name].length, _tried_laws()[name].span
+    side, speed = round(_SPREAD * start_length * n ** (1 / m), 3), round(_SPEED * start_length, 3)
     law, text = _law(name, m, side)
     rng = np.random.default_rng(seed)
     q0 = side * rng.uniform(-0.5, 0.5, (n, m))
@@ -126,16 +126,16 @@ def from_file(path: str) -> Start:
         start = (title, case.law, case.q0, case.p0, case.t_span, lines, case.options, (case.theorem,))
         return Start(*start, case.tolerances, "found.tolerances")
     run = Trajectory.load(path)
-    fixed = run.stats.get("method") == "discrete"
-    options = {key: run.stats[key] for key in _OPTIONS if not fixed and run.stats.get(key) is not None}
+    is_discrete = run.stats.get("method") == "discrete"
+    options = {key: run.stats[key] for key in _OPTIONS if not is_discrete and run.stats.get(key) is not None}
     span = (float(run.t[0]), float(run.t[-1]))
     lines = (
         f"saved = fl.Trajectory.load({str(path)!r})",
         f"law, q0, p0, t_span, options = saved.law, saved.q[0].copy(), saved.p[0].copy(), {span}, {options}",
     )
     title = f"{Path(path).name}: {run.n} agents, {run.law.title}"
-    checked = theorems_of(run.law.title)
-    return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked, recorded=run)
+    checked_theorem = theorems_of(run.law.title)
+    return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked_theorem, recorded=run)
 
 
 @cache

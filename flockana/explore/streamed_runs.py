@@ -48,11 +48,11 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
         if cancelled():
             raise KeyboardInterrupt
         samples.append(sample)
-        now = time.perf_counter()
+        current_time = time.perf_counter()
         if len(samples) <= 2:  # until here the law was compiled, or loaded
-            started, due = now, now + pause
+            started, due = current_time, current_time + pause
             return
-        progress_made, seconds_gone = sample.t - samples[1].t, now - started
+        progress_made, seconds_gone = sample.t - samples[1].t, current_time - started
         whole = seconds_gone * span / progress_made if progress_made > 0.0 else float("inf")
         if seconds_gone > limit or (seconds_gone > _TRIED and _FAR * limit < whole < float("inf")):
             failure = TooLargeError(
@@ -61,7 +61,7 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
                 "shorten it, take fewer agents or softer gains, or run the lines of Python below"
             )
             raise KeyboardInterrupt
-        if now >= due:
+        if current_time >= due:
             show(scene(_thin(samples, parts.law)))
             pause *= _SLOWER
             due = time.perf_counter() + pause
@@ -78,16 +78,16 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
 
 def _thin(samples: list[Sample], law: Any) -> Trajectory:
     """Return the run so far with some of its samples left out."""
-    some = [samples[k] for k in kept(len(samples), _FRAMES)]
-    t, q, p, u = (np.array([getattr(sample, name) for sample in some]) for name in "tqpu")
-    extra = {key: np.array([sample.extra[key] for sample in some]) for key in some[0].extra}
-    return Trajectory(t, q, p, u, law, extra, "interrupted", "under way")
+    shown_samples = [samples[k] for k in kept(len(samples), _FRAMES)]
+    t, q, p, u = (np.array([getattr(sample, name) for sample in shown_samples]) for name in "tqpu")
+    extra_series = {key: np.array([sample.extra[key] for sample in shown_samples]) for key in shown_samples[0].extra}
+    return Trajectory(t, q, p, u, law, extra_series, "interrupted", "under way")
 
 
 def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
     """Return a whole run for display, thinned if it is long."""
     most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
-    extra = {name: series[most] for name, series in run.extra.items()}
-    some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra, between=None)
+    extra_series = {name: series[most] for name, series in run.extra.items()}
+    some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra_series, between=None)
     show(scene(some, values=_NUMBERS))
     return run

@@ -46,8 +46,8 @@ class Worker:
             try:
                 self._send(number, "begun", {})
                 with restore_interrupts():
-                    send, newer = partial(self._send, number), partial(self._newer_than, number)
-                    answer(data, send, limit=self.limit, cancelled=newer)
+                    send_answer, newer_request = partial(self._send, number), partial(self._newer_than, number)
+                    answer(data, send_answer, limit=self.limit, cancelled=newer_request)
                 self.done = number
             finally:
                 self.breakable = False
@@ -86,7 +86,7 @@ def _warm() -> None:
     from flockana.explore.case import Case
     from flockana.explore.case_answers import answer
 
-    ran: list[str] = []
+    run_log: list[str] = []
     with suppress(KeyboardInterrupt):
-        small = Case("law", "Algorithm2", n=12, duration=0.5)
-        answer(small, lambda kind, content: ran.append(kind), limit=60.0, cancelled=lambda: "ran" in ran)
+        small_case = Case("law", "Algorithm2", n=12, duration=0.5)
+        answer(small_case, lambda kind, content: run_log.append(kind), limit=60.0, cancelled=lambda: "ran" in run_log)

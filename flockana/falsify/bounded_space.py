@@ -51,7 +51,7 @@ class Space:
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         values = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
-        shares = [_share(value, *ends) for value, ends in zip(values, self.parameters.values(), strict=True)]
+        shares = [_share(value, *bounds) for value, bounds in zip(values, self.parameters.values(), strict=True)]
         return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
 
     def case(self, point: FloatArray) -> Scenario:
@@ -71,8 +71,8 @@ class Space:
         x = self.low + point[:k] * (self.high - self.low)
         values = np.split(x, max(1, len(self.vary)))
         state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
-        for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
-            law = with_parameter(law, name, _value(share, *ends))
+        for share, (name, bounds) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
+            law = with_parameter(law, name, _value(share, *bounds))
         if first_order(law) is not None:
             state["p0"] = start_velocities(law, self.scenario.t_span[0], state.get("q0", self.scenario.q0), None)
         return replace(self.scenario, law=law, **state)
@@ -117,7 +117,7 @@ def search_space(
         raise ArgumentError(f"vary = {vary!r}: expected 'q', 'p', both, or () for parameters alone")
     if first_order(scenario.law) is not None:  # velocities are those of the places
         names = tuple(name for name in names if name != "p")
-    ranges = {name: _range(scenario.law, name, ends) for name, ends in (parameters or {}).items()}
+    ranges = {name: _range(scenario.law, name, bounds) for name, bounds in (parameters or {}).items()}
     if not names and not ranges:
         raise ArgumentError("nothing is varied: expected vary=('q', 'p') or parameters={'gains.c1_alpha': (1, 50)}")
     box = {"q": _region(region, scenario.q0), "p": _speeds(speed, scenario.p0)}
@@ -159,13 +159,13 @@ def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return bounds of each agent's coordinates in the search space, shape (n, m)."""
     if region is None:
         low, high = q.min(axis=0), q.max(axis=0)
-        room = _ROOM * float((high - low).max()) or 1.0
-        return np.broadcast_to(low - room, q.shape), np.broadcast_to(high + room, q.shape)
+        region_margin = _ROOM * float((high - low).max()) or 1.0
+        return np.broadcast_to(low - region_margin, q.shape), np.broadcast_to(high + region_margin, q.shape)
     if isinstance(region, int | float | np.number):
-        around, farthest = ensure_positive("region", region), float(np.abs(q).max())
-        low, high = q - around, q + around
+        region_radius, farthest = ensure_positive("region", region), float(np.abs(q).max())
+        low, high = q - region_radius, q + region_radius
         fault = (
-            f"region = {around:g}: expected more than the rounding of positions up to {farthest:.3g}, such as "
+            f"region = {region_radius:g}: expected more than the rounding of positions up to {farthest:.3g}, such as "
             f"{max(1e-9 * farthest, 1e-9):.1g}; vary='p' leaves positions as they are"
         )
     else:

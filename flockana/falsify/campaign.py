@@ -114,7 +114,7 @@ def falsify(
     problem = Problem(space, theorem, tolerances or Tolerances(), claim, surrogate)
     run, verdict = problem.judged(begin)  # with the scenario's own start, which gives the margins their units
     if verdict is not None:
-        if claim not in (None, *(names := [each.name for each in verdict.claims])):
+        if claim not in (None, *(names := [entry.name for entry in verdict.claims])):
             raise UnknownNameError("claim", claim, names)
         problem = replace(problem, scales=units(verdict))
         if item.law is not None and not parameters and [h.status for h in verdict.hypotheses] == ["unmet"]:
@@ -129,7 +129,7 @@ def falsify(
         texts = "; ".join(record.unmet.values())
         _LOG.warning("%s on %s: no claim at its own start, which does not meet: %s", item.id, begin.name, texts)
     search = Search(space.start, seed)
-    ended: Ending = "budget"
+    ending: Ending = "budget"
     with progress_bar(budget, enabled=progress, steady=True) as advance:
         try:
             while len(record.rows) < budget and (deepen or record.best.status != "refuted"):
@@ -146,24 +146,24 @@ def falsify(
                 if len(grades) == len(points):
                     search.tell(grades)
         except KeyboardInterrupt:
-            ended = "interrupted"
+            ending = "interrupted"
     if record.best.status == "refuted" and not deepen:
-        ended = "found"
-    case, best = begin if record.point is None else space.case(record.point), record.best
-    name = best.claim or claim or ""
+        ending = "found"
+    case, best_case = begin if record.point is None else space.case(record.point), record.best
+    name = best_case.claim or claim or ""
     margins, statuses = record.columns(name)
     result = Falsification(
         theorem=item.id,
         claim=name,
         case=case,
         parameters={x: float(law_parameter(case.law, x)) for x in space.parameters},
-        verdict=best.verdict,
+        verdict=best_case.verdict,
         margins=margins,
         statuses=statuses,
         seed=seed,
         budget=budget,
         restarts=search.restarts,
-        ended=ended,
+        ended=ending,
         message=record.message,
         unmet=tuple(record.unmet or {}),
     )
@@ -204,7 +204,7 @@ class _Record:
     def columns(self, claim: str) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]]]:
         """Return margins and statuses by claim, NaN and "failed" for failed runs."""
         names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
-        absent = [("vacuous" if row else "failed", np.nan) for row in self.rows]
-        table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}
+        absent_row = [("vacuous" if row else "failed", np.nan) for row in self.rows]
+        table = {name: [row.get(name, none) for row, none in zip(self.rows, absent_row, strict=True)] for name in names}
         margins = {name: np.array([margin for _, margin in column]) for name, column in table.items()}
         return margins, {name: tuple(status for status, _ in column) for name, column in table.items()}

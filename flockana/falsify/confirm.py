@@ -23,12 +23,12 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
         return verdict
     options = tightened_options(case.options)
     run = ensure_uninterrupted(simulate(case.law, case.q0, case.p0, case.t_span, **options))
-    again = judge(run).claims if run.status == "complete" else ()
-    sure = {claim.name for claim in again if claim.status == "refuted"}
+    replay_text = judge(run).claims if run.status == "complete" else ()
+    sure_claims = {claim.name for claim in replay_text if claim.status == "refuted"}
     reason = "a run at a thousandth of the tolerance takes this back"
     claims = list(verdict.claims)
     for k, claim in enumerate(claims):
-        if claim.status == "refuted" and claim.name not in sure:
+        if claim.status == "refuted" and claim.name not in sure_claims:
             detail = f"{claim.detail}; {reason}".lstrip("; ")
             claims[k] = replace(claim, status="inconclusive", detail=detail)
     return replace(verdict, claims=tuple(claims))
@@ -36,10 +36,10 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
 
 def tightened_options(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method."""
-    finer = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
-    if finer.get("method") == "RK4":
-        del finer["method"]
-    finer["rtol"] = max(THOUSANDTH * options.get("rtol", _DEFAULT), FINEST)
+    finer_options = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
+    if finer_options.get("method") == "RK4":
+        del finer_options["method"]
+    finer_options["rtol"] = max(THOUSANDTH * options.get("rtol", _DEFAULT), FINEST)
     if options.get("atol") is not None:
-        finer["atol"] = times(options["atol"], THOUSANDTH)
-    return finer
+        finer_options["atol"] = times(options["atol"], THOUSANDTH)
+    return finer_options

@@ -79,11 +79,11 @@ class Problem:
         return Evaluation(grades[worst], worst, verdict)
 
     def _grade(self, run: Trajectory, verdict: Verdict, claim: Claim) -> float:
-        checked = self.theorem if isinstance(self.theorem, Theorem) else theorem(self.theorem)
-        lead = self.surrogate or checked.leads.get(claim.name)
+        checked_theorem = self.theorem if isinstance(self.theorem, Theorem) else theorem(self.theorem)
+        lead_objective = self.surrogate or checked_theorem.leads.get(claim.name)
         if claim.status == "vacuous" and unmet(verdict.hypotheses):
-            lead = None  # unmet hypotheses lead back; and the law may not have what a surrogate measures
-        aid = None if lead is None else min(max(float(lead(run, claim)), 0.0), 1.0)
+            lead_objective = None  # unmet hypotheses lead back; and the law may not have what a surrogate measures
+        aid = None if lead_objective is None else min(max(float(lead_objective(run, claim)), 0.0), 1.0)
         value = grade(claim, verdict.hypotheses, scale=self.scales.get(claim.name, 1.0), lead=aid)
         if self.claim is None and claim.status == "inconclusive":
             return max(value, 0.0)  # its margin does not decide it, so a lower one must not draw the search
@@ -92,5 +92,5 @@ class Problem:
 
 def units(verdict: Verdict) -> dict[str, float]:
     """Return the unit of each margin on a run, for comparing margins of different claims."""
-    sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
-    return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}
+    magnitudes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
+    return {name: unit_size for name, unit_size in magnitudes.items() if 0.0 < squash(unit_size) < 1.0}

@@ -34,5 +34,5 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
     """Return the summed shortfall of unmet hypotheses, at most 1 for each."""
-    unmet = [h.margin for h in hypotheses if h.status == "unmet"]
-    return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet))
+    unmet_margins = [h.margin for h in hypotheses if h.status == "unmet"]
+    return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet_margins))

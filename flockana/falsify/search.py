@@ -21,11 +21,11 @@ class Search:
     def _begin(self, mean: FloatArray) -> None:
         import cmaes
 
-        size = max(2, self.dimension)  # CMA wants two dimensions at least; the second does nothing then
-        mean = np.concatenate([mean, np.full(size - len(mean), 0.5)])
-        population = (4 + int(3.0 * np.log(size))) * 2**self.restarts
-        kind: Any = cmaes.CMA if size <= _FULL else cmaes.SepCMA
-        bounds = np.tile([0.0, 1.0], (size, 1))
+        dimension_count = max(2, self.dimension)  # CMA wants two dimensions at least; the second does nothing then
+        mean = np.concatenate([mean, np.full(dimension_count - len(mean), 0.5)])
+        population = (4 + int(3.0 * np.log(dimension_count))) * 2**self.restarts
+        kind: Any = cmaes.CMA if dimension_count <= _FULL else cmaes.SepCMA
+        bounds = np.tile([0.0, 1.0], (dimension_count, 1))
         self._cma = kind(mean, _SIGMA, bounds, seed=int(self._rng.integers(2**31)), population_size=population)
 
     def ask(self) -> list[FloatArray]:

@@ -45,12 +45,12 @@ def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBou
     z, end, root = law.sigma_norm(s), float(law.sigma_norm(r)), np.sqrt(1.0 + law.eps * s * s)
     x, place = (z - law.d_alpha) / law.unit**2 + law.c, (z / end - law.h) / (1.0 - law.h)
     phi = np.abs(law.phi(z - law.d_alpha))
-    most = np.maximum(phi[1:], phi[:-1])
+    maximum = np.maximum(phi[1:], phi[:-1])
     rise = 0.5 * (law.a + law.b) / law.unit**2 * (1.0 + np.clip(0.0, x[:-1], x[1:]) ** 2) ** -1.5
     fall = 0.5 * np.pi / (1.0 - law.h) / end * np.sin(np.pi * np.clip(0.5, *np.clip((place[:-1], place[1:]), 0.0, 1.0)))
-    along, bump = (s / root)[1:], law.bump(z[:-1] / end)
-    force = bump * (rise * along**2 + most / root[:-1] ** 3) + fall * most * along**2
-    rows = zip(s[:-1], s[1:], (1.0 + 1e-12) * force, (1.0 + 1e-12) * fall * along, strict=True)
+    phi_values, bump = (s / root)[1:], law.bump(z[:-1] / end)
+    force = bump * (rise * phi_values**2 + maximum / root[:-1] ** 3) + fall * maximum * phi_values**2
+    rows = zip(s[:-1], s[1:], (1.0 + 1e-12) * force, (1.0 + 1e-12) * fall * phi_values, strict=True)
     return tuple(SlopeBound(*map(float, row)) for row in rows)
 
 
@@ -135,8 +135,8 @@ class AlphaInteraction(Tabulated, PairInteraction):
         """Facts proved of φ_α for all parameters."""
         if type(self) is not AlphaInteraction:
             return super().facts
-        smooth, weight, inside = (Fact("met", text) for text in _PROOFS)
-        return PairFacts(smooth, weight, inside, (0.0, 0.0), (self.c_star, self.c_star), (0.0, 0.0), (self.d,))
+        smooth_fact, weight, inside = (Fact("met", text) for text in _PROOFS)
+        return PairFacts(smooth_fact, weight, inside, (0.0, 0.0), (self.c_star, self.c_star), (0.0, 0.0), (self.d,))
 
     @property
     def range(self) -> float:
@@ -176,26 +176,26 @@ class AlphaInteraction(Tabulated, PairInteraction):
     @cached_property
     def strength(self) -> float:
         """Largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, within 1e-6."""
-        lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
-        forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
+        distances = np.linspace(0.0, self.r, _STRENGTH_GRID)
+        forces = self.phi_alpha(self.sigma_norm(distances)) * distances / np.sqrt(1.0 + self.eps * distances**2)
         return float(np.abs(forces).max())
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Return kernel parameters, and Chebyshev panels of ψ_α with constants that make ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
-        taper = one_by_one(kernel.phi_alpha, par)
+        taper_function = one_by_one(kernel.phi_alpha, par)
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         doublings = d_alpha * (1.0 + 2.0 ** np.arange(max(0.0, np.ceil(np.log2(r_alpha / d_alpha)))))
         marks = np.append(d_alpha, doublings)  # between them ψ grows by a few times only, from 0 and from at most c*
         edges = np.unique(np.concatenate([edges, marks[(marks > knee) & (marks < r_alpha)]]))
-        at_knee = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
+        knee_energy = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
         if knee < d_alpha:  # d_α lies on the taper: ψ vanishes there, exactly
-            panels = integral_panels(taper, edges, anchor=d_alpha)
+            panels = integral_panels(taper_function, edges, anchor=d_alpha)
             panels[np.searchsorted(edges, d_alpha), 2] -= on_panels(d_alpha, panels)
-            par[kernel.OFFSET] = on_panels(knee, panels) - at_knee
+            par[kernel.OFFSET] = on_panels(knee, panels) - knee_energy
         else:
-            panels = integral_panels(taper, edges, anchor=edges[0], value=at_knee)
+            panels = integral_panels(taper_function, edges, anchor=edges[0], value=knee_energy)
         par[kernel.FAR] = on_panels(r_alpha, panels)
         return par, panels
 

@@ -39,10 +39,10 @@ class Corner(NamedTuple):
     above: float
 
     def __str__(self) -> str:
-        what = f"the {self.part}" if self.kind == "jump" else f"the slope of the {self.part}"
+        part_text = f"the {self.part}" if self.kind == "jump" else f"the slope of the {self.part}"
         is_known = self.below == self.below and self.above == self.above  # a law may tell where alone
         sides = f", from {self.below:.6g} to {self.above:.6g}" if is_known else ""
-        return f"{what} jumps at s = {self.distance:.6g}{sides}"
+        return f"{part_text} jumps at s = {self.distance:.6g}{sides}"
 
 
 class PairCorner(NamedTuple):
@@ -142,11 +142,11 @@ class DistanceFunction(ShortRepr, ABC):
             Distances.
         """
         s = np.atleast_1d(np.asarray(s, dtype=np.float64))
-        near = s < self.range
+        in_range = s < self.range
         with np.errstate(all="ignore"):  # NaN or infinite where there is no limit
-            w, a, bend, fade = self.inner(np.where(near, s, 0.0).ravel() ** 2)
-            rows = (-w * s.ravel(), a, -(w + 2.0 * s.ravel() ** 2 * bend), 2.0 * s.ravel() * fade)
-            return Values(*(np.where(near, row.reshape(s.shape), 0.0) for row in rows))
+            w, a, weight_slope, adjacency_slope = self.inner(np.where(in_range, s, 0.0).ravel() ** 2)
+            rows = (-w * s.ravel(), a, -(w + 2.0 * s.ravel() ** 2 * weight_slope), 2.0 * s.ravel() * adjacency_slope)
+            return Values(*(np.where(in_range, row.reshape(s.shape), 0.0) for row in rows))
 
     def energy(self, s: Any) -> Any:
         """Return the potential V at distances; 0 without one.
@@ -213,15 +213,15 @@ class DistanceFunction(ShortRepr, ABC):
         sides = [self.values(seams * side) for side in (1.0 - _BESIDE, 1.0 + _BESIDE)]
         parts: tuple[tuple[Part, int], ...] = (("force", 0), ("adjacency", 1))
         for k, seam in enumerate(seams):
-            for part, row in parts:
-                (below, above), (left, right) = (
+            for component, row in parts:
+                (lower_value, upper_value), (left, right) = (
                     (float(sides[0][at][k]), float(sides[1][at][k])) for at in (row, row + 2)
                 )
-                way = 4.0 * seam * _BESIDE * (abs(left) + abs(right))  # a root has steep slopes and no jump
-                if _differ(below, above, usual[row]) and not abs(above - below) <= way:
-                    yield Corner(float(seam), part, "jump", below, above)
+                side_offset = 4.0 * seam * _BESIDE * (abs(left) + abs(right))  # a root has steep slopes and no jump
+                if _differ(lower_value, upper_value, usual[row]) and not abs(upper_value - lower_value) <= side_offset:
+                    yield Corner(float(seam), component, "jump", lower_value, upper_value)
                 elif _differ(left, right, usual[row + 2]):
-                    yield Corner(float(seam), part, "kink", left, right)
+                    yield Corner(float(seam), component, "kink", left, right)
 
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
@@ -270,11 +270,11 @@ class LawFunction:
             pair_blocks(q, reach) if self.edges is None else [np.array(self.edges, dtype=np.int32).reshape(-1, 2).T]
         )
         for i, j in blocks:
-            lengths = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
+            link_lengths = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
             for corner in corners:
-                for k in np.flatnonzero(np.abs(lengths - corner.distance) <= tolerance * corner.distance):
+                for k in np.flatnonzero(np.abs(link_lengths - corner.distance) <= tolerance * corner.distance):
                     if self.listeners is None or {int(i[k]), int(j[k])} & {*self.listeners}:
-                        yield PairCorner(int(i[k]), int(j[k]), float(lengths[k]), self.name, corner)
+                        yield PairCorner(int(i[k]), int(j[k]), float(link_lengths[k]), self.name, corner)
 
 
 @dataclass(frozen=True)
@@ -311,8 +311,8 @@ class UnknownEdges(DistanceFunction):
         return max(self.distances, default=0.0)
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
-        nothing = np.full_like(s2, np.nan)
-        return nothing, nothing, nothing, nothing
+        no_values = np.full_like(s2, np.nan)
+        return no_values, no_values, no_values, no_values
 
     @property
     def corners(self) -> tuple[Corner, ...]:

@@ -131,8 +131,8 @@ class FormulaInteraction(PairInteraction):
     @property
     def faults(self) -> tuple[str, ...]:
         """Points where the law is not C¹, does not end smoothly or has no limit, each in words."""
-        none = "coincidence is excluded: the force has no limit where two agents meet"
-        return (*(() if self.coincidence else (none,)), *self.facts.faults)
+        coincidence_text = "coincidence is excluded: the force has no limit where two agents meet"
+        return (*(() if self.coincidence else (coincidence_text,)), *self.facts.faults)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -160,8 +160,8 @@ class FormulaInteraction(PairInteraction):
     @property
     def resting_distance(self) -> float | None:
         """Length d if two agents rest there; else the first distance at which repulsion turns into attraction."""
-        rising = [s for s, up in self._parts.zeros if up]
-        return self.d if self.d in rising or not rising else rising[0]
+        rising_zeros = [s for s, is_rising in self._parts.zeros if is_rising]
+        return self.d if self.d in rising_zeros or not rising_zeros else rising_zeros[0]
 
     def __repr__(self) -> str:
         """Return the call that builds the law, with its remarks."""
@@ -249,18 +249,18 @@ class FormulaInteraction(PairInteraction):
                 f"parameter {missing[0]!r} has no powers of length and time: expected "
                 f"units={{{missing[0]!r}: (1, 0), ...}} of pair_law, to change units"
             )
-        scaled = tuple(
+        scaled_parameters = tuple(
             (name, value * length ** powers[name][0] * time ** powers[name][1]) for name, value in self.parameters
         )
-        other = replace(self, r=self.r * length, d=self.d * length, parameters=scaled)
+        rescaled_interaction = replace(self, r=self.r * length, d=self.d * length, parameters=scaled_parameters)
         force = length / time**2 if any(b for _, _, b in self.powers) else length
-        if not self._parts.same_as(other._parts, length, force, _SAME):
+        if not self._parts.same_as(rescaled_interaction._parts, length, force, _SAME):
             raise ArgumentError(
                 "the formula has a number in it that has a unit, or parameters with wrong powers: expected a force "
                 "that scales as length/time², or as length if no parameter has a time, and an adjacency that scales as "
                 "neither, to change units"
             )
-        return other
+        return rescaled_interaction
 
     def derivation(self) -> Derivation:
         """Return the derivation of potential, force, weight and adjacency, with LaTeX output."""

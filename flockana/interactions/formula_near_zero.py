@@ -38,10 +38,10 @@ def near_zero(cut: PiecewiseFormula, end: float) -> NearZero:
     """Return how to evaluate the first piece near 0, from its values in high precision."""
     piece = cut.pieces[0]
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
-    first, second = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
+    first, second_value = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
     shares = (float(weight(end * share)) for share in (0.05, 0.25, 0.5))
     scale = max((abs(w) for w in (first, *shares) if isfinite(w)), default=0.0)
-    if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
+    if not (isfinite(first) and isfinite(second_value)) or abs(first - second_value) > _AGREED * max(scale, abs(first)):
         return NearZero("excluded")
     if not _cancels(cut, piece, end, scale):
         return NearZero("plain")
@@ -90,12 +90,12 @@ def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
 
     with mpmath.workdps(_SOLVED):
         nodes = [mpmath.mpf(x) for x in 0.5 * (1.0 + chebyshev.chebpts1(TERMS))]
-        powers_of = mpmath.matrix([[x**k for k in range(TERMS)] for x in nodes])
-        coefficients = mpmath.lu_solve(powers_of, mpmath.matrix([function(bound * x) for x in nodes]))
+        power_matrix = mpmath.matrix([[x**k for k in range(TERMS)] for x in nodes])
+        coefficients = mpmath.lu_solve(power_matrix, mpmath.matrix([function(bound * x) for x in nodes]))
         powers = np.array([float(x) for x in coefficients])
-    looks = np.linspace(0.0, 1.0, 23)[1:]
-    exact = np.array([float(function(bound * x)) for x in looks])
-    error = float(np.abs(np.polynomial.polynomial.polyval(looks, powers) - exact).max())
+    sample_shares = np.linspace(0.0, 1.0, 23)[1:]
+    exact = np.array([float(function(bound * x)) for x in sample_shares])
+    error = float(np.abs(np.polynomial.polynomial.polyval(sample_shares, powers) - exact).max())
     return powers, error if isfinite(error) else inf
 
 

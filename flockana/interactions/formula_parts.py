@@ -69,10 +69,10 @@ class FormulaParts:
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Return whether another formula's law is this one in other units, compared on a grid."""
-        mine, theirs = self.looks * np.array([[force], [1.0]]), other.looks
+        mine, their_values = self.looks * np.array([[force], [1.0]]), other.looks
         threshold = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
-        gap = np.abs(mine - theirs)
-        return bool(np.all((gap <= threshold + tolerance * np.abs(mine)) | (np.isnan(mine) & np.isnan(theirs))))
+        gap = np.abs(mine - their_values)
+        return bool(np.all((gap <= threshold + tolerance * np.abs(mine)) | (np.isnan(mine) & np.isnan(their_values))))
 
 
 @lru_cache(maxsize=_KEPT)
@@ -89,11 +89,11 @@ def formula_parts(
     eps = dict(parameters).get("eps", nan) if formula.distance == pf.Z else 0.0
     if formula.distance == pf.Z and not eps > 0.0:
         raise ArgumentError(f"parameters['eps'] = {eps:g}: expected a number > 0, the ε of the σ-norm")
-    lengths = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
-    numbers = {sp.Symbol(name, positive=True): value for name, value in lengths.items()}
-    numbers |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
-    numbers.setdefault(pf.EPS, eps)
-    cut = pf.PiecewiseFormula(formula, numbers, lengths["r_z"] if eps else r)
+    length_symbols = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
+    parameter_values = {sp.Symbol(name, positive=True): value for name, value in length_symbols.items()}
+    parameter_values |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
+    parameter_values.setdefault(pf.EPS, eps)
+    cut = pf.PiecewiseFormula(formula, parameter_values, length_symbols["r_z"] if eps else r)
     view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
@@ -103,7 +103,7 @@ def formula_parts(
     far = far if forces or isfinite(far) else inf
     head = np.array([r * r, far, eps, near.bound, *near.coefficients])
     marks = np.array([view.of_mark(mark) for mark in cut.marks[1:-1]])
-    par = np.concatenate([head, marks, [float(cut.value(each)) for each in constants]])
+    par = np.concatenate([head, marks, [float(cut.value(constant)) for constant in constants]])
     if not np.isfinite(np.delete(par, 1)).all() or np.isnan(far):
         raise ArgumentError(f"{main!r} has a part that is not finite with these parameters: expected finite numbers")
     for array in (par, panels, view.looks):
@@ -130,7 +130,7 @@ class _PreciseForce:
         self._forces = [cut.function(piece.weight) for piece in cut.pieces]
         self._weights = [cut.function(piece.adjacency) for piece in cut.pieces]
         energies = [piece.potential for piece in cut.pieces]
-        self._energies = [(lambda y: 0.0) if each is None else cut.function(each) for each in energies]
+        self._energies = [(lambda y: 0.0) if energy is None else cut.function(energy) for energy in energies]
         self.strength, self.looks, self.places = 0.0, np.zeros((2, 0)), _places(cut, eps)
 
     def y(self, s: float) -> float:
@@ -166,23 +166,23 @@ class _PreciseForce:
             at = grid[int(np.argmax(~np.isfinite([*self.looks, energies]).all(axis=0)))]
             raise ArgumentError(f"the formula has no finite real value at s = {at:g}: expected one below the range")
         poles = not isfinite(self.force(self.r, len(self.cut.pieces) - 1))
-        usual = (grid >= (0.5 * d if unbounded else 0.0)) & (grid <= (0.9 * self.r if poles else self.r))
-        self.strength = float(np.abs(self.looks[0][usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
+        is_usual = (grid >= (0.5 * d if unbounded else 0.0)) & (grid <= (0.9 * self.r if poles else self.r))
+        self.strength = float(np.abs(self.looks[0][is_usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
 
     def poles(self) -> tuple[str, ...]:
         """Return where the force grows without bound within the range, in words."""
         poles: list[str] = []
-        grid, sizes = np.linspace(0.0, self.r, _GRID)[1:-1], np.abs(self.looks[0])
-        for k in np.flatnonzero((sizes[1:-1] >= sizes[:-2]) & (sizes[1:-1] >= sizes[2:])) + 1:
-            left, right, most = float(grid[k - 1]), float(grid[k + 1]), float(sizes[k])
+        grid, magnitudes = np.linspace(0.0, self.r, _GRID)[1:-1], np.abs(self.looks[0])
+        for k in np.flatnonzero((magnitudes[1:-1] >= magnitudes[:-2]) & (magnitudes[1:-1] >= magnitudes[2:])) + 1:
+            left, right, peak_size = float(grid[k - 1]), float(grid[k + 1]), float(magnitudes[k])
             while right - left > _NARROW * self.r:
-                third = (right - left) / 3.0
-                low, high = (abs(self.force(s)) for s in (left + third, right - third))
-                left, right = (left + third, right) if low < high else (left, right - third)
-            at = 0.5 * (left + right)
-            near, far = (abs(self.force(at + share * self.r)) for share in (_NEAR, _FAR))
-            if near > _GROWN * most and near > _STEEP * far:
-                poles.append(f"the force is infinite at s = {at:.6g}, within the range")
+                third_width = (right - left) / 3.0
+                low, high = (abs(self.force(s)) for s in (left + third_width, right - third_width))
+                left, right = (left + third_width, right) if low < high else (left, right - third_width)
+            midpoint = 0.5 * (left + right)
+            near_force, far_force = (abs(self.force(midpoint + share * self.r)) for share in (_NEAR, _FAR))
+            if near_force > _GROWN * peak_size and near_force > _STEEP * far_force:
+                poles.append(f"the force is infinite at s = {midpoint:.6g}, within the range")
         return tuple(poles)
 
     def zeros(self, d: float) -> tuple[tuple[float, bool], ...]:
@@ -190,15 +190,15 @@ class _PreciseForce:
         grid = np.linspace(0.0, self.r, _GRID)[1:-1]
         signed = [(float(s), float(f)) for s, f in zip(grid, self.looks[0], strict=True) if f != 0.0]
         changes = [(a, b, right > 0.0) for (a, left), (b, right) in pairwise(signed) if left * right < 0.0]
-        places = (self._change_between(a, b, attracts=attracts) for a, b, attracts in changes)
+        places = (self._change_between(a, b, attracts=is_attractive) for a, b, is_attractive in changes)
         return tuple(
             (d if abs(s - d) <= 2.0 * _NARROW * self.r else s, up) for s, (*_, up) in zip(places, changes, strict=True)
         )
 
     def _change_between(self, left: float, right: float, *, attracts: bool) -> float:
         while right - left > _NARROW * self.r:
-            middle = 0.5 * (left + right)
-            left, right = (left, middle) if (self.force(middle) > 0.0) is attracts else (middle, right)
+            midpoint = 0.5 * (left + right)
+            left, right = (left, midpoint) if (self.force(midpoint) > 0.0) is attracts else (midpoint, right)
         return 0.5 * (left + right)
 
     def ends(self) -> tuple[str, ...]:
@@ -218,8 +218,8 @@ class _PreciseForce:
 
     def jumps(self) -> list[float]:
         """Return the cuts at which the force jumps by more than rounding of the parameters."""
-        small = _SMALL * self.strength
-        return [s for k, s in enumerate(self.places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= small]
+        small_force = _SMALL * self.strength
+        return [s for k, s in enumerate(self.places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= small_force]
 
 
 def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
@@ -228,27 +228,27 @@ def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
     rows, edges = [cut.function(piece.force) for piece in cut.pieces], sorted({*cut.marks, inner})
 
     def values(z: FloatArray) -> FloatArray:
-        which = np.searchsorted(cut.marks[1:-1], z, side="right")
-        return np.array([float(rows[k](x if view.eps else x * x)) for k, x in zip(which, z, strict=True)])
+        piece_numbers = np.searchsorted(cut.marks[1:-1], z, side="right")
+        return np.array([float(rows[k](x if view.eps else x * x)) for k, x in zip(piece_numbers, z, strict=True)])
 
-    whole: list[float] = [0.0]
+    panel_energies: list[float] = [0.0]
     for left, right in pairwise(edges):
-        whole += _resolved(values, left, right, view.strength, 0)
-    return integral_panels(values, np.array(whole), anchor=inner)
+        panel_energies += _resolved(values, left, right, view.strength, 0)
+    return integral_panels(values, np.array(panel_energies), anchor=inner)
 
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
     """Return right ends of intervals on which a function is a polynomial up to rounding."""
     samples = values(0.5 * (left + right) + 0.5 * (right - left) * series_nodes())
-    refused, series = not np.isfinite(samples).all(), np.abs(series_of(np.nan_to_num(samples)))
+    is_refused, series = not np.isfinite(samples).all(), np.abs(series_of(np.nan_to_num(samples)))
     tail = series[-2:].max() / max(series.max(), scale)
-    if refused or (depth >= _HALVINGS and tail > _ROUGH):
+    if is_refused or (depth >= _HALVINGS and tail > _ROUGH):
         raise ArgumentError("the force cannot be integrated within the range: expected the potential, by its formula")
     if depth >= _HALVINGS or tail <= _TAIL:
         return [right]
-    middle = 0.5 * (left + right)
-    halves = ((left, middle), (middle, right))
-    return [edge for half in halves for edge in _resolved(values, *half, scale, depth + 1)]
+    midpoint = 0.5 * (left + right)
+    halves = ((left, midpoint), (midpoint, right))
+    return [edge for half_interval in halves for edge in _resolved(values, *half_interval, scale, depth + 1)]
 
 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:
@@ -269,10 +269,10 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
         rows.append([each("potential")])
     floor = [] if near.kind == "excluded" else ["s2 = max(s2, par[0]*1e-60)"]  # a form 0/0 at 0 has its limit there
     norm = [*floor, "root = sqrt(1.0 + par[2]*s2)", "z = s2/(root + 1.0)"]
-    of_square = [*norm, "y = z"] if in_norm else [*floor, "y = s2"]
+    square_lines = [*norm, "y = z"] if in_norm else [*floor, "y = s2"]
     marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
 
-    def source_text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
+    def source_text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = square_lines) -> str:
         symbols = {symbol for row in wanted for value in row for symbol in value.free_symbols}
         names = (f"c{k}" for k in range(first, first + len(shared.values)))
         constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in symbols)]
@@ -281,7 +281,7 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
     weight, slope, energy = "v0", "v0", "v0"
     if near.kind == "series":
         inner = "0.5/(root*par[3])" if in_norm else "1.0/par[3]"
-        weight, slope = (_horner(at, order) for at, order in (("v0", 0), ("v0", 1)))
+        weight, slope = (_horner(table_row, order) for table_row, order in (("v0", 0), ("v0", 1)))
         slope = slope.replace("UNIT", inner)
         energy = "(on_panels(y, panels) if y < par[3] else v0)"
     potential = (
@@ -311,5 +311,5 @@ def _horner(otherwise: str, order: int) -> str:
 
 def _integrated(in_norm: bool) -> str:
     """Return the source text of a potential given by panels."""
-    at = "s2/(sqrt(1.0 + par[2]*s2) + 1.0)" if in_norm else "sqrt(s2)"
-    return f"def NAME(s2, par, panels):\n    return par[1] if s2 >= par[0] else on_panels({at}, panels)"
+    argument_text = "s2/(sqrt(1.0 + par[2]*s2) + 1.0)" if in_norm else "sqrt(s2)"
+    return f"def NAME(s2, par, panels):\n    return par[1] if s2 >= par[0] else on_panels({argument_text}, panels)"

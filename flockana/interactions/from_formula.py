@@ -75,8 +75,8 @@ def pair_law(
         parameters=tuple((parameters or {}).items()),
         powers=tuple((name, *both) for name, both in (units or {}).items()),
     )
-    if serious := [remark for remark in law.remarks if not remark.startswith("two agents rest at")]:
-        warnings.warn(f"pair_law: {'; '.join(serious)}", PairLawWarning, stacklevel=2)
+    if serious_remarks := [remark for remark in law.remarks if not remark.startswith("two agents rest at")]:
+        warnings.warn(f"pair_law: {'; '.join(serious_remarks)}", PairLawWarning, stacklevel=2)
     return law
 
 

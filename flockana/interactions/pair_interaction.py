@@ -30,23 +30,23 @@ Pairs = Iterable[tuple[Any, Any]]
 def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
     """Return a compiled scalar function's values at a scalar or an array."""
     values = np.asarray(x, dtype=np.float64)
-    out = compiled(values.ravel(), *parameters)
-    return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
+    output = compiled(values.ravel(), *parameters)
+    return float(output[0]) if values.ndim == 0 else output.reshape(values.shape)
 
 
 def one_by_one(function: Callable[..., float], par: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """Return a scalar function with its parameters as a function of arrays, interpreted."""
-    numbers = par.tolist()
-    return lambda z: np.array([function(each, numbers) for each in z.tolist()])
+    parameter_list = par.tolist()
+    return lambda z: np.array([function(item, parameter_list) for item in z.tolist()])
 
 
 def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> InnerValues:
     """Return `DistanceFunction.inner` of compiled functions with their parameters."""
     line = np.append(0.0, np.sqrt(s2))[:, None]
     ends = np.arange(1, line.size, dtype=np.int64)
-    w, a, bend = for_little(kernels.terms, 8 * ends.size)(line, np.zeros_like(ends), ends, par)
+    w, a, weight_slope = for_little(kernels.terms, 8 * ends.size)(line, np.zeros_like(ends), ends, par)
     slope = kernels.adjacency_slope
-    return w, a, bend, np.full_like(w, np.nan) if slope is None else slope(s2, par)
+    return w, a, weight_slope, np.full_like(w, np.nan) if slope is None else slope(s2, par)
 
 
 class Tabulated(ABC):
@@ -131,8 +131,8 @@ class PairInteraction(DistanceFunction):
 
     def energy(self, s: Any) -> Any:
         """Return the potential of a pair at Euclidean distances, constant beyond the range (see `DistanceFunction`)."""
-        square = np.square(np.asarray(s, dtype=np.float64))
-        return evaluate(self.kernels.energies, square, self.par, self.panels)
+        squared_value = np.square(np.asarray(s, dtype=np.float64))
+        return evaluate(self.kernels.energies, squared_value, self.par, self.panels)
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
         return kernel_values(self.kernels, self.par, s2)
@@ -172,8 +172,8 @@ class PairInteraction(DistanceFunction):
         if len(q) < LARGE:
             return u, sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
         with several_threads() as several:
-            sum_up = sums.parallel_forces_in_slabs if several else sums.forces_in_slabs
-            return u, sum_up(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
+            force_kernel = sums.parallel_forces_in_slabs if several else sums.forces_in_slabs
+            return u, force_kernel(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
 
     @cached_property
     def _constants(self) -> FloatArray:
@@ -182,16 +182,16 @@ class PairInteraction(DistanceFunction):
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""
-        n, near, pairs = q.shape[0], 0.0, 0
+        n, near_energy, pairs = q.shape[0], 0.0, 0
         if n < LARGE:
             for i, j in pair_blocks(q, self.range):
-                near += self.kernels.potential(q, i, j, self.par, self.panels)
+                near_energy += self.kernels.potential(q, i, j, self.par, self.panels)
                 pairs += i.size
         else:
             with several_threads() as several:
-                near, pairs = self.kernels.energy_in_slabs(several=several)(q, self.range, self.par, self.panels)
+                near_energy, pairs = self.kernels.energy_in_slabs(several=several)(q, self.range, self.par, self.panels)
         beyond = n * (n - 1) // 2 - pairs
-        return float(near + beyond * self.far_potential if beyond else near)  # it may be infinite there
+        return float(near_energy + beyond * self.far_potential if beyond else near_energy)  # it may be infinite there
 
     def hessian(self, q: FloatArray, pairs: Pairs | None = None) -> csr_array:
         """Return ∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
@@ -243,20 +243,20 @@ class PairInteraction(DistanceFunction):
         ArgumentError
             If velocities differ within the range and the law gives no slope of its adjacency.
         """
-        slope_of = self.kernels.adjacency_slope
+        slope_kernel = self.kernels.adjacency_slope
 
         def consensus(i: Any, j: Any, delta: FloatArray, _: FloatArray) -> FloatArray:
             # gradient of a(s²) (p_j − p_i) in Δ: 2 a' (p_j − p_i) Δᵀ
-            slip = p[j] - p[i]
-            if slope_of is None:
-                if slip.any():
+            velocity_difference = p[j] - p[i]
+            if slope_kernel is None:
+                if velocity_difference.any():
                     raise ArgumentError(
                         f"{type(self).__name__} gives no slope of its adjacency, which the Jacobian needs where the "
                         "velocities of neighbours differ: hand lift(...) an adjacency_slope, or give equal velocities"
                     )
                 return np.zeros((i.size, q.shape[1], q.shape[1]))
-            slope = slope_of(np.einsum("kc,kc->k", delta, delta), self.par)
-            return 2.0 * slope[:, None, None] * slip[:, :, None] * delta[:, None, :]
+            slope = slope_kernel(np.einsum("kc,kc->k", delta, delta), self.par)
+            return 2.0 * slope[:, None, None] * velocity_difference[:, :, None] * delta[:, None, :]
 
         by_position = -stiffness * self.hessian(q, pairs)
         if damping:
@@ -283,7 +283,7 @@ class PairInteraction(DistanceFunction):
             matrices.append((i.copy(), j.copy(), block_of(i, j, delta, terms)))
         if not matrices:
             return csr_array((n * m, n * m))
-        i, j, blocks = (np.concatenate(each) for each in zip(*matrices, strict=True))
+        i, j, blocks = (np.concatenate(item) for item in zip(*matrices, strict=True))
         return pair_matrix(i, j, blocks, n)
 
 
@@ -295,11 +295,11 @@ def pair_matrix(i: Any, j: Any, blocks: FloatArray, n: int) -> csr_array:
     own_blocks = np.zeros((n, m, m))
     for end in (i, j):
         np.add.at(own_blocks, end, blocks)
-    touched = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
-    rows, columns = np.concatenate([i, j, touched]), np.concatenate([j, i, touched])
+    linked_agents = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
+    rows, columns = np.concatenate([i, j, linked_agents]), np.concatenate([j, i, linked_agents])
     order = np.lexsort((columns, rows))
     starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
-    values = np.concatenate([-blocks, -blocks, own_blocks[touched]])[order]
+    values = np.concatenate([-blocks, -blocks, own_blocks[linked_agents]])[order]
     return bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
 
 
@@ -325,10 +325,10 @@ def ensure_lengths(law: Any, printed: str) -> None:
         raise ArgumentError(f"h = {law.h:g}: expected 0 < h < 1; at h = 1 the bump jumps (erratum E10)")
     if r <= d:
         raise ArgumentError(f"r = {r:g} and d = {d:g}: expected r > d; the paper takes {printed}")
-    near, far, area = sigma_norm(d * d, eps), sigma_norm(r * r, eps), unit * unit
-    counted = 0.0 < area < inf and near / area > 0.0 and far / area < _MOST_COUNTED
-    if not (0.0 < near < far < inf and eps * r * r < inf and counted):
+    near_norm, far_norm, area = sigma_norm(d * d, eps), sigma_norm(r * r, eps), unit * unit
+    is_measurable = 0.0 < area < inf and near_norm / area > 0.0 and far_norm / area < _MOST_COUNTED
+    if not (0.0 < near_norm < far_norm < inf and eps * r * r < inf and is_measurable):
         raise ArgumentError(
-            f"d = {d:g}, r = {r:g}, eps = {eps:g}, unit = {unit:g}: their σ-norms are {near:g} and {far:g}; "
+            f"d = {d:g}, r = {r:g}, eps = {eps:g}, unit = {unit:g}: their σ-norms are {near_norm:g} and {far_norm:g}; "
             "expected 0 < d_sigma < r_sigma, all finite: choose another length unit (flockana.rescale)"
         )

@@ -32,8 +32,8 @@ class Weight(DistanceFunction):
         return inf
 
     def inner(self, s2: FloatArray) -> InnerValues:  # noqa: D102
-        none = np.zeros_like(s2)
-        return none, self.kernels.weight(s2, self.par), none, self.kernels.slope(s2, self.par)
+        zero_terms = np.zeros_like(s2)
+        return zero_terms, self.kernels.weight(s2, self.par), zero_terms, self.kernels.slope(s2, self.par)
 
     def __call__(self, distance: Any) -> Any:
         """Return the weight at some distances, a scalar or an array."""
@@ -91,10 +91,10 @@ class RationalWeight(Weight):
         """
         top = self.length / sqrt(2.0 * self.decay + 1.0)
         edges = np.concatenate([[0.0], np.unique([top, *np.geomspace(2.0**-20, 2.0**20, parts + 1) * self.length])])
-        at = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
-        bounds = np.where(edges[:-1] < top, at[1:], at[:-1])
+        adjacency_slopes = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
+        bounds = np.where(edges[:-1] < top, adjacency_slopes[1:], adjacency_slopes[:-1])
         inner = [SlopeBound(*row) for row in zip(edges[:-1], edges[1:], np.zeros(len(bounds)), bounds, strict=True)]
-        return (*inner, SlopeBound(float(edges[-1]), inf, 0.0, float(at[-1])))
+        return (*inner, SlopeBound(float(edges[-1]), inf, 0.0, float(adjacency_slopes[-1])))
 
     @cached_property
     def par(self) -> FloatArray:
@@ -147,8 +147,8 @@ class SingularWeight(Weight):
             How many, within 2⁻²⁰ ℓ and 2²⁰ ℓ; two more reach to 0 and to infinity.
         """
         edges = np.geomspace(2.0**-20, 2.0**20, parts + 1) * self.length
-        at = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
-        rows = zip([0.0, *edges], [*edges, inf], [inf, *at], strict=True)
+        adjacency_slopes = np.abs(self.values(edges).adjacency_slope) * (1.0 + 1e-12)
+        rows = zip([0.0, *edges], [*edges, inf], [inf, *adjacency_slopes], strict=True)
         return tuple(SlopeBound(float(left), float(right), 0.0, float(slope)) for left, right, slope in rows)
 
     @cached_property

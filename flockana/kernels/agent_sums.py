@@ -69,8 +69,8 @@ def slope_along(x, y, c, flat):
         centre += x[i, c]
     centre /= (n + stride - 1) // stride
     for i in range(0, n, stride):
-        above = x[i, c] - centre
-        squares, products = squares + above * above, products + above * (y[i, c] - y[0, c])
+        deviation = x[i, c] - centre
+        squares, products = squares + deviation * deviation, products + deviation * (y[i, c] - y[0, c])
     slope = products / squares if squares > 0.0 else flat
     return slope if np.isfinite(slope) else flat
 
@@ -105,6 +105,6 @@ def put(values, into):
 
     numba's own assignment also compiles the text of an error, for a second or two.
     """
-    source, target = values.reshape(values.size), into.reshape(into.size)
-    for k in range(source.size):
-        target[k] = source[k]
+    flat_values, target = values.reshape(values.size), into.reshape(into.size)
+    for k in range(flat_values.size):
+        target[k] = flat_values[k]

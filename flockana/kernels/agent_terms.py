@@ -16,24 +16,24 @@ _OMEGA, _PATH = 1, 2
 @kernel
 def act_along(t, x, v, u, numbers, panels, listed):
     """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power."""
-    (n, m), velocity, centre, thrust, brake, power = (
+    (n, m), velocity, centre, thrust_gain, brake_gain, power = (
         v.shape, listed.frame[1], listed.room[0], numbers[_THRUST], numbers[_BRAKE], 0.0,
     )  # fmt: skip
     for k in range(m):
         centre[k] = column_mean(v, k) if numbers[_MOVING] != 0.0 else -velocity[k]
     for i in range(n):
-        square = 0.0
+        squared_value = 0.0
         for k in range(m):
-            square += (v[i, k] + velocity[k]) ** 2
-        factor = thrust - brake * square
+            squared_value += (v[i, k] + velocity[k]) ** 2
+        factor = thrust_gain - brake_gain * squared_value
         for k in range(m):
             push = factor * (v[i, k] + velocity[k])
             u[i, k] += push
             power += push * (v[i, k] - centre[k])
-    if brake == 0.0:  # a drag alone: squares, of which none cancels
+    if brake_gain == 0.0:  # a drag alone: squares, of which none cancels
         power = 0.0
         for k in range(m):
-            power += thrust * column_squares(v, k, centre[k])
+            power += thrust_gain * column_squares(v, k, centre[k])
     return power
 
 

@@ -51,8 +51,8 @@ def made(text: str, name: str, **functions: Kernel) -> ModuleType:
     named = {mine: it for mine, it in functions.items() if is_modules_own(it)}
     sources = sorted({_source(it) for it in named.values()})
     imports = (f"from {it.__module__} import {it.__name__} as {mine}" for mine, it in sorted(named.items()))
-    future = "from __future__ import annotations\n"
-    text = "\n".join([future, *imports, "", text.replace(future, "")])
+    future_import = "from __future__ import annotations\n"
+    text = "\n".join([future_import, *imports, "", text.replace(future_import, "")])
     parts = (text, *(sources_digest(file) for file in sources if file), _of_text(text))
     digest = sha256(["\n".join(parts)])[:16]
     whole = f"flockana_{name}_{digest}"

@@ -49,6 +49,6 @@ def squared_excess(q, first, second, d):
     """Σ (‖q_j − q_i‖ − d)² over links."""
     total = 0.0
     for k in range(first.size):
-        square = square_between(q, first[k], second[k])
-        total += (sqrt(square) - d) ** 2
+        squared_value = square_between(q, first[k], second[k])
+        total += (sqrt(squared_value) - d) ** 2
     return total

@@ -20,14 +20,14 @@ def sight(q, p, i, j, s2, reach2, width, slow2, h):
         return 0.0
     if width >= 2.0:
         return 1.0
-    ahead, speed2 = 0.0, 0.0
+    forward_part, speed2 = 0.0, 0.0
     for c in range(q.shape[1]):
-        ahead += (q[j, c] - q[i, c]) * p[i, c]
+        forward_part += (q[j, c] - q[i, c]) * p[i, c]
         speed2 += p[i, c] ** 2
     norms = sqrt(s2) * sqrt(speed2)  # of roots: the product of squares may underflow
     if norms == 0.0:
         return 1.0
-    cone = taper(max(0.0, 1.0 - ahead / norms) / width, h)
+    cone = taper(max(0.0, 1.0 - forward_part / norms) / width, h)
     return (slow2 + speed2 * cone) / (slow2 + speed2)
 
 
@@ -38,14 +38,14 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
     `pairs` are unordered, two arrays, and at least all within the largest range; `gains` are (c1, c2), and `view` is
     (width, slow2) of `sight`.
     """
-    (first, second), (c1, c2), (width, slow2) = pairs, gains, view
+    (first_agents, second_agents), (c1, c2), (width, slow2) = pairs, gains, view
     n, own_par = reach.size, par.copy()
     sigma = np.empty(n)
     for i in range(n):
         sigma[i] = sigma_norm(reach[i] * reach[i], par[EPS])
-    for k in range(first.size):
-        for way in range(2):
-            i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
+    for k in range(first_agents.size):
+        for direction in range(2):
+            i, j = (first_agents[k], second_agents[k]) if direction == 0 else (second_agents[k], first_agents[k])
             s2 = square_between(q, i, j)
             sight_weight = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
             if sight_weight == 0.0:
@@ -63,8 +63,8 @@ def seen_edges(q, p, first, second, reach, width, slow2, h, least):
     head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
     for k in range(first.size):
         s2 = square_between(q, first[k], second[k])
-        for way in range(2):
-            i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
+        for direction in range(2):
+            i, j = (first[k], second[k]) if direction == 0 else (second[k], first[k])
             if sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, h) > least:
                 head[count], tail[count] = i, j
                 count += 1

@@ -63,10 +63,10 @@ class PairRoom(NamedTuple):
 def pair_room(radii):
     """Return work space for a pair of agents with a given number of radii."""
     points = np.empty((2, 6, 3))
-    for one in range(2):
+    for item in range(2):
         for k in range(6):
             for c in range(3):
-                points[one, k, c] = 0.0
+                points[item, k, c] = 0.0
     return PairRoom(
         np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), points, np.empty(2), np.empty(2), np.empty((2, radii))
     )
@@ -75,14 +75,14 @@ def pair_room(radii):
 @subroutine
 def relative_curve(points, curve):
     """Write a pair's relative control points into `curve`; return their largest distance from the first."""
-    way = 0.0
+    path_length = 0.0
     for k in range(6):
         s2 = 0.0
         for x in range(3):
             curve[k, x] = points[1, k, x] - points[0, k, x]
             s2 += (curve[k, x] - curve[0, x]) ** 2
-        way = max(way, s2)
-    return np.sqrt(way)
+        path_length = max(path_length, s2)
+    return np.sqrt(path_length)
 
 
 @inlined
@@ -91,7 +91,7 @@ def _ahead(points, s, far, room):
 
     `room` is for six control points.
     """
-    closing, speed2 = 0.0, 0.0
+    closing_speed, speed2 = 0.0, 0.0
     for x in range(3):
         b = room[:, x]
         for k in range(6):
@@ -99,12 +99,12 @@ def _ahead(points, s, far, room):
         for level in range(4):
             for k in range(5 - level):
                 b[k] += s * (b[k + 1] - b[k])
-        at, rate = b[0] + s * (b[1] - b[0]), 5.0 * (b[1] - b[0])
-        closing -= at * rate
+        rate_point, rate = b[0] + s * (b[1] - b[0]), 5.0 * (b[1] - b[0])
+        closing_speed -= rate_point * rate
         speed2 += rate * rate
-    if closing <= 0.0:
+    if closing_speed <= 0.0:
         return -1.0
-    return min(closing / speed2, far / np.sqrt(speed2))
+    return min(closing_speed / speed2, far / np.sqrt(speed2))
 
 
 @inlined
@@ -119,8 +119,8 @@ def _visit(points, edge, far, stack, spans):
     s = _first_touch(stack, spans, edge)
     if s < 0.0:
         return 1.0
-    ahead = _ahead(points, s, far, stack[1])
-    return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
+    next_approach = _ahead(points, s, far, stack[1])
+    return 1.0 if next_approach < 0.0 or s + SLACK * next_approach >= 1.0 else s + next_approach
 
 
 @inlined
@@ -134,23 +134,23 @@ def _apart2(points, k):
 def share_of_pair(room, far, share):
     """Return the share of a step that the pair in `room` allows, if less than `share`."""
     points, radii = room.points, room.radii
-    s2, travel = _apart2(points, 0), room.reach[0] + room.reach[1]
-    slack, last = room.allowance[0] + room.allowance[1], radii.shape[1] - 1
-    outer = max(radii[0, last], radii[1, last]) + slack
-    if s2 >= (outer + travel) ** 2:
+    s2, reach_sum = _apart2(points, 0), room.reach[0] + room.reach[1]
+    slack, last_index = room.allowance[0] + room.allowance[1], radii.shape[1] - 1
+    outer = max(radii[0, last_index], radii[1, last_index]) + slack
+    if s2 >= (outer + reach_sum) ** 2:
         return share
-    if travel > far and s2 < outer * outer:
-        way = relative_curve(points, room.stack[0])
-        if way > SLACK * far:
-            share = min(share, far / way)
-    for k in range(last + 1):
-        for whose in range(2):
-            if whose == 1 and radii[1, k] == radii[0, k]:
+    if reach_sum > far and s2 < outer * outer:
+        path_length = relative_curve(points, room.stack[0])
+        if path_length > SLACK * far:
+            share = min(share, far / path_length)
+    for k in range(last_index + 1):
+        for agent_side in range(2):
+            if agent_side == 1 and radii[1, k] == radii[0, k]:
                 continue
-            edge = radii[whose, k] + slack
-            if s2 < edge * edge or s2 >= (edge + travel) ** 2:
+            edge = radii[agent_side, k] + slack
+            if s2 < edge * edge or s2 >= (edge + reach_sum) ** 2:
                 continue
-            if travel <= far and _apart2(points, 5) < edge * edge:
+            if reach_sum <= far and _apart2(points, 5) < edge * edge:
                 continue  # the evaluation at the end of the step meets it
             share = min(share, _visit(points, edge, far, room.stack, room.spans))
     return share
@@ -159,11 +159,11 @@ def share_of_pair(room, far, share):
 @subroutine
 def steepest(slope):
     """Return the largest of the slopes of all agents' paths."""
-    most = 0.0
+    maximum = 0.0
     for k in range(6):
         for c in range(3):
-            most = max(most, abs(slope[k, c]))
-    return most
+            maximum = max(maximum, abs(slope[k, c]))
+    return maximum
 
 
 @inlined
@@ -188,12 +188,12 @@ def way_of_means(ends, means):
     for c in range(q0.shape[1]):
         centre[c], out, bend0 = means[0, c], means[1, c], means[2, c]
         back, bend1 = means[4, c], means[5, c]
-        ways = polygon(0.0, means[3, c] - centre[c], s * out, s * back, z * bend0, z * bend1)
-        _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = ways
+        line_strings = polygon(0.0, means[3, c] - centre[c], s * out, s * back, z * bend0, z * bend1)
+        _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = line_strings
         out, back = slope_along(q0, p0, c, 0.0), slope_along(q0, p1, c, 0.0)
         bend0, bend1 = slope_along(q0, u0, c, 0.0), slope_along(q0, u1, c, 0.0)
-        ways = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
-        _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
+        line_strings = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
+        _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = line_strings
     if not steepest(slope) < _STEEP:
         for k in range(6):
             for c in range(3):
@@ -221,14 +221,14 @@ def squares_beside(ends, common, begin, end):
     for i in range(begin, end):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
-            past, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
+            past, out, back, axial_part = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
             bend0, bend1 = z * u0[i, c], z * u1[i, c]
             _, w1, w2, w3, w4, w5 = polygon(0.0, past, out, back, bend0, bend1)
-            d1 += (w1 - (mean[1, c] + slope[1, c] * along)) ** 2
-            d2 += (w2 - (mean[2, c] + slope[2, c] * along)) ** 2
-            d3 += (w3 - (mean[3, c] + slope[3, c] * along)) ** 2
-            d4 += (w4 - (mean[4, c] + slope[4, c] * along)) ** 2
-            d5 += (w5 - (mean[5, c] + slope[5, c] * along)) ** 2
+            d1 += (w1 - (mean[1, c] + slope[1, c] * axial_part)) ** 2
+            d2 += (w2 - (mean[2, c] + slope[2, c] * axial_part)) ** 2
+            d3 += (w3 - (mean[3, c] + slope[3, c] * axial_part)) ** 2
+            d4 += (w4 - (mean[4, c] + slope[4, c] * axial_part)) ** 2
+            d5 += (w5 - (mean[5, c] + slope[5, c] * axial_part)) ** 2
             off2 += (out + 0.5 * back + bend0 - 0.3 * past) ** 2
             off3 += (0.3 * past - back - 0.5 * out + bend1) ** 2
         way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
@@ -245,8 +245,8 @@ def farthest_ways(ends, common):
 @inlined
 def bounds_of(way2, most2, most3):
     """Return `farthest_ways` from the largest squares."""
-    blur = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
-    return np.sqrt(way2) + blur, blur
+    rounding_width = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
+    return np.sqrt(way2) + rounding_width, rounding_width
 
 
 @inlined
@@ -256,9 +256,9 @@ def band(common, farthest, edges, far):
     Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
     way and twice the longest way beside it.
     """
-    (way, blur), steep, (low, high) = farthest, steepest(common[1]), edges
-    high = (high + 2.0 * (blur + way)) / (1.0 - steep) * _WIDER
-    return low if (steep * high + 2.0 * way) * _WIDER <= far else 0.0, high
+    (path_length, rounding_width), steepness, (low, high) = farthest, steepest(common[1]), edges
+    high = (high + 2.0 * (rounding_width + path_length)) / (1.0 - steepness) * _WIDER
+    return low if (steepness * high + 2.0 * path_length) * _WIDER <= far else 0.0, high
 
 
 @inlined
@@ -268,9 +268,9 @@ def _stays_beyond(ends, i, j, edge):
     s2 = d1 = d2 = d3 = d4 = d5 = 0.0
     s, z = h / 5.0, h * h / 20.0
     for c in range(q0.shape[1]):
-        gap, out, back = q0[j, c] - q0[i, c], s * (p0[j, c] - p0[i, c]), s * (p1[j, c] - p1[i, c])
+        gap, first_move, last_move = q0[j, c] - q0[i, c], s * (p0[j, c] - p0[i, c]), s * (p1[j, c] - p1[i, c])
         bend0, bend1 = z * (u0[j, c] - u0[i, c]), z * (u1[j, c] - u1[i, c])
-        _, x1, x2, x3, x4, x5 = polygon(gap, q1[j, c] - q1[i, c], out, back, bend0, bend1)
+        _, x1, x2, x3, x4, x5 = polygon(gap, q1[j, c] - q1[i, c], first_move, last_move, bend0, bend1)
         s2, d1, d2, d3 = s2 + gap * gap, d1 + gap * x1, d2 + gap * x2, d3 + gap * x3
         d4, d5 = d4 + gap * x4, d5 + gap * x5
     return min(min(s2, min(d1, d2)), min(d3, min(d4, d5))) >= edge * np.sqrt(s2) * _WIDER
@@ -283,25 +283,25 @@ def share_of_listed(ends, common, between, around, first, second, share):
     `common` are the mean control points and the largest allowance. Only pairs are looked at whose distance is within a
     band where the step begins.
     """
-    (h, q0, p0, u0, q1, p1, u1), radii, (mean, blur) = ends, around.radii, common
-    room, low2, high2, count = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2, 0
-    m, outer, picks = q0.shape[1], around.edges[1] + 2.0 * blur, np.empty(first.size + 1, np.uint32)
+    (h, q0, p0, u0, q1, p1, u1), radii, (mean, rounding_width) = ends, around.radii, common
+    workspace, low2, high2, count = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2, 0
+    m, outer, picked_pairs = q0.shape[1], around.edges[1] + 2.0 * rounding_width, np.empty(first.size + 1, np.uint32)
     for k in range(first.size):
         i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
         for c in range(m):
             s2 += (q0[j, c] - q0[i, c]) ** 2
-        picks[count] = k
+        picked_pairs[count] = k
         count += (s2 >= low2) & (s2 < high2)
     for k in range(count):
-        i, j = np.uint64(first[picks[k]]), np.uint64(second[picks[k]])
+        i, j = np.uint64(first[picked_pairs[k]]), np.uint64(second[picked_pairs[k]])
         if not _stays_beyond(ends, i, j, outer):
             for a in range(2):
-                one, curve = i if a == 0 else j, room.points[a]
-                put_row(radii[one], room.radii[a])
-                room.allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], curve)
+                one, curve = i if a == 0 else j, workspace.points[a]
+                put_row(radii[one], workspace.radii[a])
+                workspace.allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], curve)
                 for node in range(6):  # by its indices: compiled code does not check that shapes agree
                     for c in range(m):
                         curve[node, c] -= mean[node, c]
-                room.reach[a] = reach_of(curve) + room.allowance[a]
-            share = share_of_pair(room, around.far, share)
+                workspace.reach[a] = reach_of(curve) + workspace.allowance[a]
+            share = share_of_pair(workspace, around.far, share)
     return share

@@ -45,12 +45,12 @@ def _square(x, i, place):
 @kernel
 def _farthest(x, place):
     """Return (agent, squared distance) of the agent farthest from a point."""
-    agent, most = 0, 0.0
+    agent, largest_distance = 0, 0.0
     for i in range(len(x)):
         s2 = _square(x, i, place)
-        if s2 > most:
-            agent, most = i, s2
-    return agent, most
+        if s2 > largest_distance:
+            agent, largest_distance = i, s2
+    return agent, largest_distance
 
 
 @kernel
@@ -65,10 +65,10 @@ def greatest_distances(q):
         x, count = q[k], 0
         for c in range(centre.size):
             centre[c] = column_mean(x, c)
-        one, outermost = _farthest(x, centre)
-        other, _ = _farthest(x, x[one])
-        _, most = _farthest(x, x[other])
-        lower_bound = sqrt(most) * (1.0 - 1e-9) - sqrt(outermost)
+        first_agent, outermost = _farthest(x, centre)
+        second_agent, _ = _farthest(x, x[first_agent])
+        _, largest_distance = _farthest(x, x[second_agent])
+        lower_bound = sqrt(largest_distance) * (1.0 - 1e-9) - sqrt(outermost)
         for i in range(len(x)):
             if sqrt(_square(x, i, centre)) >= lower_bound:
                 rim[count] = i
@@ -78,6 +78,6 @@ def greatest_distances(q):
                 s2 = 0.0
                 for c in range(centre.size):
                     s2 += (x[rim[b], c] - x[rim[a], c]) ** 2
-                most = max(most, s2)
-        distances[k] = sqrt(most)
+                largest_distance = max(largest_distance, s2)
+        distances[k] = sqrt(largest_distance)
     return distances

@@ -49,7 +49,7 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
     not finite it stays so.
     """
     (n, m), row, h, reach = (system.order.size, system.frame.shape[1]), 0, method.h, method.reach
-    size, stages, noisy = n * m, method.stages, kicks.size > 0
+    size, stages, has_noise = n * m, method.stages, kicks.size > 0
     rates, trial, u = np.zeros((stages, y.size)), np.zeros(y.size), np.empty(size)
     for k in range(wanted[-1]):
         for s in range(stages):
@@ -58,7 +58,7 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
                     trial[i] = y[i]
             else:
                 _combine(y, h, method.a[s], s, rates, trial)
-                if noisy:
+                if has_noise:
                     for i in range(size):
                         trial[size + i] += kicks[k, i]
             if _finite(trial):
@@ -75,14 +75,14 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
             u[i] = total
         if method.one:
             for i in range(size):
-                before, after = y[size + i], y[size + i] + h * u[i]
-                y[i] = y[i] + h * after if method.lead == 1.0 else y[i] + h * before + (method.lead * h * h) * u[i]
-                y[size + i] = after
+                before, end_part = y[size + i], y[size + i] + h * u[i]
+                y[i] = y[i] + h * end_part if method.lead == 1.0 else y[i] + h * before + (method.lead * h * h) * u[i]
+                y[size + i] = end_part
         else:
             _combine(y, h, method.a[stages], stages, rates, trial)
             for i in range(size):
                 y[i], y[size + i] = trial[i], y[size + i] + h * u[i]
-        if noisy:
+        if has_noise:
             for i in range(size):
                 y[size + i] += kicks[k, i]
         if wanted[row] == k + 1:

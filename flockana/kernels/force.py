@@ -24,7 +24,7 @@ def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -
 def act(t, x, v, u, numbers, panels, listed):
     """Add the push to u and return its power."""
     (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0
-    co, si, part = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
+    co, si, block_size = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
     for k in range(m):
         centre = 0.0
         if numbers[_MOVING] != 0.0:
@@ -34,7 +34,7 @@ def act(t, x, v, u, numbers, panels, listed):
             centre = -listed.frame[1, k]
         for i in range(n):
             at = _FIRST + (np.int64(listed.order[i]) if rows > 1 else 0) * m + k
-            push = numbers[at] + co * numbers[at + part] + si * numbers[at + 2 * part]
+            push = numbers[at] + co * numbers[at + block_size] + si * numbers[at + 2 * block_size]
             u[i, k] += push
             power += push * (v[i, k] - centre)
     return power

@@ -13,8 +13,8 @@ _ROUNDINGS = 2.0**-49  # eight of the largest coordinate: two agents, each close
 @inlined
 def _place(x, low, width, last):
     """Return the number of the cell in which a coordinate lies; 0 for NaN."""
-    place = min((x - low) / width, last)
-    return np.int64(place) if place > 0.0 else 0
+    cell_number = min((x - low) / width, last)
+    return np.int64(cell_number) if cell_number > 0.0 else 0
 
 
 @inlined
@@ -31,22 +31,22 @@ def _closed_up(q, width, most):
 
     Gaps are empty ones of a row of `most` bins, which are as fine as cells once the widest gaps are closed.
     """
-    x, full, gap_before = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
+    x, is_occupied, gap_positions = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
     for k in range(q.shape[1]):
-        wide = np.inf
-        while wide > width:
+        infinite_width = np.inf
+        while infinite_width > width:
             low, high = _ends(x, k)
-            wide = max(width, (high - low) / most)
-            if not wide < np.inf:
+            infinite_width = max(width, (high - low) / most)
+            if not infinite_width < np.inf:
                 break
-            full[:] = False
+            is_occupied[:] = False
             for i in range(len(x)):
-                full[_place(x[i, k], low, wide, most - 1.0)] = True
-            gap_before[0] = 0.0
-            for b in range(1, full.size):
-                gap_before[b] = gap_before[b - 1] + (0.0 if full[b] else wide)
+                is_occupied[_place(x[i, k], low, infinite_width, most - 1.0)] = True
+            gap_positions[0] = 0.0
+            for b in range(1, is_occupied.size):
+                gap_positions[b] = gap_positions[b - 1] + (0.0 if is_occupied[b] else infinite_width)
             for i in range(len(x)):
-                x[i, k] -= gap_before[_place(x[i, k], low, wide, most - 1.0)]
+                x[i, k] -= gap_positions[_place(x[i, k], low, infinite_width, most - 1.0)]
     return x
 
 
@@ -59,34 +59,34 @@ def sort_into_grid(q, side):
     c + d − 1 to c + d + 1. Where cells would be many more than agents, gaps are closed up; if that does not do, cells
     are strips across the longest side.
     """
-    (n, m), most, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
-    low, across, strides, total, farthest = np.empty(m), np.empty(m), np.empty(m, np.int64), np.inf, 0.0
+    (n, m), capacity, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
+    low, cell_counts, cell_strides, total, farthest = np.empty(m), np.empty(m), np.empty(m, np.int64), np.inf, 0.0
     ranks = np.empty(m, np.int64)  # the same strides, rising
     for attempt in range(2):
-        if total <= most:
+        if total <= capacity:
             break
         if attempt == 1:
             width += _ROUNDINGS * farthest  # or what is closed up might round two apart by more than the margin
-            x = _closed_up(q, width, most)
-        total, last = 1.0, m - 1
+            x = _closed_up(q, width, capacity)
+        total, last_index = 1.0, m - 1
         for k in range(m):
             low[k], high = _ends(x, k)
             farthest = max(farthest, max(abs(low[k]), abs(high)))
-            across[k] = np.floor((high - low[k]) / width) + 3.0
+            cell_counts[k] = np.floor((high - low[k]) / width) + 3.0
         for k in range(m):
-            last = k if n >= LARGE and across[k] > across[last] else last
+            last_index = k if n >= LARGE and cell_counts[k] > cell_counts[last_index] else last_index
         for rank in range(m):
-            k = last if rank == m - 1 else (m - 1 if rank == last else rank)
-            strides[k] = ranks[rank] = np.int64(total) if total <= most else 0
-            total *= across[k]
-    strips = not total <= most  # of NaN too
+            k = last_index if rank == m - 1 else (m - 1 if rank == last_index else rank)
+            cell_strides[k] = ranks[rank] = np.int64(total) if total <= capacity else 0
+            total *= cell_counts[k]
+    strips = not total <= capacity  # of NaN too
     if strips:
         longest = 0
         for k in range(m):
-            strides[k] = 0
-            if across[k] > across[longest]:
+            cell_strides[k] = 0
+            if cell_counts[k] > cell_counts[longest]:
                 longest = k
-        strides[longest], total = 1, most
+        cell_strides[longest], total = 1, capacity
     cells = np.int64(total)
     start, cell = np.empty(cells + 1, np.uint64), np.empty(n, np.int64)
     for c in range(cells + 1):
@@ -94,17 +94,17 @@ def sort_into_grid(q, side):
     for i in range(n):
         c = 0
         for k in range(m):
-            c += strides[k] * (1 + _place(x[i, k], low[k], width, most))
+            c += cell_strides[k] * (1 + _place(x[i, k], low[k], width, capacity))
         cell[i] = min(c, cells - 2)
         start[cell[i] + 1] += np.uint64(1)
     for c in range(cells):
         start[c + 1] += start[c]
-    fill, order = np.empty(cells, np.uint64), np.empty(n, np.uint64)
+    fill_positions, order = np.empty(cells, np.uint64), np.empty(n, np.uint64)
     for c in range(cells):
-        fill[c] = start[c]
+        fill_positions[c] = start[c]
     for i in range(n):
-        order[fill[cell[i]]] = i
-        fill[cell[i]] += np.uint64(1)
+        order[fill_positions[cell[i]]] = i
+        fill_positions[cell[i]] += np.uint64(1)
     rows = np.empty((0, 1, 4)[0 if strips else m - 1], np.uint64)
     if rows.size == 1:
         rows[0] = ranks[1]
@@ -116,9 +116,9 @@ def sort_into_grid(q, side):
 @inlined
 def empty_cuts(n):
     """Return an array for the slab boundaries of n agents, set to one empty slab."""
-    cuts = np.empty((_SLABS if n >= LARGE else 1) + 2, np.int64)
-    cuts[0], cuts[1], cuts[2] = 1, 0, 0
-    return cuts
+    slab_cuts = np.empty((_SLABS if n >= LARGE else 1) + 2, np.int64)
+    slab_cuts[0], slab_cuts[1], slab_cuts[2] = 1, 0, 0
+    return slab_cuts
 
 
 @kernel
@@ -128,13 +128,13 @@ def cut_into_slabs(start, rows, cuts):
     A slab is layers of cells across the longest side: only cells of the slab itself and of the next are adjacent to
     its own and later than they, so that all even slabs may add to both agents of their pairs at once, and all odd ones.
     """
-    layer, end, most, slabs = np.int64(1), start.size - 2, cuts.size - 2, 1
+    layer, end, slab_limit, slabs = np.int64(1), start.size - 2, cuts.size - 2, 1
     if rows.size > 0:
         layer = np.int64(rows[rows.size // 2])
     cuts[1] = 0
     for cell in range(layer, end, layer):
         agents = np.float64(start[cell] - start[cuts[slabs]])
-        if slabs < most and agents * most >= np.float64(start[end]) and start[cell] < start[end]:
+        if slabs < slab_limit and agents * slab_limit >= np.float64(start[end]) and start[cell] < start[end]:
             slabs += 1
             cuts[slabs] = cell
     cuts[0], cuts[slabs + 1] = slabs, end

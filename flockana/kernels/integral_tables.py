@@ -36,8 +36,8 @@ def integral_panels(
 
     It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
     """
-    half, middle = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
-    values = function((middle + half * series_nodes()).ravel()).reshape(-1, NODES)
+    half, midpoint = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
+    values = function((midpoint + half * series_nodes()).ravel()).reshape(-1, NODES)
     integrals: FloatArray = half * _times(series_of(values), _integration())
     at_left, at_right = integrals[:, ::2].sum(axis=1) - integrals[:, 1::2].sum(axis=1), integrals.sum(axis=1)
     first, last = int(np.searchsorted(edges, anchor)), edges.size - 1
@@ -109,19 +109,19 @@ def on_panels(z, panels):
     multiple of four, whose four sums need not wait for each other.
     Points outside take the value at the nearest end. No branch hangs on z: a loop over it runs ahead of itself.
     """
-    row, rest = 0, panels.shape[0]
-    while rest > 1:
-        half = rest // 2
-        row += half * (z >= panels[row + half - 1, 1])
-        rest -= half
+    row, panel_count = 0, panels.shape[0]
+    while panel_count > 1:
+        half_count = panel_count // 2
+        row += half_count * (z >= panels[row + half_count - 1, 1])
+        panel_count -= half_count
     left, right = panels[row, 0], panels[row, 1]
     x = (2.0 * z - left - right) / (right - left)
     if abs(x) > 1.0:  # not by min and max, which would turn a NaN into a number
         x = 1.0 if x > 0.0 else -1.0
-    last = panels.shape[1] - 1
-    a, b, c, d, x2 = panels[row, last], 0.0, 0.0, 0.0, x * x
+    last_index = panels.shape[1] - 1
+    a, b, c, d, x2 = panels[row, last_index], 0.0, 0.0, 0.0, x * x
     x4 = x2 * x2
-    for k in range(last - 4, 1, -4):
+    for k in range(last_index - 4, 1, -4):
         a, b = x4 * a + panels[row, k], x4 * b + panels[row, k + 1]
         c, d = x4 * c + panels[row, k + 2], x4 * d + panels[row, k + 3]
     return (a + x2 * c) + x * (b + x2 * d)

@@ -42,12 +42,12 @@ class LawNumbers(NamedTuple):
 
 def law_numbers(terms: Any) -> LawNumbers:
     """Return the parameters of all terms in one vector, and their polynomial panels in one matrix."""
-    numbers = np.concatenate([np.empty(0), *(term.numbers for term in terms)])
+    kernel_parameters = np.concatenate([np.empty(0), *(term.numbers for term in terms)])
     width = max((term.panels.shape[1] for term in terms), default=0)
     panels = np.concatenate([np.empty((0, width)), *(term.panels.reshape(-1, width) for term in terms if width)])
-    sizes = [(term.numbers.size, len(term.panels) if width else 0) for term in terms]
-    starts = np.concatenate([[(0, 0)], np.cumsum(np.array(sizes, np.int64).reshape(-1, 2), axis=0)]).astype(np.int64)
-    return LawNumbers(numbers, panels, starts)
+    counts = [(term.numbers.size, len(term.panels) if width else 0) for term in terms]
+    starts = np.concatenate([[(0, 0)], np.cumsum(np.array(counts, np.int64).reshape(-1, 2), axis=0)]).astype(np.int64)
+    return LawNumbers(kernel_parameters, panels, starts)
 
 
 @cache
@@ -55,15 +55,15 @@ def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = Fals
     """Return the compiled functions of a law with given terms, for one thread or several."""
     if several:
         launch_threads()
-        terms = tuple((parallel_twin(act), parallel_twin(energy)) for act, energy in terms)
+        terms = tuple((parallel_twin(act_kernel), parallel_twin(energy)) for act_kernel, energy in terms)
     functions: dict[str, Kernel] = {}
     lines: dict[str, list[str]] = {_ACT: [], _ENERGY: []}
-    for k, (act, energy) in enumerate(terms):
+    for k, (act_kernel, energy) in enumerate(terms):
         own_numbers = f"numbers[starts[{k}, 0] : starts[{k + 1}, 0]]"
-        both = f"{own_numbers}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
-        functions |= {f"act_{k}": act, f"energy_{k}": energy}
-        lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {both}, seen)")
-        lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {both}, seen)")
+        argument_text = f"{own_numbers}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
+        functions |= {f"act_{k}": act_kernel, f"energy_{k}": energy}
+        lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {argument_text}, seen)")
+        lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {argument_text}, seen)")
     bodies = ("\n".join([head, *body, "    return total"]) for head, body in lines.items())
     module = made(_HEAD + "\n".join(f"\n@kernel\n{body}\n" for body in bodies), "law", **functions)
     return LawFunctions(*(callback(getattr(module, k), sign) for k, sign in signatures()._asdict().items()))

@@ -83,47 +83,47 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
     The first step has the length h, or, if that is 0, one that is chosen here. `lists` are those of the integrator and
     of the checks; samples are (times that are due, states, work), work being NaN where a step ends.
     """
-    (pairs, near), (due, states, work) = lists, samples
-    energetic, evaluations, redone, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
+    (pairs, near_pairs), (due_times, states, work_series) = lists, samples
+    has_energy, evaluations, redone_steps, status, stop, sampled = judged.rules.energetic, 0, 0, RUNNING, 0, 0
     agents, steps = (
         system.order.size,
         np.int64(0),
     )  # typed: of a literal, all that is called would be compiled once more
     while steps + 1 < block.t.size and stop < stops.size and evaluations * (agents + pairs.counts[COUNT]) < AT_ONCE:
-        now = march(block, steps, h, (stops[stop], stops[-1]), system, method, room, pairs)
-        status, evaluations, at = now.status, evaluations + now.evaluations, block.t[steps + 1]
+        step_result = march(block, steps, h, (stops[stop], stops[-1]), system, method, room, pairs)
+        status, evaluations, block_time = step_result.status, evaluations + step_result.evaluations, block.t[steps + 1]
         if status != RUNNING:
-            h = h if status == UNLISTED else now.h
+            h = h if status == UNLISTED else step_result.h
             break
-        if energetic and judged.ledger[IN_VAIN] < PATIENCE:
+        if has_energy and judged.ledger[IN_VAIN] < PATIENCE:
             for row in range(steps, steps + 2):
                 if row > steps or np.isnan(block.energy[row]):
                     block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
-        shorter, singular = checked(block, steps, judged, system.seen_from, pairs, near)
-        if singular:
-            h, status = now.h, SINGULAR
+        step_ratio, is_singular = checked(block, steps, judged, system.seen_from, pairs, near_pairs)
+        if is_singular:
+            h, status = step_result.h, SINGULAR
             break
-        if shorter > 0.0:
-            h, redone = shorter, redone + 1
+        if step_ratio > 0.0:
+            h, redone_steps = step_ratio, redone_steps + 1
             continue
         before = sampled
-        while sampled < due.size and due[sampled] < at:
+        while sampled < due_times.size and due_times[sampled] < block_time:
             sampled += 1
         is_known = sampled
-        while is_known < due.size and due[is_known] == at:
+        while is_known < due_times.size and due_times[is_known] == block_time:
             is_known += 1  # the step itself is the sample
         if is_known > len(states):
-            h, status, sampled = now.h, FULL, (before if steps else is_known)
+            h, status, sampled = step_result.h, FULL, (before if steps else is_known)
             break
-        work[sampled:is_known] = np.nan
+        work_series[sampled:is_known] = np.nan
         if sampled > before:
-            step, inside = step_of(block, steps, room), due[before:sampled]
-            _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
+            step, inner_samples = step_of(block, steps, room), due_times[before:sampled]
+            _sampled(step, inner_samples, method, states[before:sampled], work_series[before:sampled], system, pairs)
             evaluations += len(method.rows) - method.stages - 1 + sampled - before
             if pairs.counts[COUNT] < 0:
-                h, status, sampled = now.h, UNLISTED, before
+                h, status, sampled = step_result.h, UNLISTED, before
                 break
         sampled = is_known
-        stop += at == stops[stop]
-        h, steps = now.later, steps + 1
-    return steps, status, h, evaluations, redone, sampled
+        stop += block_time == stops[stop]
+        h, steps = step_result.later, steps + 1
+    return steps, status, h, evaluations, redone_steps, sampled

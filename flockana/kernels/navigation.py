@@ -35,16 +35,16 @@ def act(t, x, v, u, numbers, panels, listed):
         return -c2[0] * squared_deviations(v)
     for i in range(n):
         agent = np.int64(listed.order[i]) if gains > 1 else 0
-        bend = 1.0
+        saturation = 1.0
         if unit > 0.0:
-            square = 0.0
+            squared_value = 0.0
             for k in range(m):
-                square += (x[i, k] - target[0, k]) ** 2
-            bend = sqrt(1.0 + square / (unit * unit))
+                squared_value += (x[i, k] - target[0, k]) ** 2
+            saturation = sqrt(1.0 + squared_value / (unit * unit))
         for k in range(m):
-            pull, slip = c1[agent] * (x[i, k] - target[0, k]) / bend, v[i, k] - target[1, k]
-            u[i, k] -= pull + c2[agent] * slip
-            power -= c2[agent] * (v[i, k] + frame[1, k]) * slip + pull * target[2, k]
+            pull, velocity_difference = c1[agent] * (x[i, k] - target[0, k]) / saturation, v[i, k] - target[1, k]
+            u[i, k] -= pull + c2[agent] * velocity_difference
+            power -= c2[agent] * (v[i, k] + frame[1, k]) * velocity_difference + pull * target[2, k]
     return power
 
 
@@ -57,9 +57,9 @@ def energy(t, x, v, numbers, panels, listed):
         return 0.5 * c1[0] * squared_deviations(x)
     co, si = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t)
     for i in range(n):
-        square = 0.0
+        squared_value = 0.0
         for k in range(m):
-            square += (x[i, k] - (_place(t, co, si, path, k) - listed.frame[0, k])) ** 2
-        bend = sqrt(1.0 + square / (unit * unit)) if unit > 0.0 else 1.0
-        total += c1[np.int64(listed.order[i]) if gains > 1.0 else 0] * square / (bend + 1.0)
+            squared_value += (x[i, k] - (_place(t, co, si, path, k) - listed.frame[0, k])) ** 2
+        saturation = sqrt(1.0 + squared_value / (unit * unit)) if unit > 0.0 else 1.0
+        total += c1[np.int64(listed.order[i]) if gains > 1.0 else 0] * squared_value / (saturation + 1.0)
     return total

@@ -68,20 +68,20 @@ def pair_blocks(
     """
     n = q.shape[0]
     capacity = max(block, n)
-    first, second = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
+    first_agents, second_agents = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
     if dense is None:
         dense = n <= DENSE_MAX
     r2, row = max(r * r, 5e-324), 0  # r² may underflow: coincident agents are still a pair
     if dense or not np.isfinite(r2):
         while row < n:
-            row, count = _fill_direct(q, r2, row, first, second)
-            yield first[:count], second[:count]
+            row, count = _fill_direct(q, r2, row, first_agents, second_agents)
+            yield first_agents[:count], second_agents[:count]
         return
     grid, cell = sort_into_grid(q, r), 0
     x = q[grid[0]]
     while row < n:
-        cell, row, count = fill_from_grid(x, grid, r2, cell, row, first, second)
-        yield first[:count], second[:count]
+        cell, row, count = fill_from_grid(x, grid, r2, cell, row, first_agents, second_agents)
+        yield first_agents[:count], second_agents[:count]
 
 
 def pair_list(q: FloatArray, r: float) -> tuple[IndexArray, IndexArray]:

@@ -23,11 +23,11 @@ def forces(q, p, bodies, beta, reach, gains, u):
     (pars, starts, balls), (c1, c2), total = bodies, gains, 0.0
     n, m = q.shape
     x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
-    near, s2 = np.empty(n, np.int64), np.empty(n)
+    near_agents, s2 = np.empty(n, np.int64), np.empty(n)
     for k in range(balls.shape[0]):
         par = pars[starts[k] : starts[k + 1]]
-        for e in range(within_reach(q, balls, k, reach, s2, near)):
-            i = near[e]
+        for e in range(within_reach(q, balls, k, reach, s2, near_agents)):
+            i = near_agents[e]
             for c in range(m):
                 x[c], v[c] = q[i, c], p[i, c]
             clearance = project(x, v, par, gap, rate)
@@ -35,9 +35,9 @@ def forces(q, p, bodies, beta, reach, gains, u):
                 continue
             w, b = pair_beta(clearance * clearance, beta)
             for c in range(m):
-                slip = rate[c] - p[i, c]
-                u[i, c] += c1 * w * gap[c] + c2 * b * slip
-                total += b * p[i, c] * slip
+                velocity_difference = rate[c] - p[i, c]
+                u[i, c] += c1 * w * gap[c] + c2 * b * velocity_difference
+                total += b * p[i, c] * velocity_difference
     return total
 
 
@@ -46,14 +46,14 @@ def potential(q, bodies, beta, panels, reach):
     """Return the potential Σ ψ_β over agents and the obstacles of one kind."""
     (pars, starts, balls), total = bodies, 0.0
     n, m = q.shape
-    x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
-    near, s2 = np.empty(n, np.int64), np.empty(n)
+    x, zero_velocity, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
+    near_agents, s2 = np.empty(n, np.int64), np.empty(n)
     for k in range(balls.shape[0]):
         par = pars[starts[k] : starts[k + 1]]
-        for e in range(within_reach(q, balls, k, reach, s2, near)):
+        for e in range(within_reach(q, balls, k, reach, s2, near_agents)):
             for c in range(m):
-                x[c] = q[near[e], c]
-            clearance = project(x, still, par, gap, rate)
+                x[c] = q[near_agents[e], c]
+            clearance = project(x, zero_velocity, par, gap, rate)
             total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
     return total
 
@@ -94,21 +94,21 @@ def braking(q, p, par, beta, reach, by_position, by_velocity):
     """Add the derivatives of b_ik (p̂_ik − p_i) of one obstacle to every agent's blocks."""
     # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
     n, m = q.shape
-    axis, gap, rate, along, bend = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    axis, gap, rate, axial_part, brake_slope = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     for i in range(n):
         clearance = project(q[i], p[i], par, gap, rate)
         if abs(clearance) >= reach:
             continue
         s2 = clearance * clearance
         b, slope = pair_beta(s2, beta)[1], adjacency_beta_slope(s2, beta)
-        slip = rate - p[i]
+        velocity_difference = rate - p[i]
         for c in range(m):
             axis[c] = 1.0
-            project(q[i], axis, par, gap, along)
-            turn(q[i], p[i], axis, par, bend)
+            project(q[i], axis, par, gap, axial_part)
+            turn(q[i], p[i], axis, par, brake_slope)
             for e in range(m):
-                by_velocity[i, e, c] += b * (along[e] - axis[e])
-                by_position[i, e, c] += b * bend[e] - 2.0 * slope * slip[e] * gap[c]
+                by_velocity[i, e, c] += b * (axial_part[e] - axis[e])
+                by_position[i, e, c] += b * brake_slope[e] - 2.0 * slope * velocity_difference[e] * gap[c]
             axis[c] = 0.0
 
 
@@ -122,8 +122,8 @@ def _distance(q, par, room):
 def _visit(curve, edge, far, par, here, room):
     """Return the share of a step at which an agent beyond `edge` is first well within it; 1 if it never is."""
     # The distance from an obstacle changes by no more than the way: so far beyond the edge may be gone safely.
-    legs = 5.0 * (curve[1:] - curve[:-1])
-    fastest, s = longest(legs), 0.0
+    control_legs = 5.0 * (curve[1:] - curve[:-1])
+    fastest, s = longest(control_legs), 0.0
     if fastest == 0.0:
         return 1.0
     for _ in range(MARCHES):
@@ -135,16 +135,16 @@ def _visit(curve, edge, far, par, here, room):
         if s >= 1.0:
             return 1.0
     rate = np.zeros((1, 3))
-    point_at(legs, s, rate[0, : here.size])
+    point_at(control_legs, s, rate[0, : here.size])
     speed = longest(rate)
-    last = min(1.0, s + far / speed) if speed > 0.0 else 1.0
+    final_share = min(1.0, s + far / speed) if speed > 0.0 else 1.0
     stop, nearest = s, np.inf
     for k in range(LOOKS):
-        look = s + (last - s) * k / (LOOKS - 1)
-        point_at(curve, look, here)
-        away = _distance(here, par, room)
-        if away < nearest:
-            stop, nearest = look, away
+        sample_point = s + (final_share - s) * k / (LOOKS - 1)
+        point_at(curve, sample_point, here)
+        distance = _distance(here, par, room)
+        if distance < nearest:
+            stop, nearest = sample_point, distance
     return 1.0 if s + SLACK * (stop - s) >= 1.0 or stop <= s else stop
 
 
@@ -156,29 +156,29 @@ def guard(points, allowance, numbers, shell, far, most):
     """
     pars, starts, balls = bodies_of(numbers)
     m = balls.shape[1] - 1
-    here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
+    point, workspace = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
     begin, end = points[:, 0], points[:, 5]
     for i in range(points.shape[0]):
-        way, edge = reach_of(points[i]), shell + allowance[i]
-        reach = way + allowance[i]
+        path_length, edge = reach_of(points[i]), shell + allowance[i]
+        reach = path_length + allowance[i]
         for k in range(balls.shape[0]):
             if out_of_reach(begin, i, balls, k, shell + reach):
                 continue
             for c in range(m):
-                here[c] = begin[i, c]
+                point[c] = begin[i, c]
             par = pars[starts[k] : starts[k + 1]]
-            beyond = _distance(here, par, room) - edge
-            if beyond < 0.0:
-                if way > SLACK * far:
-                    most = min(most, far / way)
+            wall_distance = _distance(point, par, workspace) - edge
+            if wall_distance < 0.0:
+                if path_length > SLACK * far:
+                    most = min(most, far / path_length)
                 continue
-            if beyond >= reach:
+            if wall_distance >= reach:
                 continue
             for c in range(m):
-                here[c] = end[i, c]
-            if way <= far and _distance(here, par, room) < edge:
+                point[c] = end[i, c]
+            if path_length <= far and _distance(point, par, workspace) < edge:
                 continue  # the evaluation at the end of the step meets it
-            most = min(most, _visit(points[i], edge, far, par, here, room))
+            most = min(most, _visit(points[i], edge, far, par, point, workspace))
     return most
 
 
@@ -192,5 +192,5 @@ def act(t, x, v, u, numbers, panels, listed):
 @kernel
 def energy(t, x, v, numbers, panels, listed):
     """Return the energy c1 Σ ψ_β of the obstacle term."""
-    place = x + listed.frame[0]
-    return numbers[C1] * potential(place, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
+    position = x + listed.frame[0]
+    return numbers[C1] * potential(position, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])

@@ -94,11 +94,11 @@ def turn_ball(q, p, e, centre, radius, p_centre, e_centre, out):
     distance = sqrt(s2)
     ap, ae, pe = 0.0, 0.0, 0.0
     for c in range(q.size):
-        a, slip, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
-        ap += a * slip
+        a, velocity_difference, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
+        ap += a * velocity_difference
         ae += a * step
-        pe += slip * step
+        pe += velocity_difference * step
     for c in range(q.size):
-        a, slip, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
-        bend = ae * (slip - ap * a) + ap * (step - ae * a) + (pe - ap * ae) * a
-        out[c] = -radius / s2 * bend
+        a, velocity_difference, step = (q[c] - centre[c]) / distance, p[c] - p_centre[c], e[c] - e_centre[c]
+        turning_rate = ae * (velocity_difference - ap * a) + ap * (step - ae * a) + (pe - ap * ae) * a
+        out[c] = -radius / s2 * turning_rate

@@ -9,7 +9,7 @@ from flockana.kernels.scalars import sigma_1 as function  # bound
 @kernel
 def over_array(z, parameters):
     """Evaluate function(z_k, *parameters) for every k."""
-    out = np.empty(z.size)
+    output = np.empty(z.size)
     for k in range(z.size):
-        out[k] = function(z[k], *parameters)
-    return out
+        output[k] = function(z[k], *parameters)
+    return output

@@ -47,9 +47,9 @@ def _energy_in_slab(own, low, high, start, rows, x, limit, par, panels, sums):
                     there = np.int64(cell) + np.int64(rows[row])
                     begin, end = start[there - 1], start[there + 2]
                 for j in range(begin, end):
-                    square = square_between(x, i, j)
-                    if square < limit:
-                        total += potential(square, par, panels)
+                    squared_value = square_between(x, i, j)
+                    if squared_value < limit:
+                        total += potential(squared_value, par, panels)
                         pairs += 1
     sums[0], sums[1] = total, pairs
 
@@ -58,13 +58,13 @@ def _energy_in_slab(own, low, high, start, rows, x, limit, par, panels, sums):
 def energy_in_slabs(q, r, par, panels):
     """Return the potential Σ ψ over all pairs of a large flock within r, and their number."""
     order, start, rows = sort_into_grid(q, r)
-    x, cuts, marker, limit = np.empty(q.shape), empty_cuts(q.shape[0]), OWN[:0], max(r * r, 5e-324)
-    slabs, total, pairs = cut_into_slabs(start, rows, cuts), 0.0, np.int64(0)
+    x, slab_cuts, marker, limit = np.empty(q.shape), empty_cuts(q.shape[0]), OWN[:0], max(r * r, 5e-324)
+    slabs, total, pairs = cut_into_slabs(start, rows, slab_cuts), 0.0, np.int64(0)
     sums = np.empty((slabs, 2))
     for k in prange(order.size):
         _put_agent(marker, q, order, np.int64(k), x)
     for s in prange(slabs):
-        _energy_in_slab(marker, cuts[s + 1], cuts[s + 2], start, rows, x, limit, par, panels, sums[s])
+        _energy_in_slab(marker, slab_cuts[s + 1], slab_cuts[s + 2], start, rows, x, limit, par, panels, sums[s])
     for s in range(slabs):
         total, pairs = total + sums[s, 0], pairs + np.int64(sums[s, 1])
     return total, pairs
@@ -76,13 +76,13 @@ parallel_energy_in_slabs = parallel(energy_in_slabs)
 @kernel
 def terms(q, i, j, par):
     """Return weight w, adjacency a and dw/d(s²) of each pair of a block, shape (3, L)."""
-    out = np.empty((3, i.size))
+    output = np.empty((3, i.size))
     for k in range(i.size):
         s2 = square_between(q, i[k], j[k])
         if NORMED:
             z, root = norm(s2, par)
-            out[0, k], out[1, k] = pair(z, root, par)
+            output[0, k], output[1, k] = pair(z, root, par)
         else:
-            out[0, k], out[1, k] = pair(s2, par)
-        out[2, k] = slope(s2, par)
-    return out
+            output[0, k], output[1, k] = pair(s2, par)
+        output[2, k] = slope(s2, par)
+    return output

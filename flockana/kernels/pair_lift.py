@@ -32,8 +32,8 @@ class PairKernels:
     @property
     def law(self) -> dict[str, Any]:
         """Return the names bound in a template for this pair law."""
-        normed = {} if self.norm is None else {"norm": self.norm}
-        return {"pair": self.pair, "potential": self.energy_of_pair, "NORMED": self.norm is not None, **normed}
+        norm_option = {} if self.norm is None else {"norm": self.norm}
+        return {"pair": self.pair, "potential": self.energy_of_pair, "NORMED": self.norm is not None, **norm_option}
 
     def sums(self, m: int, parameters: int) -> ModuleType:
         """Return `flockana.kernels.pair_sums` for this law in m dimensions, with a given number of parameters."""

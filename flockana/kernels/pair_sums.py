@@ -52,49 +52,49 @@ def _add(count, pairs, room, x, v, u, par, gains):
 
     `room` are the squared distances and two rows for w and a; `gains` are (c1, c2).
     """
-    (first, second), (s2, w, a), (c1, c2) = pairs, room, gains
+    (first_agents, second_agents), (s2, w, a), (c1, c2) = pairs, room, gains
     if not (x.shape[1] == M and v.shape[1] == M and u.shape[1] == M):
         return np.nan  # never: the compiler now knows that rows are M numbers apart
     _law(count, s2, w, a, par, c1)
     total = 0.0
     for k in range(count):
-        i, j, weight, drag = first[k], second[k], w[k], c2 * a[k]
-        gap, slip, v2 = apart(x, i, j), apart(v, i, j), 0.0
+        i, j, weight, drag = first_agents[k], second_agents[k], w[k], c2 * a[k]
+        gap, velocity_difference, v2 = apart(x, i, j), apart(v, i, j), 0.0
         for c in range(M):
-            v2 += slip[c] * slip[c]
+            v2 += velocity_difference[c] * velocity_difference[c]
         total += a[k] * v2
         for c in range(M):
-            u[i, c] += weight * gap[c] + drag * slip[c]
+            u[i, c] += weight * gap[c] + drag * velocity_difference[c]
         for c in range(M):
-            u[j, c] -= weight * gap[c] + drag * slip[c]
+            u[j, c] -= weight * gap[c] + drag * velocity_difference[c]
     return total
 
 
 @register_jitable
 def _gather(x, limit, listed, begin, end, pairs, s2):
     """Keep the pairs of a list's part that are within range; return their number."""
-    (first, second), near = listed, pairs
+    (first_agents, second_agents), near_pairs = listed, pairs
     count = 0
     if x.shape[1] != M:
         return count  # never, as above
     for k in range(begin, end):
-        i, j = np.uint64(first[k]), np.uint64(second[k])
-        square = 0.0
+        i, j = np.uint64(first_agents[k]), np.uint64(second_agents[k])
+        squared_value = 0.0
         for c in range(M):
             gap = x[j, c] - x[i, c]
-            square += gap * gap
-        s2[count], near[0][count], near[1][count] = square, i, j
-        count += square < limit
+            squared_value += gap * gap
+        s2[count], near_pairs[0][count], near_pairs[1][count] = squared_value, i, j
+        count += squared_value < limit
     return count
 
 
 @register_jitable
 def _act_in_slab(own, s, x, v, u, numbers, listed, work):
     """Add the forces of the pairs of a slab to u; write their sum into the slab's room."""
-    total, r, par, (cuts, near, room) = 0.0, numbers[2], as_tuple(numbers[4:]), work
-    pairs, block = (near[2 * s], near[2 * s + 1]), (room[3 * s], room[3 * s + 1], room[3 * s + 2])
-    for begin in range(cuts[s], cuts[s + 1], BLOCK):
-        end = min(begin + BLOCK, cuts[s + 1])
+    total, r, par, (slab_cuts, near, workspace) = 0.0, numbers[2], as_tuple(numbers[4:]), work
+    pairs, block = (near[2 * s], near[2 * s + 1]), (workspace[3 * s], workspace[3 * s + 1], workspace[3 * s + 2])
+    for begin in range(slab_cuts[s], slab_cuts[s + 1], BLOCK):
+        end = min(begin + BLOCK, slab_cuts[s + 1])
         count = _gather(x, max(r * r, 5e-324), listed, begin, end, pairs, block[0])
         total += _add(count, pairs, block, x, v, u, par, (numbers[0], numbers[1]))
     block[0][0] = total
@@ -128,10 +128,10 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
 @subroutine
 def energy(t, x, v, numbers, panels, listed):
     """Return c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
-    first, second, cuts, near, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
+    first, second_agents, cuts, near_pairs, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
     slabs, total, pairs, n, marker = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
     for s in prange(slabs):
-        _energy_in_slab(marker, np.int64(s), x, numbers, panels, (first, second), cuts, near, room)
+        _energy_in_slab(marker, np.int64(s), x, numbers, panels, (first, second_agents), cuts, near_pairs, room)
     for s in range(slabs):
         total, pairs = total + room[3 * s, 0], pairs + np.int64(room[3 * s, 1])
     beyond = n * (n - 1) // 2 - pairs
@@ -145,22 +145,22 @@ parallel_act, parallel_energy = parallel(act), parallel(energy)
 def _linked(x, ends, begin, end, near, s2):
     """Write some of the links, stored as alternating agent numbers, as pairs with squared distances."""
     for k in range(begin, end):
-        i, j, square = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
+        i, j, squared_value = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
         for c in range(M):
-            square += (x[j, c] - x[i, c]) ** 2
-        s2[k - begin], near[0, k - begin], near[1, k - begin] = square, i, j
+            squared_value += (x[j, c] - x[i, c]) ** 2
+        s2[k - begin], near[0, k - begin], near[1, k - begin] = squared_value, i, j
     return end - begin
 
 
 @subroutine
 def act_links(t, x, v, u, numbers, panels, listed):
     """Add the forces of links to u and return their power; `numbers` are c1, c2, link count, links, and par."""
-    total, links, near = 0.0, np.int64(numbers[2]), listed.near
-    par, pairs = as_tuple(numbers[3 + 2 * links :]), (near[0], near[1])
-    room = (listed.room[0], listed.room[1], listed.room[2])
+    total, links, near_pairs = 0.0, np.int64(numbers[2]), listed.near
+    par, pairs = as_tuple(numbers[3 + 2 * links :]), (near_pairs[0], near_pairs[1])
+    workspace = (listed.room[0], listed.room[1], listed.room[2])
     for begin in range(0, links, BLOCK):
-        count = _linked(x, numbers[3:], begin, min(begin + BLOCK, links), near, room[0])
-        total += _add(count, pairs, room, x, v, u, par, (numbers[0], numbers[1]))
+        count = _linked(x, numbers[3:], begin, min(begin + BLOCK, links), near_pairs, workspace[0])
+        total += _add(count, pairs, workspace, x, v, u, par, (numbers[0], numbers[1]))
     return -numbers[1] * total
 
 
@@ -178,7 +178,7 @@ def energy_links(t, x, v, numbers, panels, listed):
 @inlined
 def _sweep(cells, start, rows, flock, r2, par, gains, pairs, room):
     """Add the forces between agents in some grid cells and later agents to a sorted flock (q, p, u)."""
-    (x, v, forced), (first, second), s2 = flock, pairs, room[0]
+    (x, v, net_forces), (first_agents, second_agents), s2 = flock, pairs, room[0]
     count, total = np.int64(0), 0.0  # typed: of a literal, `_add` would be compiled once more
     if x.shape[1] != M:
         return np.nan  # as above
@@ -187,19 +187,19 @@ def _sweep(cells, start, rows, flock, r2, par, gains, pairs, room):
             for row in range(-1, np.int64(rows.size)):
                 begin, end = i + np.uint64(1), start[cell + 2]
                 if row >= 0:
-                    there = np.int64(cell) + np.int64(rows[row])
-                    begin, end = start[there - 1], start[there + 2]
+                    neighbour_cell = np.int64(cell) + np.int64(rows[row])
+                    begin, end = start[neighbour_cell - 1], start[neighbour_cell + 2]
                 for j in range(begin, end):
-                    square = 0.0
+                    squared_value = 0.0
                     for c in range(M):
                         gap = x[j, c] - x[i, c]
-                        square += gap * gap
-                    s2[count], first[count], second[count] = square, i, j
-                    count += square < r2
+                        squared_value += gap * gap
+                    s2[count], first_agents[count], second_agents[count] = squared_value, i, j
+                    count += squared_value < r2
                     if count == BLOCK:
-                        total += _add(count, pairs, room, x, v, forced, par, gains)
+                        total += _add(count, pairs, room, x, v, net_forces, par, gains)
                         count = np.int64(0)
-    return total + _add(count, pairs, room, x, v, forced, par, gains)
+    return total + _add(count, pairs, room, x, v, net_forces, par, gains)
 
 
 @kernel
@@ -210,16 +210,16 @@ def forces(q, p, r, numbers, c1, c2, u, room):
     pages where numba does not: small ones take a third of the time of a million agents.
     """
     order, start, rows = sort_into_grid(q, r)
-    x, v, forced = room[0], room[1], room[2]
+    x, v, net_forces = room[0], room[1], room[2]
     for k in range(order.size):
         for c in range(M):
-            x[k, c], v[k, c], forced[k, c] = q[order[k], c], p[order[k], c], 0.0
+            x[k, c], v[k, c], net_forces[k, c] = q[order[k], c], p[order[k], c], 0.0
     pairs, cells = (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)), (0, start.size - 2)
     block, par = (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)), as_tuple(numbers)
-    total = _sweep(cells, start, rows, (x, v, forced), max(r * r, 5e-324), par, (c1, c2), pairs, block)
+    total = _sweep(cells, start, rows, (x, v, net_forces), max(r * r, 5e-324), par, (c1, c2), pairs, block)
     for k in range(order.size):
         for c in range(M):
-            u[order[k], c] += forced[k, c]
+            u[order[k], c] += net_forces[k, c]
     return total
 
 
@@ -227,28 +227,28 @@ def forces(q, p, r, numbers, c1, c2, u, room):
 def _sweep_slab(own, low, high, start, rows, flock, r2, numbers, gains):
     """Sum pair forces (`_sweep`) over the cells of a slab."""
     pairs, par = (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)), as_tuple(numbers)
-    room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    return _sweep((low, high), start, rows, flock, r2, par, gains, pairs, room)
+    workspace = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    return _sweep((low, high), start, rows, flock, r2, par, gains, pairs, workspace)
 
 
 @kernel
 def forces_in_slabs(q, p, r, numbers, c1, c2, u, room):
     """Add all pair forces of a large flock, as `forces` does: even slabs at once, then odd slabs."""
     order, start, rows = sort_into_grid(q, r)
-    x, v, forced, cuts, marker, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
-    slabs, r2 = cut_into_slabs(start, rows, cuts), max(r * r, 5e-324)
+    x, v, net_forces, slab_cuts, marker, total = room[0], room[1], room[2], empty_cuts(q.shape[0]), OWN[:0], 0.0
+    slabs, r2 = cut_into_slabs(start, rows, slab_cuts), max(r * r, 5e-324)
     totals = np.empty(slabs)
     for k in prange(order.size):
         for c in range(M):
-            x[k, c], v[k, c], forced[k, c] = q[order[k], c], p[order[k], c], 0.0
+            x[k, c], v[k, c], net_forces[k, c] = q[order[k], c], p[order[k], c], 0.0
     for parity in range(2):
-        for half in prange((slabs + 1 - parity) // 2):
-            s = 2 * np.int64(half) + parity
-            low, high = cuts[s + 1], cuts[s + 2]
-            totals[s] = _sweep_slab(marker, low, high, start, rows, (x, v, forced), r2, numbers, (c1, c2))
+        for slab_pair in prange((slabs + 1 - parity) // 2):
+            s = 2 * np.int64(slab_pair) + parity
+            low, high = slab_cuts[s + 1], slab_cuts[s + 2]
+            totals[s] = _sweep_slab(marker, low, high, start, rows, (x, v, net_forces), r2, numbers, (c1, c2))
     for k in prange(order.size):
         for c in range(M):
-            u[order[k], c] += forced[k, c]
+            u[order[k], c] += net_forces[k, c]
     for k in range(slabs):
         total += totals[k]
     return total
@@ -261,7 +261,7 @@ parallel_forces_in_slabs = parallel(forces_in_slabs)
 def forces_of(q, p, first, second, numbers, c1, c2, u):
     """Add the forces over given pairs within range; return the dissipation sum, as `forces` does."""
     total, par = 0.0, as_tuple(numbers)
-    room, pairs = (
+    workspace, pairs = (
         (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)),
         (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)),
     )
@@ -271,6 +271,6 @@ def forces_of(q, p, first, second, numbers, c1, c2, u):
             i, j, s2 = np.uint64(first[begin + k]), np.uint64(second[begin + k]), 0.0
             for c in range(M):
                 s2 += (q[j, c] - q[i, c]) ** 2
-            room[0][k], pairs[0][k], pairs[1][k] = s2, i, j
-        total += _add(count, pairs, room, q, p, u, par, (c1, c2))
+            workspace[0][k], pairs[0][k], pairs[1][k] = s2, i, j
+        total += _add(count, pairs, workspace, q, p, u, par, (c1, c2))
     return total

@@ -120,12 +120,12 @@ def _hull_bound(c):
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
     for k in range(6):
         axis0, axis1, axis2 = axis0 + c[k, 0], axis1 + c[k, 1], axis2 + c[k, 2]
-    size = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
-    if size == 0.0:
+    magnitude = np.sqrt(axis0 * axis0 + axis1 * axis1 + axis2 * axis2)
+    if magnitude == 0.0:
         return 0.0
     bound = np.inf
     for k in range(6):
-        bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / size)
+        bound = min(bound, (c[k, 0] * axis0 + c[k, 1] * axis1 + c[k, 2] * axis2) / magnitude)
     return bound
 
 
@@ -133,14 +133,14 @@ def _hull_bound(c):
 def _halve(stack, spans, top):
     """Halve the curve stack[top] by de Casteljau: the left half is pushed, the right half stays."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
-    middle = 0.5 * (left + right)
+    midpoint = 0.5 * (left + right)
     for level in range(6):
         for x in range(3):
             stack[top + 1, level, x] = c[0, x]
             for k in range(5 - level):
                 c[k, x] = 0.5 * (c[k, x] + c[k + 1, x])
-    spans[top, 0] = middle
-    spans[top + 1, 0], spans[top + 1, 1] = left, middle
+    spans[top, 0] = midpoint
+    spans[top + 1, 0], spans[top + 1, 1] = left, midpoint
 
 
 @subroutine
@@ -150,23 +150,23 @@ def _least_distance(stack, spans, stop, tol):
     The distance is (stop, -1) if none is below stop; the bound holds all the same, up to stop.
     The arrays are work space: (_DEPTH + 2, 6, 3) and (_DEPTH + 2, 2).
     """
-    proven, best, where = stop, stop, -1.0
+    proven_bound, best_bound, best_time = stop, stop, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
             value = _norm(c[end])
-            if value < best:
-                best, where = value, left if end == 0 else right
+            if value < best_bound:
+                best_bound, best_time = value, left if end == 0 else right
         bound = _hull_bound(c)
-        if bound >= best - tol or right - left < 2.0**-_DEPTH:
-            proven = min(proven, bound)
+        if bound >= best_bound - tol or right - left < 2.0**-_DEPTH:
+            proven_bound = min(proven_bound, bound)
             top -= 1
             continue
         _halve(stack, spans, top)
         top += 1
-    return proven, best, where
+    return proven_bound, best_bound, best_time
 
 
 @subroutine
@@ -195,23 +195,23 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
     The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
     how far each agent gets from its first control point.
     """
-    lower, best, where, a, b = stop, stop, -1.0, -1, -1
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    lower, best_bound, best_time, a, b = stop, stop, -1.0, -1, -1
+    stack, time_spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for k in range(first.size):
         i, j = first[k], second[k]
         slack = allowance[i] + allowance[j]
         if not _start(points, reach, i, j, lower + slack, stack):
             continue
         # there is no sense in resolving what the allowance blurs
-        proven, value, at = _least_distance(stack, spans, lower + slack, max(tol, 0.01 * slack))
-        if proven - slack < lower:
-            lower = max(0.0, proven - slack)
-            where, a, b = at, i, j
-        if at >= 0.0:
-            best = min(best, value)
+        proven_bound, value, closest_time = _least_distance(stack, time_spans, lower + slack, max(tol, 0.01 * slack))
+        if proven_bound - slack < lower:
+            lower = max(0.0, proven_bound - slack)
+            best_time, a, b = closest_time, i, j
+        if closest_time >= 0.0:
+            best_bound = min(best_bound, value)
         if lower == 0.0:
             break
-    return lower, best, where, a, b
+    return lower, best_bound, best_time, a, b
 
 
 @kernel
@@ -221,11 +221,11 @@ def closest_of_few(t, states, slack, stops, tols):
     `states` are (q, p, u) over time; `slack`, (T − 1, n), adds to reaches and allowances.
     """
     (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
-    first, second = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
-    lower, best, where = np.empty(steps), np.empty(steps), np.empty(steps)
+    first, second_agents = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
+    lower, best_bound, best_time = np.empty(steps), np.empty(steps), np.empty(steps)
     a, b, x = np.empty(steps, np.int64), np.empty(steps, np.int64), np.empty((n, 3))
     for k in range(steps):
-        lower[k], best[k], where[k], a[k], b[k] = stops[k], stops[k], -1.0, -1, -1
+        lower[k], best_bound[k], best_time[k], a[k], b[k] = stops[k], stops[k], -1.0, -1, -1
         if stops[k] == 0.0:
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
@@ -238,47 +238,47 @@ def closest_of_few(t, states, slack, stops, tols):
         limit = ((stops[k] + 2.0 * farthest_reach) * (1.0 + 1e-9)) ** 2
         for i in range(n):
             for j in range(i + 1, n):
-                first[count], second[count] = i, j
+                first[count], second_agents[count] = i, j
                 d0, d1, d2 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
                 count += d0 * d0 + d1 * d1 + d2 * d2 < limit
-        approach = closest_pair(points, reach, allowance, first[:count], second[:count], stops[k], tols[k])
-        lower[k], best[k], where[k], a[k], b[k] = approach
-    return lower, best, where, a, b
+        approach = closest_pair(points, reach, allowance, first[:count], second_agents[:count], stops[k], tols[k])
+        lower[k], best_bound[k], best_time[k], a[k], b[k] = approach
+    return lower, best_bound, best_time, a, b
 
 
 @kernel
 def touching_pairs(points, reach, first, second, tol, out):
     """Mark in `out` the first parameter at which each pair's quintics are within tol of each other, -1 if never."""
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    stack, time_spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for k in range(first.size):
         out[k] = -1.0
         if not _start(points, reach, first[k], second[k], tol, stack):
             continue
-        out[k] = _first_touch(stack, spans, tol)
+        out[k] = _first_touch(stack, time_spans, tol)
 
 
 @subroutine
 def _largest_distance(stack, spans, enough, tol):
     """Return (upper bound, parameter) of the curve stack[0]'s largest distance from 0, within tol or up to `enough`."""
-    proven, best, where = 0.0, 0.0, -1.0
+    proven_bound, best_bound, best_time = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
             value = _norm(c[end])
-            if value > best:
-                best, where = value, left if end == 0 else right
+            if value > best_bound:
+                best_bound, best_time = value, left if end == 0 else right
         bound = 0.0
         for k in range(6):
             bound = max(bound, _norm(c[k]))
-        if bound <= max(enough, best + tol) or right - left < 2.0**-_DEPTH:
-            proven = max(proven, bound)
+        if bound <= max(enough, best_bound + tol) or right - left < 2.0**-_DEPTH:
+            proven_bound = max(proven_bound, bound)
             top -= 1
             continue
         _halve(stack, spans, top)
         top += 1
-    return proven, where
+    return proven_bound, best_time
 
 
 @subroutine
@@ -288,8 +288,8 @@ def farthest(points, allowance, floor, tol):
     Changes the control points. The centre's allowance is the mean one.
     """
     n = points.shape[0]
-    upper, agent, at, common = floor, -1, -1.0, 0.0
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
+    upper, agent, closest_time, common_motion = floor, -1, -1.0, 0.0
+    stack, time_spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for c in range(6):
         for k in range(3):
             centre = 0.0
@@ -298,16 +298,16 @@ def farthest(points, allowance, floor, tol):
             for i in range(n):
                 points[i, c, k] -= centre
     for i in range(n):
-        common += allowance[i] / n
+        common_motion += allowance[i] / n
     for i in range(n):
-        slack = allowance[i] + common
+        slack = allowance[i] + common_motion
         for c in range(6):
             for k in range(3):
                 stack[0, c, k] = points[i, c, k]
-        bound, where = _largest_distance(stack, spans, max(upper, floor + tol) - slack, tol)
+        bound, best_time = _largest_distance(stack, time_spans, max(upper, floor + tol) - slack, tol)
         if bound + slack > upper:
-            upper, agent, at = bound + slack, i, where
-    return upper, agent, at
+            upper, agent, closest_time = bound + slack, i, best_time
+    return upper, agent, closest_time
 
 
 @kernel

@@ -46,10 +46,10 @@ def _halve(stack, top):
 @kernel
 def _slopes(c):
     """Return the least and largest difference of neighbouring coefficients: a tenth of the slope."""
-    minimum, most = np.inf, -np.inf
+    minimum, maximum = np.inf, -np.inf
     for k in range(10):
-        minimum, most = min(minimum, c[k + 1] - c[k]), max(most, c[k + 1] - c[k])
-    return minimum, most
+        minimum, maximum = min(minimum, c[k + 1] - c[k]), max(maximum, c[k + 1] - c[k])
+    return minimum, maximum
 
 
 @kernel
@@ -59,11 +59,11 @@ def _follow(stack, widths, band, slope_band, was_out):
     widths[0], top = 1.0, 0
     while top >= 0:
         c, width = stack[top], widths[top]
-        minimum, most = c.min(), c.max()
+        minimum, maximum = c.min(), c.max()
         slopes = _slopes(c)
         if minimum > band:
             was_out, top = True, top - 1
-        elif most < -band:
+        elif maximum < -band:
             if was_out:
                 return was_out, ENTERS
             top -= 1
@@ -74,7 +74,7 @@ def _follow(stack, widths, band, slope_band, was_out):
             top -= 1
         elif slopes[1] * 10.0 < -slope_band * width and (c[0] > band or was_out) and c[10] < -band:
             return True, ENTERS
-        elif width < 2.0**-_DEPTH or (minimum >= -band and most <= band):
+        elif width < 2.0**-_DEPTH or (minimum >= -band and maximum <= band):
             was_out = was_out or c[0] > band or c[10] > band
             side, top = UNSURE, top - 1
         else:

@@ -139,12 +139,12 @@ def stages_of(step, method, begin, end, system, pairs):
     """Compute stages `begin` to `end` of a step; `reached` is its end after the last stage."""
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
-        into = step.reached if s == method.stages else step.trial
-        system.work.combine(step.y, step.h, method.a[s], rates, rows, s, into)
+        target_row = step.reached if s == method.stages else step.trial
+        system.work.combine(step.y, step.h, method.a[s], rates, rows, s, target_row)
         if method.lead != 0.0:  # of one stage, whose rate is in row 0
-            for k in range(into.size // 2):
-                into[k] += method.lead * step.h * step.h * rates[0, into.size // 2 + k]
-        rate_of(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
+            for k in range(target_row.size // 2):
+                target_row[k] += method.lead * step.h * step.h * rates[0, target_row.size // 2 + k]
+        rate_of(step.t + method.c[s] * step.h, target_row, rates[rows[s]], system, pairs)
 
 
 @inlined
@@ -169,9 +169,9 @@ def _allowed(k, size, floor):
 @inlined
 def error_of(step, method):
     """Return the estimated error of a step relative to its tolerance, weighted as in scipy's solvers."""
-    h, y, stop, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
+    h, y, stop, strip, squared_value, other_square = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
-        weights, square, other = method.estimates[estimate], 0.0, square
+        weights, squared_value, other_square = method.estimates[estimate], 0.0, squared_value
         for begin in range(0, y.size, STRIP):
             end = min(begin + STRIP, y.size)
             for k in range(end - begin):
@@ -183,11 +183,11 @@ def error_of(step, method):
                         strip[k] += weight * rate[k]
             for k in range(begin, end):
                 scale = _allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(stop[k])) * method.rtol
-                square += (strip[k - begin] / scale) ** 2
+                squared_value += (strip[k - begin] / scale) ** 2
     if len(method.estimates) == 1:
-        return h * sqrt(square / y.size)
-    fifth, third = other, square  # the orders of DOP853's two estimates
-    return h * fifth / sqrt((fifth + 0.01 * third) * y.size) if fifth != 0.0 or third != 0.0 else 0.0
+        return h * sqrt(squared_value / y.size)
+    fifth, third_value = other_square, squared_value  # the orders of DOP853's two estimates
+    return h * fifth / sqrt((fifth + 0.01 * third_value) * y.size) if fifth != 0.0 or third_value != 0.0 else 0.0
 
 
 @subroutine
@@ -203,13 +203,13 @@ def _weighed(a, b, y, method):
 def first_step(span, step, method, system, pairs):
     """Return the length of the first step by scipy's rule; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
-    rest = np.empty(y.size)
-    rest[:] = 0.0
-    d0, d1 = _weighed(y, rest, y, method), _weighed(rates[0], rest, y, method)
-    ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
+    zero_rates = np.empty(y.size)
+    zero_rates[:] = 0.0
+    d0, d1 = _weighed(y, zero_rates, y, method), _weighed(rates[0], zero_rates, y, method)
+    trial_step = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
-        trial[k] = y[k] + ahead * rates[0, k]
-    rate_of(step.t + ahead, trial, rates[1], system, pairs)
-    d2 = _weighed(rates[1], rates[0], y, method) / ahead
-    h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
-    return min(min(100.0 * ahead, h), span)
+        trial[k] = y[k] + trial_step * rates[0, k]
+    rate_of(step.t + trial_step, trial, rates[1], system, pairs)
+    d2 = _weighed(rates[1], rates[0], y, method) / trial_step
+    h = max(1e-6, trial_step * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
+    return min(min(100.0 * trial_step, h), span)

@@ -26,8 +26,8 @@ def turn(a0, a1, b0, b1, c0, c1):
     """
     u, v, w, z = a0 - c0, b1 - c1, a1 - c1, b0 - c0
     left, right = u * v, w * z
-    det, size = left - right, abs(left) + abs(right)
-    if size > _TINY and abs(det) > _TURN * size:
+    det, magnitude = left - right, abs(left) + abs(right)
+    if magnitude > _TINY and abs(det) > _TURN * magnitude:
         return 1 if det > 0.0 else -1
     if (u == 0.0 or v == 0.0) and (w == 0.0 or z == 0.0):
         return 0
@@ -41,12 +41,12 @@ def _volume(a, b, c, d):
     for k in range(3):
         if u[k] == 0.0 and v[k] == 0.0 and w[k] == 0.0:
             return 0
-    det, size = 0.0, 0.0
+    det, magnitude = 0.0, 0.0
     for k in range(3):
-        first, second = v[(k + 1) % 3] * w[(k + 2) % 3], v[(k + 2) % 3] * w[(k + 1) % 3]
-        det += u[k] * (first - second)
-        size += abs(u[k]) * (abs(first) + abs(second))
-    if size > _TINY and abs(det) > _VOLUME * size:
+        first_product, second_product = v[(k + 1) % 3] * w[(k + 2) % 3], v[(k + 2) % 3] * w[(k + 1) % 3]
+        det += u[k] * (first_product - second_product)
+        magnitude += abs(u[k]) * (abs(first_product) + abs(second_product))
+    if magnitude > _TINY and abs(det) > _VOLUME * magnitude:
         return 1 if det > 0.0 else -1
     return UNSURE
 
@@ -70,22 +70,22 @@ def meet(c, d, a, b):
 @subroutine
 def _overlap(a, b, c, planes):
     """Return whether the links a–b and a–c of one agent run the same way and overlap."""
-    unsure = False
+    is_doubtful = False
     for k in range(planes):
         t = (k + 1) % 3
         sign = turn(a[k], a[t], b[k], b[t], c[k], c[t])
         if abs(sign) == 1:
             return 0
-        unsure = unsure or sign == UNSURE
-    dot, size, zero = 0.0, 0.0, True
+        is_doubtful = is_doubtful or sign == UNSURE
+    dot, magnitude, zero = 0.0, 0.0, True
     for k in range(3):
         term = (b[k] - a[k]) * (c[k] - a[k])
         dot += term
-        size += abs(term)
+        magnitude += abs(term)
         zero = zero and (b[k] == a[k] or c[k] == a[k])
-    if zero or (size > _TINY and dot < -_DOT * size):
+    if zero or (magnitude > _TINY and dot < -_DOT * magnitude):
         return 0
-    return 1 if not unsure and size > _TINY and dot > _DOT * size else UNSURE
+    return 1 if not is_doubtful and magnitude > _TINY and dot > _DOT * magnitude else UNSURE
 
 
 @subroutine
@@ -130,17 +130,17 @@ def cross(x, i, j, g, h, planes):
 @subroutine
 def foot(p, a, b):
     """Return the distance of a point from a segment."""
-    along, size = 0.0, 0.0
+    axial_part, magnitude = 0.0, 0.0
     for k in range(3):
-        way = b[k] - a[k]
-        along += (p[k] - a[k]) * way
-        size += way * way
-    s = min(1.0, max(0.0, along / size)) if size > 0.0 else 0.0
-    far = 0.0
+        direction = b[k] - a[k]
+        axial_part += (p[k] - a[k]) * direction
+        magnitude += direction * direction
+    s = min(1.0, max(0.0, axial_part / magnitude)) if magnitude > 0.0 else 0.0
+    squared_distance = 0.0
     for k in range(3):
-        off = p[k] - a[k] - s * (b[k] - a[k])
-        far += off * off
-    return np.sqrt(far)
+        deviation = p[k] - a[k] - s * (b[k] - a[k])
+        squared_distance += deviation * deviation
+    return np.sqrt(squared_distance)
 
 
 @subroutine
@@ -157,8 +157,8 @@ def between(a, b, c, d):
         if 0.0 < s < 1.0 and 0.0 < t < 1.0:
             gap = 0.0
             for k in range(3):
-                off = c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])
-                gap += off * off
+                deviation = c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])
+                gap += deviation * deviation
             nearest = min(nearest, np.sqrt(gap))
     return nearest
 
@@ -181,10 +181,10 @@ def nearest_links(x, links, a, b, planar, best):
         if i in (g, h) or j in (g, h):
             continue
         if planar:  # links that do not cross are nearest at an end of one of them
-            far = min(foot(x[i], x[g], x[h]), foot(x[j], x[g], x[h]))
-            here = min(far, foot(x[g], x[i], x[j]), foot(x[h], x[i], x[j]))
+            squared_distance = min(foot(x[i], x[g], x[h]), foot(x[j], x[g], x[h]))
+            link_distance = min(squared_distance, foot(x[g], x[i], x[j]), foot(x[h], x[i], x[j]))
         else:
-            here = between(x[i], x[j], x[g], x[h])
-        if here < best:
-            best, nearest = here, k
+            link_distance = between(x[i], x[j], x[g], x[h])
+        if link_distance < best:
+            best, nearest = link_distance, k
     return best, nearest

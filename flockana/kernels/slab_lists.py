@@ -12,8 +12,8 @@ def _most_pairs(start, rows, begin, end):
     """Return an upper bound of the number of pairs of the agents in some cells."""
     total = 0
     for cell in range(begin, end):
-        size = np.int64(start[cell + 1] - start[cell])
-        total += size * later_agents(start, rows, cell) if size > 0 else 0
+        cell_count = np.int64(start[cell + 1] - start[cell])
+        total += cell_count * later_agents(start, rows, cell) if cell_count > 0 else 0
     return total
 
 
@@ -28,24 +28,24 @@ def list_slabs(q, reach, first, second, cuts):
     for i in prange(order.size):
         for c in range(q.shape[1]):
             x[i, c] = q[order[i], c]
-    cells, places, ends = cuts[1:].copy(), np.empty(slabs + 1, np.int64), np.empty(slabs, np.int64)
+    cells, slab_places, slab_ends = cuts[1:].copy(), np.empty(slabs + 1, np.int64), np.empty(slabs, np.int64)
     for s in prange(slabs):
-        places[s + 1] = _most_pairs(start, rows, cells[s], cells[s + 1])
-    places[0] = 0
+        slab_places[s + 1] = _most_pairs(start, rows, cells[s], cells[s + 1])
+    slab_places[0] = 0
     for s in range(slabs):
-        places[s + 1] += places[s]
-    if places[slabs] > min(first.size, MOST):
+        slab_places[s + 1] += slab_places[s]
+    if slab_places[slabs] > min(first.size, MOST):
         cuts[0], cuts[1], cuts[2] = 1, 0, 0
-        if places[slabs] <= MOST:
-            return -(places[slabs] + 2)
+        if slab_places[slabs] <= MOST:
+            return -(slab_places[slabs] + 2)
         count = list_pairs(q, reach, first, second)
         cuts[2] = max(count, 0)
         return count
     for s in prange(slabs):
-        part = cells[s], cells[s + 1]
-        ends[s] = list_cells(x, (order, start, rows), limit, part, (first, second), places[s])
+        cell_range = cells[s], cells[s + 1]
+        slab_ends[s] = list_cells(x, (order, start, rows), limit, cell_range, (first, second), slab_places[s])
     for s in range(slabs):
-        for k in range(places[s], ends[s]):
+        for k in range(slab_places[s], slab_ends[s]):
             first[count], second[count] = first[k], second[k]
             count += 1
         cuts[s + 2] = count

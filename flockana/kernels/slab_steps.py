@@ -23,11 +23,11 @@ def ways_between(q, reference, along, low, high):
     for part in prange(_PARTS):
         begin, end = np.int64(part) * n // _PARTS, (np.int64(part) + 1) * n // _PARTS
         for c in range(m):
-            lowest = most = q[0, c] - along[c] * reference[0, c]
+            lowest_value = maximum = q[0, c] - along[c] * reference[0, c]
             for i in range(begin, end):
                 way = q[i, c] - along[c] * reference[i, c]
-                lowest, most = way if way < lowest else lowest, way if way > most else most
-            low[part, c], high[part, c] = lowest, most
+                lowest_value, maximum = way if way < lowest_value else lowest_value, way if way > maximum else maximum
+            low[part, c], high[part, c] = lowest_value, maximum
 
 
 parallel_combine_strips, parallel_ways_between = parallel(combine_strips), parallel(ways_between)
@@ -43,18 +43,18 @@ def combined_by_threads(y, h, weights, rates, rows, count, out):
 def covered_by_threads(pairs, q, within):
     """Check a pair list with several threads, as `flockana.kernels.verlet.covers`."""
     reference, m = pairs.places, q.shape[1]
-    along, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
-    for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
-        square, lowest = 0.0, np.inf
+    mean_motion, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
+    for stretch_axis in range(2 if pairs.reach[0] > 0.0 else 0):
+        squared_value, lowest_value = 0.0, np.inf
         for c in range(m):
-            along[c] = slope_along(reference, q, c, 1.0) if stretched else 1.0
-            lowest = min(lowest, along[c])
-        parallel_ways_between(q, reference, along, low, high)
+            mean_motion[c] = slope_along(reference, q, c, 1.0) if stretch_axis else 1.0
+            lowest_value = min(lowest_value, mean_motion[c])
+        parallel_ways_between(q, reference, mean_motion, low, high)
         for c in range(m):
-            first, last = low[0, c], high[0, c]
+            first_index, last_value = low[0, c], high[0, c]
             for part in range(1, _PARTS):
-                first, last = min(first, low[part, c]), max(last, high[part, c])
-            square += (last - first) ** 2
-        if np.sqrt(square) <= lowest * pairs.reach[0] - within:
+                first_index, last_value = min(first_index, low[part, c]), max(last_value, high[part, c])
+            squared_value += (last_value - first_index) ** 2
+        if np.sqrt(squared_value) <= lowest_value * pairs.reach[0] - within:
             return True
     return False

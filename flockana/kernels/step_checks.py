@@ -55,8 +55,8 @@ def balanced(first, last, work, balance, ledger):
     worst, halved = 0.0, np.int64(ledger[HALVED])
     for k in range(halved + 1 - HALVINGS):
         worst = max(worst, ledger[TRIED + k])
-    off = residual > max(balance[0] * largest, balance[1])
-    if off and TRIED + halved < ledger.size and (halved < HALVINGS or residual <= FALLS * worst):
+    is_unbalanced = residual > max(balance[0] * largest, balance[1])
+    if is_unbalanced and TRIED + halved < ledger.size and (halved < HALVINGS or residual <= FALLS * worst):
         ledger[TRIED + halved] = residual
         ledger[HALVED] = halved + 1
         return 0.5
@@ -69,34 +69,34 @@ def balanced(first, last, work, balance, ledger):
 @inlined
 def ends_of(block, k, n, m):
     """Return the states at both ends of step k of a block."""
-    y0, f0, y1, f1, size = block.y[k], block.f[k], block.y[k + 1], block.f[k + 1], n * m
+    y0, f0, y1, f1, dimension = block.y[k], block.f[k], block.y[k + 1], block.f[k + 1], n * m
     return Ends(
         block.t[k + 1] - block.t[k],
-        y0[:size].reshape(n, m),
-        y0[size : 2 * size].reshape(n, m),
-        f0[size : 2 * size].reshape(n, m),
-        y1[:size].reshape(n, m),
-        y1[size : 2 * size].reshape(n, m),
-        f1[size : 2 * size].reshape(n, m),
+        y0[:dimension].reshape(n, m),
+        y0[dimension : 2 * dimension].reshape(n, m),
+        f0[dimension : 2 * dimension].reshape(n, m),
+        y1[:dimension].reshape(n, m),
+        y1[dimension : 2 * dimension].reshape(n, m),
+        f1[dimension : 2 * dimension].reshape(n, m),
     )
 
 
 @inlined
 def checked(block, k, judged, view, kept, near):
     """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole or for lack of room)."""
-    around, rules, ledger, share_allowed = judged
-    t, at, share = block.t[k], block.t[k + 1], 1.0
-    h = at - t
+    encounter_data, rules, ledger, share_allowed = judged
+    t, end_time, share = block.t[k], block.t[k + 1], 1.0
+    h = end_time - t
     if rules.paths:
-        ends = ends_of(block, k, around.radii.shape[0], view[1].size)
-        share = share_allowed(t, ends, around, view, kept, near)
+        step_ends = ends_of(block, k, encounter_data.radii.shape[0], view[1].size)
+        share = share_allowed(t, step_ends, encounter_data, view, kept, near)
     if share == 1.0 and rules.energetic and ledger[IN_VAIN] < PATIENCE:
-        work = block.y[k + 1, -1] - block.y[k, -1]
-        share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)
-    singular, share = share < 0.0, abs(share)
-    shorter, shortest = share * h, ROUNDINGS * spacing(max(abs(t), abs(at)))
+        work_integral = block.y[k + 1, -1] - block.y[k, -1]
+        share = balanced(block.energy[k], block.energy[k + 1], work_integral, rules.balance, ledger)
+    is_singular, share = share < 0.0, abs(share)
+    step_ratio, shortest = share * h, ROUNDINGS * spacing(max(abs(t), abs(end_time)))
     if rules.fixed:  # down to what no shorter step ends before: half of one rounding may round up to the whole
-        shorter, shortest = max(shorter, h / GROWTH), 0.0
-    if share == 1.0 or shorter <= shortest or not t < t + shorter < at:
-        return 0.0, singular
-    return shorter, False
+        step_ratio, shortest = max(step_ratio, h / GROWTH), 0.0
+    if share == 1.0 or step_ratio <= shortest or not t < t + step_ratio < end_time:
+        return 0.0, is_singular
+    return step_ratio, False

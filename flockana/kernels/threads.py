@@ -30,10 +30,10 @@ def ensure_threads(threads: Any) -> int:
     """Return a number of threads; by default all in a main process, one in a worker."""
     if threads is None and parent_process() is None:
         return most_threads()
-    whole = isinstance(threads, int) and not isinstance(threads, bool)
-    if threads is None or (whole and threads == 1):
+    is_whole_number = isinstance(threads, int) and not isinstance(threads, bool)
+    if threads is None or (is_whole_number and threads == 1):
         return 1
-    if not whole or not 1 <= threads <= most_threads():
+    if not is_whole_number or not 1 <= threads <= most_threads():
         raise ArgumentError(
             f"threads = {threads!r}: expected a number from 1 to {most_threads()}, the cores that numba may use; more "
             "by NUMBA_NUM_THREADS, set before Python starts"
@@ -50,12 +50,12 @@ def several_threads(threads: int | None = None) -> Iterator[bool]:
         return
     try:
         numba = load_numba()
-        before = numba.get_num_threads()
+        previous_count = numba.get_num_threads()
         numba.set_num_threads(count)
         try:
             yield True
         finally:
-            numba.set_num_threads(before)
+            numba.set_num_threads(previous_count)
     finally:
         _ONE_RUN.release()
 

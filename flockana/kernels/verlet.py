@@ -41,15 +41,15 @@ def later_agents(start, rows, cell):
     """Return an upper bound of the number of agents listed with one agent of a cell."""
     count = np.int64(start[cell + 2] - start[cell])
     for row in range(rows.size):
-        there = np.int64(cell) + np.int64(rows[row])
-        count += np.int64(start[there + 2] - start[there - 1])
+        neighbour_cell = np.int64(cell) + np.int64(rows[row])
+        count += np.int64(start[neighbour_cell + 2] - start[neighbour_cell - 1])
     return count
 
 
 @register_jitable
 def list_cells(x, grid, limit, cells, lists, count):
     """List the pairs of agents in some cells from an index on; return the end index, or an overflow code."""
-    (order, start, rows), (first, second), m = grid, lists, x.shape[1]
+    (order, start, rows), (first_agents, second_agents), m = grid, lists, x.shape[1]
     for cell in range(cells[0], cells[1]):
         begin, end = start[cell], start[cell + 1]
         if begin == end:
@@ -58,20 +58,20 @@ def list_cells(x, grid, limit, cells, lists, count):
         if rows.size > 0 and count + candidates * np.int64(end - begin) > MOST:  # cells as wide as the reach
             return CROWDED
         for i in range(begin, end):
-            if count + candidates > first.size:
+            if count + candidates > first_agents.size:
                 return CROWDED if count + candidates > MOST else -(count + candidates + 2)
             for row in range(-1, np.int64(rows.size)):
                 low, high = i + np.uint64(1), start[cell + 2]
                 if row >= 0:
-                    there = np.int64(cell) + np.int64(rows[row])
-                    low, high = start[there - 1], start[there + 2]
+                    neighbour_cell = np.int64(cell) + np.int64(rows[row])
+                    low, high = start[neighbour_cell - 1], start[neighbour_cell + 2]
                 for j in range(low, high):
-                    square = 0.0
+                    squared_value = 0.0
                     for c in range(m):
                         gap = x[j, c] - x[i, c]
-                        square += gap * gap
-                    first[count], second[count] = order[i], order[j]
-                    count += square < limit
+                        squared_value += gap * gap
+                    first_agents[count], second_agents[count] = order[i], order[j]
+                    count += squared_value < limit
     return count
 
 
@@ -102,11 +102,11 @@ def covers(pairs, q, within):
     Only where the first does not do is the second asked: a flock drawn together by its target.
     """
     reference, m = pairs.places, q.shape[1]
-    for stretched in range(2 if pairs.reach[0] > 0.0 else 0):
-        square, nearest = 0.0, np.inf
+    for stretch_axis in range(2 if pairs.reach[0] > 0.0 else 0):
+        squared_value, nearest = 0.0, np.inf
         for c in range(0, m, 2):  # two coordinates at once: they lie side by side
             d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
-            if stretched:
+            if stretch_axis:
                 along_c, along_d = slope_along(reference, q, c, 1.0), slope_along(reference, q, d, 1.0)
             low_c = high_c = q[0, c] - along_c * reference[0, c]
             low_d = high_d = q[0, d] - along_d * reference[0, d]
@@ -114,9 +114,9 @@ def covers(pairs, q, within):
                 way_c, way_d = q[i, c] - along_c * reference[i, c], q[i, d] - along_d * reference[i, d]
                 low_c, high_c = way_c if way_c < low_c else low_c, way_c if way_c > high_c else high_c
                 low_d, high_d = way_d if way_d < low_d else low_d, way_d if way_d > high_d else high_d
-            square += (high_c - low_c) ** 2 + ((high_d - low_d) ** 2 if d > c else 0.0)
+            squared_value += (high_c - low_c) ** 2 + ((high_d - low_d) ** 2 if d > c else 0.0)
             nearest = min(nearest, min(along_c, along_d))
-        if np.sqrt(square) <= nearest * pairs.reach[0] - within:
+        if np.sqrt(squared_value) <= nearest * pairs.reach[0] - within:
             return True
     return False
 
@@ -143,13 +143,13 @@ def listed_anew(q, reach, pairs):
 
 def no_pairs(n: int, m: int) -> Pairs:
     """Return an empty list of pairs, to be filled later."""
-    first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return Pairs(first, second, np.empty((n, m)), np.zeros(1), empty_cuts(n), np.zeros(2, np.int64))
+    first_agents, second_agents = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
+    return Pairs(first_agents, second_agents, np.empty((n, m)), np.zeros(1), empty_cuts(n), np.zeros(2, np.int64))
 
 
 def with_room(pairs: Pairs) -> Pairs | None:
     """Return an empty list with the lacking room, or twice the room; None if the last list sufficed."""
-    if (lacking := -int(pairs.counts[COUNT])) <= -CROWDED:
+    if (missing_names := -int(pairs.counts[COUNT])) <= -CROWDED:
         return None
-    room = max(lacking, 2 * pairs.first.size)
-    return pairs._replace(first=np.empty(room, np.uint32), second=np.empty(room, np.uint32))
+    workspace = max(missing_names, 2 * pairs.first.size)
+    return pairs._replace(first=np.empty(workspace, np.uint32), second=np.empty(workspace, np.uint32))

@@ -19,10 +19,10 @@ def _exchange(i, j, x, v, gain, r2, par, u):
         return 0.0
     a = weight(s2, par)
     for c in range(x.shape[1]):
-        slip = v[j, c] - v[i, c]
-        u[i, c] += gain * a * slip
-        u[j, c] -= gain * a * slip
-        slip2 += slip * slip
+        velocity_difference = v[j, c] - v[i, c]
+        u[i, c] += gain * a * velocity_difference
+        u[j, c] -= gain * a * velocity_difference
+        slip2 += velocity_difference * velocity_difference
     return a * slip2
 
 

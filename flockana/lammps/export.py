@@ -113,10 +113,10 @@ def export_lammps(
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)
     checks.ensure_known("choice of consensus", consensus, CONSENSUS)
-    first = _first_distance(term, q0, inner)
+    first_index = _first_distance(term, q0, inner)
     start, end = checks.ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)
-    table = pair_table(term, points, first)
+    table = pair_table(term, points, first_index)
     result = script.translated(law, q0.shape[1], table, nearest=consensus == "nearest")
     title = f"{len(q0)} agents of {law.title}, t = {start:g} to {end:g}"
     texts = {
@@ -130,24 +130,24 @@ def export_lammps(
     except OSError as error:
         raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
     files = tuple(write_atomic(folder / name, text, remedy="choose another folder") for name, text in texts.items())
-    exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
+    exact, near_terms, missing = (tuple(item) for item in (result.exact, result.near, result.missing))
     errors = table.force_error, table.energy_error
-    return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)
+    return LammpsExport(folder, files, *errors, exact, near_terms, missing, clock.dt, clock.steps)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
     """Return the continuous law and its pair term, or raise."""
     ensure_law(law)
-    continuous = law.continuous
-    term = None if continuous is None else continuous.term(PairTerm)
-    if continuous is None or term is None:
+    continuous_law = law.continuous
+    term = None if continuous_law is None else continuous_law.term(PairTerm)
+    if continuous_law is None or term is None:
         raise ArgumentError(
             f"{law.title} has no pair term for LAMMPS to tabulate: expected a sum of terms with one, such as "
             "Algorithm1, Algorithm2 or DeadZoneFlocking"
         )
     if not np.isfinite(term.pair.range):
         raise ArgumentError(f"the pair law reaches to {term.pair.range}: expected a finite range, where a table ends")
-    return continuous, term
+    return continuous_law, term
 
 
 def _count(name: str, value: Any, least: int, most: int) -> int:
@@ -175,8 +175,8 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {law.title} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else checks.ensure_positive("dt", dt)
-    every = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
-    return script.Clock(start, (end - start) / (samples * every), samples * every, every)
+    stride = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
+    return script.Clock(start, (end - start) / (samples * stride), samples * stride, stride)
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:

@@ -46,8 +46,8 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
         if isinstance(term, PairTerm):
             result.exact.append(f"pair forces: a table, off by at most {table.force_error:.2g}")
             if table.jumps:
-                places = ", ".join(f"{x:g}" for x in table.jumps)
-                result.near.append(f"jumps of the force at {places}: over one interval")
+                jump_text = ", ".join(f"{x:g}" for x in table.jumps)
+                result.near.append(f"jumps of the force at {jump_text}: over one interval")
             _translate_consensus(term, m, result, nearest=nearest)
         elif isinstance(term, Navigation):
             commands = pull_commands(term)
@@ -107,11 +107,11 @@ def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
     if m == 1:
         low[1], high[1] = -reach, reach
     box = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for a, b, x in zip(low.tolist(), high.tolist(), AXES, strict=True))
-    rows = [[" ".join(map(repr, x + [0.0] * (3 - m))) for x in each.tolist()] for each in (q, p)]
-    places = "".join(f"{k} 1 {row}\n" for k, row in enumerate(rows[0], 1))
+    rows = [[" ".join(map(repr, x + [0.0] * (3 - m))) for x in item.tolist()] for item in (q, p)]
+    position_rows = "".join(f"{k} 1 {row}\n" for k, row in enumerate(rows[0], 1))
     speeds = "".join(f"{k} {row}\n" for k, row in enumerate(rows[1], 1))
     header = f"{title}\n\n{n} atoms\n1 atom types\n\n{box}\n"
-    return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{places}\nVelocities\n\n{speeds}"
+    return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{position_rows}\nVelocities\n\n{speeds}"
 
 
 def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Translation) -> str:

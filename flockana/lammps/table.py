@@ -48,23 +48,23 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
     shares = np.array(_WITHIN)[:, None]
     between = np.sqrt(s2[:-1] + shares * np.diff(s2))
     exact_energy, exact_force = (x.reshape(between.shape) for x in energy_and_force(term, between.ravel()))
-    over = force / r
-    read_force = (over[:-1] + shares * np.diff(over)) * between
+    force_ratio = force / r
+    read_force = (force_ratio[:-1] + shares * np.diff(force_ratio)) * between
     read_energy = energy[:-1] + shares * np.diff(energy)
-    beside = np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
+    side_state = np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
     large = _JUMP * float(np.abs(force).max())
-    inside = [x for x in term.pair.surfaces if inner < x < outer]
-    jumps = tuple(x for x in inside if abs(np.diff(energy_and_force(term, x * beside)[1])[0]) > large)
-    smooth = np.ones(points - 1, bool)
-    smooth[np.searchsorted(r, jumps) - 1] = False
-    off = [np.abs(a - b)[:, smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
-    return PairTable(r, energy, force, float(off[0]), float(off[1]), jumps)
+    inner_surfaces = [x for x in term.pair.surfaces if inner < x < outer]
+    jumps = tuple(x for x in inner_surfaces if abs(np.diff(energy_and_force(term, x * side_state)[1])[0]) > large)
+    is_smooth = np.ones(points - 1, bool)
+    is_smooth[np.searchsorted(r, jumps) - 1] = False
+    deviation = [np.abs(a - b)[:, is_smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
+    return PairTable(r, energy, force, float(deviation[0]), float(deviation[1]), jumps)
 
 
 def inner_cutoff(term: PairTerm) -> float:
     """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular."""
-    bounded = bool(np.isfinite(term.pair.energy(np.zeros(1))).all())
-    return _INNER * term.pair.range if bounded else _INNER_SINGULAR * term.pair.length
+    is_bounded = bool(np.isfinite(term.pair.energy(np.zeros(1))).all())
+    return _INNER * term.pair.range if is_bounded else _INNER_SINGULAR * term.pair.length
 
 
 def energy_and_force(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -82,9 +82,9 @@ def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
 def _pull_and_adjacency(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return (φ ‖n_ij‖, a_ij) at each distance, from many separate pairs."""
     n, reach = len(r), term.pair.range
-    below = np.minimum(r, np.nextafter(reach, 0.0))  # at the range itself the limit from within
+    inner_distances = np.minimum(r, np.nextafter(reach, 0.0))  # at the range itself the limit from within
     q, p = np.zeros((2 * n, 2)), np.zeros((2 * n, 2))
     q[:, 1] = np.repeat(3.0 * reach * np.arange(n), 2)
-    q[1::2, 0], p[1::2, 1] = below, 1.0
+    q[1::2, 0], p[1::2, 1] = inner_distances, 1.0
     u, _ = term.pair.forces(q, p, stiffness=1.0, damping=1.0)
     return u[::2, 0], u[::2, 1]

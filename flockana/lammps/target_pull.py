@@ -41,10 +41,10 @@ def _turning(target: SineTarget | CircleTarget) -> tuple[str, str]:
 
 
 def _rescaled(target: RescaledVelocity) -> Formulas | None:
-    inner, true = path(target.target), target.target
-    if inner is None or isinstance(true, StaticTarget):  # whose p_r need not be its rate, which is 0
+    inner, given_target = path(target.target), target.target
+    if inner is None or isinstance(given_target, StaticTarget):  # whose p_r need not be its rate, which is 0
         return None if inner is None else tuple((q, "0.0") for q, _ in inner)
-    if isinstance(true, RescaledVelocity):
+    if isinstance(given_target, RescaledVelocity):
         return None
     return tuple((q, f"{_number(target.factor)}*({p})") for q, p in inner)
 
@@ -67,13 +67,13 @@ def pull_commands(term: Navigation) -> list[str] | None:
     lines = []
     for axis, (q, p) in zip(axes, formulas, strict=True):
         lines += [f"variable target_{axis} equal {q}", f"variable target_v{axis} equal {p}"]
-    bend = ""
+    saturation_text = ""
     if term.unit is not None:
         squares = "+".join(f"({axis}-v_target_{axis})^2" for axis in axes)
         lines.append(f'variable bend atom "sqrt(1.0+({squares})/{term.unit!r}^2)"')
-        bend = "/v_bend"
+        saturation_text = "/v_bend"
     k, c = repr(float(gains.c1_gamma)), repr(float(gains.c2_gamma))
     for axis in axes:
-        lines.append(f'variable pull_{axis} atom "-{k}*({axis}-v_target_{axis}){bend}+{c}*v_target_v{axis}"')
+        lines.append(f'variable pull_{axis} atom "-{k}*({axis}-v_target_{axis}){saturation_text}+{c}*v_target_v{axis}"')
     forces = " ".join([f"v_pull_{axis}" for axis in axes] + ["0.0"] * (3 - len(axes)))
     return [*lines, f"fix drag all viscous {c}", f"fix pull all addforce {forces}"]

@@ -48,8 +48,8 @@ def max_ratio(name: str) -> float:
 
 def _ensure_fits(n: int, m: int) -> None:
     """Raise before a lattice is built that does not fit into memory."""
-    what = f"a lattice of {format_value(n)} agents, with what its making takes,"
-    ensure_fits(what, (_WORK, n, m), "ask for fewer agents")
+    lattice_text = f"a lattice of {format_value(n)} agents, with what its making takes,"
+    ensure_fits(lattice_text, (_WORK, n, m), "ask for fewer agents")
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:

@@ -55,8 +55,8 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
     0.5
     """
     q, d = ensure_points("q", q), ensure_positive("d", d)
-    lengths = link_lengths(q, links(q, r))
-    return float(np.abs(lengths - d).max()) if lengths.size else float("nan")
+    distances = link_lengths(q, links(q, r))
+    return float(np.abs(distances - d).max()) if distances.size else float("nan")
 
 
 def strain(q: Any, d: float, r: float) -> float:

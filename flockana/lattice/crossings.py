@@ -90,8 +90,8 @@ def _close_links(x: FloatArray, links: LinkArray, reach: float) -> Iterator[tupl
     """Yield arrays (a, b), a < b, of links whose boxes, projected along the third axis, are within reach."""
     import shapely
 
-    ends, slack = x[links, :2], 0.5 * reach * (1.0 + 1e-9)
-    boxes = shapely.box(*(ends.min(axis=1) - slack).T, *(ends.max(axis=1) + slack).T)
+    link_ends, slack = x[links, :2], 0.5 * reach * (1.0 + 1e-9)
+    boxes = shapely.box(*(link_ends.min(axis=1) - slack).T, *(link_ends.max(axis=1) + slack).T)
     tree, begin, step = shapely.STRtree(boxes), 0, 1
     while begin < len(links):
         a, b = tree.query(boxes[begin : begin + step])
@@ -102,9 +102,9 @@ def _close_links(x: FloatArray, links: LinkArray, reach: float) -> Iterator[tupl
 
 def _squarable(q: FloatArray) -> FloatArray:
     """Return positions scaled by a power of two so that no difference overflows."""
-    scaled, _, unit = scaled_near_one(q)
-    if (scaled * unit == q).all():
-        return scaled
+    scaled_positions, _, unit = scaled_near_one(q)
+    if (scaled_positions * unit == q).all():
+        return scaled_positions
     if np.abs(q).max() < _FARTHEST:  # products that underflow or overflow are left to whole numbers
         return q
     raise ArgumentError(
@@ -124,27 +124,27 @@ class _Exact:
         """Return the position of agent i as whole numbers, padded to three coordinates."""
         if i not in self._known:
             parts = [float(v).as_integer_ratio() for v in self._q[i]]
-            whole = [(over << self._shift) // under for over, under in parts]
-            self._known[i] = tuple(whole + [0] * (3 - self._m))
+            full_matrix = [(dividend << self._shift) // divisor for dividend, divisor in parts]
+            self._known[i] = tuple(full_matrix + [0] * (3 - self._m))
         return self._known[i]
 
     def cross(self, a: int, b: int) -> bool:
         (i, j), (g, h) = ((int(v) for v in self._links[e]) for e in (a, b))
         if i in (g, h) or j in (g, h):
-            shared = i if i in (g, h) else j
-            return _overlap(*(self.point(v) for v in (shared, i + j - shared, g + h - shared)))
+            shared_agent = i if i in (g, h) else j
+            return _overlap(*(self.point(v) for v in (shared_agent, i + j - shared_agent, g + h - shared_agent)))
         return _meet_in_space(*(self.point(v) for v in (i, j, g, h)))
 
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
     """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly."""
-    near = _squarable(q)
-    a, b = near[first] - near[centre], near[second] - near[centre]
+    scaled_positions = _squarable(q)
+    a, b = scaled_positions[first] - scaled_positions[centre], scaled_positions[second] - scaled_positions[centre]
     left, right = a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]
     turns = left > right
     exact = _Exact(q, np.empty((0, 2), dtype=np.int32))
-    open_ = np.abs(left - right) <= _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(left) + np.abs(right))
-    for k in np.flatnonzero(open_ | ~np.isfinite(left - right)):
+    is_open = np.abs(left - right) <= _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(left) + np.abs(right))
+    for k in np.flatnonzero(is_open | ~np.isfinite(left - right)):
         c, i, j = (exact.point(int(agents[k])) for agents in (centre, first, second))
         turns[k] = _turn(i, j, c, 0, 1) > 0
     return turns
@@ -214,12 +214,12 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     """
     q = ensure_points("q", q)
     links, reach = ensure_links(links, len(q)), ensure_positive("reach", reach)
-    touching = crossings(q, links, limit=1)
-    if len(touching):
-        return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
-    near, (within,), unit = scaled_near_one(q, reach)
-    x, best = _padded(near), None
-    for a, b in _close_links(x, links, within):
-        within, k = for_little(nearest_links, 8 * a.size)(x, thawed(links), a, b, q.shape[1] < 3, within)
-        best = best if k < 0 else (int(a[k]), int(b[k]))
-    return Separation(within * unit, best)
+    first_crossing = crossings(q, links, limit=1)
+    if len(first_crossing):
+        return Separation(0.0, (int(first_crossing[0, 0]), int(first_crossing[0, 1])))
+    scaled_positions, (scaled_reach,), unit = scaled_near_one(q, reach)
+    x, best_pair = _padded(scaled_positions), None
+    for a, b in _close_links(x, links, scaled_reach):
+        scaled_reach, k = for_little(nearest_links, 8 * a.size)(x, thawed(links), a, b, q.shape[1] < 3, scaled_reach)
+        best_pair = best_pair if k < 0 else (int(a[k]), int(b[k]))
+    return Separation(scaled_reach * unit, best_pair)

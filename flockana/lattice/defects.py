@@ -53,8 +53,8 @@ class Defects:
     @property
     def counts(self) -> dict[int, int]:
         """Return the numbers of interior agents with 3, 4, 5 … neighbours."""
-        sizes, numbers = np.unique(self.coordination[self.interior], return_counts=True)
-        return {int(k): int(v) for k, v in zip(sizes, numbers, strict=True)}
+        counts, agent_counts = np.unique(self.coordination[self.interior], return_counts=True)
+        return {int(k): int(v) for k, v in zip(counts, agent_counts, strict=True)}
 
 
 def defects(q: Any, links: Any) -> Defects:
@@ -82,18 +82,18 @@ def defects(q: Any, links: Any) -> Defects:
 
 def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray[np.bool_]:
     n = len(q)
-    centre, other = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
-    near = scaled_near_one(q)[0]
-    step = near[other] - near[centre]
+    centre, neighbour = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
+    scaled_positions = scaled_near_one(q)[0]
+    step = scaled_positions[neighbour] - scaled_positions[centre]
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))
-    centre, other = centre[order], other[order]
-    first = np.cumsum(count) - count
-    slot = np.arange(len(centre)) - first[centre]
-    following = first[centre] + (slot + 1) % np.maximum(count[centre], 1)
-    codes = np.sort(centre * n + other)
-    sought = other * n + other[following]
-    place = np.minimum(np.searchsorted(codes, sought), max(len(codes) - 1, 0))
-    closed = codes[place] == sought
-    closed[closed] = turns_left(q, centre[closed], other[closed], other[following][closed])
-    return (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
+    centre, neighbour = centre[order], neighbour[order]
+    first_term = np.cumsum(count) - count
+    slot_numbers = np.arange(len(centre)) - first_term[centre]
+    next_positions = first_term[centre] + (slot_numbers + 1) % np.maximum(count[centre], 1)
+    codes = np.sort(centre * n + neighbour)
+    sought_codes = neighbour * n + neighbour[next_positions]
+    code_position = np.minimum(np.searchsorted(codes, sought_codes), max(len(codes) - 1, 0))
+    is_closed = codes[code_position] == sought_codes
+    is_closed[is_closed] = turns_left(q, centre[is_closed], neighbour[is_closed], neighbour[next_positions][is_closed])
+    return (np.bincount(centre[is_closed], minlength=n) == count) & (count >= 3)

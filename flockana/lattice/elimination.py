@@ -42,22 +42,22 @@ class Elimination:
         n, m = q.shape
         depth = int(np.ceil(np.log2(max(n / _LEAF, 1.0))))
         nodes = list(_bottom_up(1, 2**depth))
-        turn = np.zeros(2 ** (depth + 1), dtype=np.int64)
-        turn[nodes] = np.arange(len(nodes))
-        turns = turn[_dissected(matrix, q, depth)]
+        elimination_order = np.zeros(2 ** (depth + 1), dtype=np.int64)
+        elimination_order[nodes] = np.arange(len(nodes))
+        turns = elimination_order[_dissected(matrix, q, depth)]
         self._order = (m * np.argsort(turns, kind="stable")[:, None] + np.arange(m)).ravel()
         self._matrix = matrix.tocsr()[self._order][:, self._order].tocsr()
         self._largest = float(abs(self._matrix).max())
         self._least, self._definite, self._place = least, definite, np.zeros(n * m, dtype=np.int64)
         self.negative, self._fronts = 0, list[_Front]()
-        waiting: list[tuple[Indices, FloatArray]] = []  # what the last fronts left on their boundaries
-        ends = m * np.cumsum(np.bincount(turns, minlength=len(nodes)))
-        for node, start, end in zip(nodes, [0, *ends[:-1].tolist()], ends.tolist(), strict=True):
-            below = [waiting.pop(), waiting.pop()] if node < 2**depth else []
-            front, left = self._eliminated(start, end, below)
-            waiting.append((front.boundary, left))
+        waiting_blocks: list[tuple[Indices, FloatArray]] = []  # what the last fronts left on their boundaries
+        block_ends = m * np.cumsum(np.bincount(turns, minlength=len(nodes)))
+        for node, start, end in zip(nodes, [0, *block_ends[:-1].tolist()], block_ends.tolist(), strict=True):
+            child_blocks = [waiting_blocks.pop(), waiting_blocks.pop()] if node < 2**depth else []
+            front_matrix, left = self._eliminated(start, end, child_blocks)
+            waiting_blocks.append((front_matrix.boundary, left))
             if keep:
-                self._fronts.append(front)
+                self._fronts.append(front_matrix)
 
     def solve(self, b: FloatArray) -> FloatArray:
         """Return A⁻¹ b for a vector, or for the columns of a matrix."""
@@ -78,18 +78,18 @@ class Elimination:
         begin, stop = self._matrix.indptr[start], self._matrix.indptr[end]
         columns, values = self._matrix.indices[begin:stop], self._matrix.data[begin:stop]
         rows = np.repeat(np.arange(end - start), np.diff(self._matrix.indptr[start : end + 1]))
-        later = columns >= start
-        columns, values, rows = columns[later], values[later], rows[later]
-        touched = np.concatenate([columns[columns >= end], *(at[at >= end] for at, _ in below)])
-        boundary = np.unique(touched).astype(np.int64)
-        own_size, size = end - start, end - start + boundary.size
+        is_later = columns >= start
+        columns, values, rows = columns[is_later], values[is_later], rows[is_later]
+        touched_columns = np.concatenate([columns[columns >= end], *(at[at >= end] for at, _ in below)])
+        boundary = np.unique(touched_columns).astype(np.int64)
+        own_size, front_size = end - start, end - start + boundary.size
         self._place[start:end] = np.arange(own_size)
-        self._place[boundary] = np.arange(own_size, size)
-        front = np.zeros((size, size))
+        self._place[boundary] = np.arange(own_size, front_size)
+        front = np.zeros((front_size, front_size))
         front[rows, self._place[columns]] = values
-        for at, rest in below:
+        for at, remaining_block in below:
             here = self._place[at]
-            front[here[:, None], here] += rest
+            front[here[:, None], here] += remaining_block
         largest = float(np.abs(front).max(initial=0.0))
         if self._least is None and largest > _GROWN * self._largest:
             growth = largest / self._largest
@@ -105,18 +105,18 @@ class Elimination:
 
         if not len(block):
             return block, None
-        factor, failed = dpotrf(block, lower=1)
-        if not failed and (self._least is None or factor.diagonal().min() ** 2 > self._least):
+        factor, failure_code = dpotrf(block, lower=1)
+        if not failure_code and (self._least is None or factor.diagonal().min() ** 2 > self._least):
             return dtrtri(factor, lower=1)[0], None
         if self._definite:
             raise SolverError("the matrix is not positive definite")
-        sizes, vectors = np.linalg.eigh(block)
-        self.negative += int(np.sum(sizes < 0.0))
+        magnitudes, vectors = np.linalg.eigh(block)
+        self.negative += int(np.sum(magnitudes < 0.0))
         if self._least is not None:
-            return (vectors / np.sqrt(np.maximum(np.abs(sizes), self._least))).T, None
-        if np.abs(sizes).min() <= _ZERO * largest:
+            return (vectors / np.sqrt(np.maximum(np.abs(magnitudes), self._least))).T, None
+        if np.abs(magnitudes).min() <= _ZERO * largest:
             raise SolverError("the sparse elimination met a pivot that is zero to rounding: its sign is undetermined")
-        return (vectors / np.sqrt(np.abs(sizes))).T, np.sign(sizes)
+        return (vectors / np.sqrt(np.abs(magnitudes))).T, np.sign(magnitudes)
 
 
 def _bottom_up(node: int, leaves: int) -> Iterator[int]:
@@ -138,15 +138,15 @@ def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
         low, high = np.full((2**level, m), np.inf), np.full((2**level, m), -np.inf)
         np.minimum.at(low, part, q[live])
         np.maximum.at(high, part, q[live])
-        along = q[live, np.argmax(high - low, axis=1)[part]]
+        cut_coordinates = q[live, np.argmax(high - low, axis=1)[part]]
         count = np.bincount(part, minlength=2**level)
         rank = np.empty(live.size, dtype=np.int64)
-        rank[np.lexsort((along, part))] = np.arange(live.size) - np.repeat(np.cumsum(count) - count, count)
+        rank[np.lexsort((cut_coordinates, part))] = np.arange(live.size) - np.repeat(np.cumsum(count) - count, count)
         node[live] = 2 * node[live] + (2 * rank >= count[part])
-        parted = node[i] != node[j]
-        node[np.where(node[i] % 2, i, j)[parted]] //= 2
-        inside = (node[i] >= 2 ** (level + 1)) & (node[j] >= 2 ** (level + 1))
-        i, j = i[inside], j[inside]
+        is_split = node[i] != node[j]
+        node[np.where(node[i] % 2, i, j)[is_split]] //= 2
+        in_subtree = (node[i] >= 2 ** (level + 1)) & (node[j] >= 2 ** (level + 1))
+        i, j = i[in_subtree], j[in_subtree]
     return node
 
 
@@ -156,6 +156,6 @@ def _agents_linked(matrix: Any, m: int) -> tuple[Indices, Indices]:
 
     entries, n = matrix.tocoo(), matrix.shape[0] // m
     pattern = coo_array((np.ones(entries.nnz, dtype=bool), (entries.row // m, entries.col // m)), shape=(n, n))
-    once = pattern.tocsr().tocoo()
-    upper = once.row < once.col
-    return once.row[upper].astype(np.int64), once.col[upper].astype(np.int64)
+    unique_entries = pattern.tocsr().tocoo()
+    upper = unique_entries.row < unique_entries.col
+    return unique_entries.row[upper].astype(np.int64), unique_entries.col[upper].astype(np.int64)

@@ -111,21 +111,21 @@ def kuratowski(n: int, links: Any) -> Kuratowski | None:
     ('K3,3', (0, 1, 2, 3, 4, 5))
     """
     n = ensure_count("n", n)
-    rest = _distinct(n, links)
-    if _planar(n, rest):
+    remaining_links = _distinct(n, links)
+    if _planar(n, remaining_links):
         return None
-    size = len(rest)
-    while size >= 1:
-        size = min(size, len(rest))
+    dimension = len(remaining_links)
+    while dimension >= 1:
+        dimension = min(dimension, len(remaining_links))
         start = 0
-        while start < len(rest):
-            fewer = np.delete(rest, slice(start, start + size), axis=0)
-            if _planar(n, fewer):
-                start += size
+        while start < len(remaining_links):
+            fewer_links = np.delete(remaining_links, slice(start, start + dimension), axis=0)
+            if _planar(n, fewer_links):
+                start += dimension
             else:
-                rest = fewer
-        size //= 2
-    return _name(rest)
+                remaining_links = fewer_links
+        dimension //= 2
+    return _name(remaining_links)
 
 
 def _name(links: LinkArray) -> Kuratowski:
@@ -137,8 +137,8 @@ def _name(links: LinkArray) -> Kuratowski:
         return Kuratowski("K5", tuple(corners), links)
     graph = networkx.Graph(links.tolist())
     paths = networkx.node_connected_component(graph.subgraph({*graph} - {*corners[1:]}), corners[0])
-    ends = networkx.node_boundary(graph, paths)  # corners that paths from the first one reach
-    return Kuratowski("K3,3", (*(v for v in corners if v not in ends), *sorted(ends)), links)
+    corner_nodes = networkx.node_boundary(graph, paths)  # corners that paths from the first one reach
+    return Kuratowski("K3,3", (*(v for v in corners if v not in corner_nodes), *sorted(corner_nodes)), links)
 
 
 def _distinct(n: int, links: Any) -> LinkArray:

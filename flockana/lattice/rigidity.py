@@ -72,8 +72,8 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     links = ensure_links(links, len(q))
     m = q.shape[1]
     step = q[links[:, 1]] - q[links[:, 0]]
-    length = np.linalg.norm(step, axis=1, keepdims=True)
-    direction = np.divide(step, length, out=np.zeros_like(step), where=length > 0.0)
+    distance = np.linalg.norm(step, axis=1, keepdims=True)
+    direction = np.divide(step, distance, out=np.zeros_like(step), where=distance > 0.0)
     columns = (m * links[:, :, None].astype(np.int64) + np.arange(m)).reshape(len(links), 2 * m)
     data = np.concatenate([-direction, direction], axis=1)
     starts = np.arange(len(links) + 1) * 2 * m
@@ -112,24 +112,24 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     if dense is None:
         dense = q.size <= DENSE_MAX
     rigid = rigid_motion_count(q)
-    below, soft = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7), q, rigid)
+    below, soft_text = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7), q, rigid)
     rank = q.size - below
-    return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft)
+    return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft_text)
 
 
 def rigid_motion_count(q: FloatArray) -> int:
     """Return the number of independent infinitesimal translations and rotations of a configuration."""
     m = int(q.shape[1])
     sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
-    flat = m - int(np.sum(sizes > 1e-9 * max(sizes[0], np.abs(q).max(initial=0.0) * 1e-6)))
-    return m + m * (m - 1) // 2 - flat * (flat - 1) // 2
+    flat_dimensions = m - int(np.sum(sizes > 1e-9 * max(sizes[0], np.abs(q).max(initial=0.0) * 1e-6)))
+    return m + m * (m - 1) // 2 - flat_dimensions * (flat_dimensions - 1) // 2
 
 
 def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
-    singular = np.linalg.svd(matrix.toarray(), compute_uv=False)
-    sizes = np.pad(singular, (0, matrix.shape[1] - len(singular)))
-    zero, more = (int(np.sum(sizes <= factor * tol * sizes[0])) for factor in (1.0, 10.0))
-    return zero, more - zero
+    singular_values = np.linalg.svd(matrix.toarray(), compute_uv=False)
+    counts = np.pad(singular_values, (0, matrix.shape[1] - len(singular_values)))
+    zero, zero_counts = (int(np.sum(counts <= factor * tol * counts[0])) for factor in (1.0, 10.0))
+    return zero, zero_counts - zero
 
 
 def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tuple[int, int]:
@@ -137,10 +137,10 @@ def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tup
     largest = float(abs(gram).sum(axis=0).max())  # at least σ_max², on a lattice at most about twice that
     if largest == 0.0:
         return matrix.shape[1], 0
-    more = eigenvalues_below(gram, (10.0 * tol) ** 2 * largest, q)
+    doubtful_count = eigenvalues_below(gram, (10.0 * tol) ** 2 * largest, q)
     # rigid motions stretch nothing: if there is no other below the larger threshold, there is none below the smaller
-    zero = rigid if more == rigid else eigenvalues_below(gram, tol**2 * largest, q)
-    return zero, more - zero
+    zero = rigid if doubtful_count == rigid else eigenvalues_below(gram, tol**2 * largest, q)
+    return zero, doubtful_count - zero
 
 
 def eigenvalues_below(gram: Any, shift: float, q: FloatArray) -> int:

@@ -88,10 +88,10 @@ class Composition(GainedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"unit": (1, 0), "thrust": (0, -1), "brake": (-2, 1)}
 
     def __post_init__(self) -> None:
-        none = type(None)
-        checks.ensure_kind("alpha", self.alpha, (PairInteraction, none), PAIR)
-        checks.ensure_kind("net", self.net, (PairInteraction, Weight, none), PAIR)
-        checks.ensure_kind("target", self.target, (Target, none), TARGET)
+        none_type = type(None)
+        checks.ensure_kind("alpha", self.alpha, (PairInteraction, none_type), PAIR)
+        checks.ensure_kind("net", self.net, (PairInteraction, Weight, none_type), PAIR)
+        checks.ensure_kind("target", self.target, (Target, none_type), TARGET)
         ensure_gains(self)
         checks.ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
@@ -118,11 +118,11 @@ class Composition(GainedLaw):
         law = self.alpha or self.net
         if law is None or isinstance(law, Weight):
             return None
-        lengths = alpha_scales(
+        length_scales = alpha_scales(
             law, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull)
         )
         is_used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
-        return Scales(lengths.length, 1.0 / abs(self.thrust)) if not is_used and self.thrust else lengths
+        return Scales(length_scales.length, 1.0 / abs(self.thrust)) if not is_used and self.thrust else length_scales
 
     @property
     def _pull(self) -> tuple[Any, Any]:
@@ -149,8 +149,8 @@ class Composition(GainedLaw):
         # The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
         # nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given
         # frame.
-        gains, net, tied = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
-        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=tied)
+        gains, net, has_obstacles = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
+        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=has_obstacles)
         moving = pull is not None and pull.moving
         terms: list[Term] = []
         if self.alpha is not None:
@@ -177,8 +177,8 @@ class Composition(GainedLaw):
             Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
         """
         q, p = checks.ensure_state(q, p)
-        free = self.target is None and not self.obstacles and self.brake == 0.0
-        return self.hamiltonian(0.0, q, moving_frame(p) if free else p)
+        is_free = self.target is None and not self.obstacles and self.brake == 0.0
+        return self.hamiltonian(0.0, q, moving_frame(p) if is_free else p)
 
 
 def compose(
@@ -319,8 +319,8 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
     n = checks.ensure_count("agents", agents)
     members = {checks.ensure_index("informed has", i, n) for i in informed}
-    common = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
-    return tuple(common if i in members else 0.0 for i in range(n))
+    common_motion = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    return tuple(common_motion if i in members else 0.0 for i in range(n))
 
 
 def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:
@@ -336,9 +336,9 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
 
 def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
     """Return the coefficients (α − c, β) of drag and speed control along the velocity."""
-    thrust, brake = 0.0, 0.0
+    thrust_gain, brake_gain = 0.0, 0.0
     if speed is not None:
         if not isinstance(speed, tuple | list) or len(speed) != 2:
             raise ArgumentError(f"speed = {speed!r}: expected (α, β), as in (1.0, 0.25) for a speed of 2")
-        thrust, brake = (checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
-    return thrust - (0.0 if drag is None else checks.ensure_nonnegative("drag", drag)), brake
+        thrust_gain, brake_gain = (checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
+    return thrust_gain - (0.0 if drag is None else checks.ensure_nonnegative("drag", drag)), brake_gain

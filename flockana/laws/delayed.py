@@ -99,13 +99,13 @@ class Delayed(Wrapper):
     def _past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return positions, velocities and accelerations, (K, n, m), at times before the start."""
         if self.history_t is None:
-            still = np.zeros((len(back), *q.shape))
-            return q + back[:, None, None] * p, still + p, still
+            zero_velocity = np.zeros((len(back), *q.shape))
+            return q + back[:, None, None] * p, zero_velocity + p, zero_velocity
         from scipy.interpolate import CubicSpline
 
-        t, places = np.append(self.history_t, 0.0), np.append(self.history_q, q[None], axis=0)
+        t, positions = np.append(self.history_t, 0.0), np.append(self.history_q, q[None], axis=0)
         end: Any = (1, p) if first_order(self.law) is None else "not-a-knot"  # whose velocity may jump at the start
-        path: Any = CubicSpline(t, places, bc_type=((2, np.zeros_like(q)), end))
+        path: Any = CubicSpline(t, positions, bc_type=((2, np.zeros_like(q)), end))
         at = np.maximum(back, t[0])
         return path(at), path(at, 1), path(at, 2)
 
@@ -137,10 +137,10 @@ class Delayed(Wrapper):
             q, p = step.past(view.t - self.delay) if self.delay else (view.q, view.p)
             if self.late == "all":
                 return input_of(self.law, step, View(view.t - self.delay, q, p))
-            heard: tuple[FloatArray, FloatArray] = q[None], p[None]
+            heard_states: tuple[FloatArray, FloatArray] = q[None], p[None]
         else:
             times = np.unique(self.delay)
             states = [step.past(view.t - float(lag)) if lag else (view.q, view.p) for lag in times]
-            which, own_delay = np.searchsorted(times, self.delay), np.arange(len(view.q))
-            heard = tuple(np.stack(parts)[which, own_delay] for parts in zip(*states, strict=True))
-        return input_of(self.law, step, view._replace(heard=heard, both=self.late == "pairs"))
+            delay_indices, own_delay = np.searchsorted(times, self.delay), np.arange(len(view.q))
+            heard_states = tuple(np.stack(parts)[delay_indices, own_delay] for parts in zip(*states, strict=True))
+        return input_of(self.law, step, view._replace(heard=heard_states, both=self.late == "pairs"))

@@ -148,7 +148,7 @@ class DirectedNet(WrappingLaw):
     def features(self) -> tuple[Feature, ...]:
         """Return the features of the pair law with the agents' ranges, and of the law's other parts."""
         others = (term for term in self.law.terms if not isinstance(term, PairTerm))
-        return (*map(function_feature, self.functions), *(one for term in others for one in term.features()))
+        return (*map(function_feature, self.functions), *(feature for term in others for feature in term.features()))
 
     def _with_range(self, r: float | None) -> DistanceFunction:
         """Return the pair law with another range, where its bump ends; the distance d is unchanged."""
@@ -177,8 +177,8 @@ class DirectedNet(WrappingLaw):
         for term in self.law.terms:
             if isinstance(term, PairTerm):
                 pairs = pair_list(q, float(reach.max()))
-                gains, view = (term.stiffness, term.damping), (self._width, self._slow2)
-                directed_forces(q, p, pairs, reach, self.alpha.par, gains, view, u)
+                gains, sight_cone = (term.stiffness, term.damping), (self._width, self._slow2)
+                directed_forces(q, p, pairs, reach, self.alpha.par, gains, sight_cone, u)
             else:
                 term.act(t, q, p, u)
         return u, float("nan")
@@ -209,28 +209,28 @@ class DirectedNet(WrappingLaw):
         towards = bend[:, :, None] * delta[:, None, :] + term.stiffness * stress[:, None, None] * np.eye(m)
         towards = sight[:, None, None] * towards + force[:, :, None] * by_delta[:, None, :]
         drag = (term.damping * sight * weight)[:, None, None] * np.eye(m)
-        turned = force[:, :, None] * by_own[:, None, :]
-        return _rows(n, m, (i, j, towards), (i, i, -towards)), _rows(n, m, (i, j, drag), (i, i, turned - drag))
+        sight_terms = force[:, :, None] * by_own[:, None, :]
+        return _rows(n, m, (i, j, towards), (i, i, -towards)), _rows(n, m, (i, j, drag), (i, i, sight_terms - drag))
 
     def _sight_slopes(
         self, delta: FloatArray, ahead: FloatArray, s2: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the visibility w_ij of pairs, and its derivatives by q_j − q_i and by p_i."""
-        sight, by_delta, by_own = np.ones(len(s2)), np.zeros(delta.shape), np.zeros(delta.shape)
+        sight, position_slopes, velocity_slopes = np.ones(len(s2)), np.zeros(delta.shape), np.zeros(delta.shape)
         if self._width >= 2.0:
-            return sight, by_delta, by_own
+            return sight, position_slopes, velocity_slopes
         speed2 = np.einsum("kc,kc->k", ahead, ahead)
         for k in np.flatnonzero(s2 * speed2 > 0.0):
-            there, way = delta[k] / s2[k] ** 0.5, ahead[k] / speed2[k] ** 0.5
-            cosine, total = float(there @ way), self._slow2 + speed2[k]
+            bearing, direction = delta[k] / s2[k] ** 0.5, ahead[k] / speed2[k] ** 0.5
+            cosine, total = float(bearing @ direction), self._slow2 + speed2[k]
             z = max(0.0, 1.0 - cosine) / self._width
-            cone, steep = taper(z, self.alpha.h), -bump_slope(z, self.alpha.h) / self._width
+            cone, taper_slope = taper(z, self.alpha.h), -bump_slope(z, self.alpha.h) / self._width
             sight[k] = (self._slow2 + speed2[k] * cone) / total
-            share = speed2[k] * steep / total
-            by_delta[k] = share * (way - cosine * there) / s2[k] ** 0.5
-            by_own[k] = share * (there - cosine * way) / speed2[k] ** 0.5
-            by_own[k] += 2.0 * self._slow2 * (cone - 1.0) / total**2 * ahead[k]
-        return sight, by_delta, by_own
+            share = speed2[k] * taper_slope / total
+            position_slopes[k] = share * (direction - cosine * bearing) / s2[k] ** 0.5
+            velocity_slopes[k] = share * (bearing - cosine * direction) / speed2[k] ** 0.5
+            velocity_slopes[k] += 2.0 * self._slow2 * (cone - 1.0) / total**2 * ahead[k]
+        return sight, position_slopes, velocity_slopes
 
     def perceived(self, q: Any, p: Any) -> Edges:
         """Return the directed edges (j, i) of a state, where i sees j.

@@ -131,17 +131,17 @@ class DiscreteLaw(LawOfMotion):
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States:
         """Return the results of `visit` by repeated calls of `step`."""
-        states, memories, marks, lost = [], [], set(wanted.tolist()), False
+        states, memories, marks, is_lost = [], [], set(wanted.tolist()), False
         for k, t in enumerate(times[: wanted[-1]].tolist(), 1):
-            if not lost:
+            if not is_lost:
                 q, p, u, memory = self.step(t, q, p, memory)
-                lost = not (np.isfinite(q).all() and np.isfinite(p).all())
+                is_lost = not (np.isfinite(q).all() and np.isfinite(p).all())
             if k in marks:
                 states.append((q, p, u))
                 memories.append({name: np.array(value) for name, value in memory.items()})
-        stacked = [np.stack(series) for series in zip(*states, strict=True)]
-        series = {name: np.stack([each[name] for each in memories]) for name in memory}
-        return stacked[0], stacked[1], stacked[2], series
+        series_arrays = [np.stack(series) for series in zip(*states, strict=True)]
+        series = {name: np.stack([item[name] for item in memories]) for name in memory}
+        return series_arrays[0], series_arrays[1], series_arrays[2], series
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """Return the memory before the first step; empty by default."""

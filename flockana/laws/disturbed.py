@@ -83,9 +83,9 @@ class Disturbed(Wrapper):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name, length in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
+        for name, length_unit in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
             if not callable(getattr(self, name)) or name != "force":
-                object.__setattr__(self, name, _pushes(name, getattr(self, name), length))
+                object.__setattr__(self, name, _pushes(name, getattr(self, name), length_unit))
         if (self.times is None) != (self.table is None) or len(self.times or ()) != len(self.table or ()):
             raise ArgumentError(
                 f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected the same"
@@ -102,8 +102,8 @@ class Disturbed(Wrapper):
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
         """Yield the name and value of each push at time 0, of shape (m,) or (n, m)."""
-        first = None if self.table is None else self.table[0]
-        arguments = {"force": self._called(0.0), "swing": self.swing, "table": first}
+        first_row = None if self.table is None else self.table[0]
+        arguments = {"force": self._called(0.0), "swing": self.swing, "table": first_row}
         yield from ((name, push) for name, push in arguments.items() if push is not None)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -193,8 +193,8 @@ class Disturbed(Wrapper):
         form = None if callable(self.force) or self.times else inner
         if form is None:
             return None
-        numbers = kernel.numbers(form.moving, *self._rows(m), 2.0 * pi * self.frequency)
-        term = TermKernel(kernel.act, no_energy, numbers, np.empty((0, 0)), 0.0)
+        kernel_parameters = kernel.numbers(form.moving, *self._rows(m), 2.0 * pi * self.frequency)
+        term = TermKernel(kernel.act, no_energy, kernel_parameters, np.empty((0, 0)), 0.0)
         return form._replace(terms=(*form.terms, term))
 
     def _rows(self, m: int) -> tuple[FloatArray, FloatArray, FloatArray]:

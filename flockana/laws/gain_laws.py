@@ -58,15 +58,15 @@ class GainedLaw(SumOfTerms):
 
     def in_units(self, length: float, time: float) -> Self:
         """Return the law in other units (`flockana.rescale`)."""
-        changed: dict[str, Any] = scaled_fields(self, length, time)
+        changed_fields: dict[str, Any] = scaled_fields(self, length, time)
         if timed(getattr(self, "alpha", None)):
-            changed["gains"] = replace(changed["gains"], c1_alpha=self.gains.c1_alpha)
+            changed_fields["gains"] = replace(changed_fields["gains"], c1_alpha=self.gains.c1_alpha)
         if timed(weight := getattr(self, "net", None)) and isinstance(weight, Weight):
-            changed["gains"] = replace(changed["gains"], c2_alpha=self.gains.c2_alpha)
-        return type(self)(**changed)
+            changed_fields["gains"] = replace(changed_fields["gains"], c2_alpha=self.gains.c2_alpha)
+        return type(self)(**changed_fields)
 
 
 def timed(pair: PairInteraction | Weight | None) -> bool:
     """Return whether a pair law or a weight depends on the unit of time."""
-    of_formula = (power for _, _, power in getattr(pair, "powers", ()))
-    return any(power for _, power in getattr(pair, "units", {}).values()) or any(of_formula)
+    power_terms = (power for _, _, power in getattr(pair, "powers", ()))
+    return any(power for _, power in getattr(pair, "units", {}).values()) or any(power_terms)

@@ -51,15 +51,15 @@ class _Turns:
 
     def _begin(self, turn: int) -> float:
         """Return the start time of a turn, counted from 0."""
-        rounds, place = divmod(turn, len(self.laws))
-        return self.since + float(self._ends[place] + (rounds * self._ends[-1] if rounds else 0.0))
+        rounds, law_index = divmod(turn, len(self.laws))
+        return self.since + float(self._ends[law_index] + (rounds * self._ends[-1] if rounds else 0.0))
 
     def _turn(self, t: float) -> int:
         """Return the number of the turn at a time; the earlier one at a switch."""
-        turn = len(self.laws) * max(0, int((t - self.since) / self._ends[-1]) - 1)
-        while self._begin(turn + 1) < t:
-            turn += 1
-        return turn
+        turn_number = len(self.laws) * max(0, int((t - self.since) / self._ends[-1]) - 1)
+        while self._begin(turn_number + 1) < t:
+            turn_number += 1
+        return turn_number
 
     def acting(self, t: float) -> Any:
         """Return the acting law at a time; at a switch the earlier one, before `since` the first."""
@@ -68,10 +68,10 @@ class _Turns:
     def switches(self, start: float, stop: float) -> FloatArray:
         count = len(self.laws) * ((stop - start) / float(self._ends[-1]) + 1.0)
         ensure_fits("the times of switches", (int(min(count, 1e18)),), "take a shorter span or longer turns")
-        turn, times = self._turn(start) + 1, []
-        while (time := self._begin(turn)) < stop:
+        turn_number, times = self._turn(start) + 1, []
+        while (time := self._begin(turn_number)) < stop:
             times.append(time)
-            turn += 1
+            turn_number += 1
         return np.array(times)
 
     @property
@@ -86,11 +86,11 @@ class _Turns:
 
     @property
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:
-        return tuple(dict.fromkeys(one for law in self.laws for one in law.surfaces))
+        return tuple(dict.fromkeys(surface for law in self.laws for surface in law.surfaces))
 
     @property
     def poles(self) -> tuple[float, ...]:
-        return tuple(dict.fromkeys(one for law in self.laws for one in law.poles))
+        return tuple(dict.fromkeys(pole for law in self.laws for pole in law.poles))
 
     def _functions(self) -> tuple[LawFunction, ...]:
         return tuple(function for law in self.laws for function in law.functions)

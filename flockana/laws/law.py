@@ -112,7 +112,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         Whoever needs facts about a law's functions asks all of them here, through wrappers and schemes too. A law or a
         term that does not say what it reads has an entry without a function.
         """
-        return tuple(function for part in self._parts() for function in part.functions)
+        return tuple(function for subterm in self._parts() for function in subterm.functions)
 
     def features(self) -> tuple[Feature, ...]:
         """Return the narrowest features of all parts: functions of the distance, obstacles, γ-agents."""
@@ -120,18 +120,18 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         says = getattr(kind, "functions", None) is not LawOfMotion.functions  # a law that names them by itself
         if says and overrides_consistently(kind, "functions", ("flow", "step", "velocity")):
             return tuple(map(function_feature, self.functions))
-        return tuple(feature for part in self._parts() for feature in part.features())
+        return tuple(feature for subterm in self._parts() for feature in subterm.features())
 
     def _parts(self) -> Iterator[Any]:
         """Yield the parts of a law (terms or inner law) that declare its functions."""
         inner = vars(self).get("law")
         wraps = isinstance(inner, LawOfMotion)
         parts = (inner,) if wraps else self.terms
-        for part in parts:
-            says = wraps or overrides_consistently(type(part), "functions", ("act",))
-            yield part if says else Unknown(type(part).__name__)
-        ours = type(self).__module__.startswith("flockana.")
-        is_told = ours if wraps else bool(parts) and overrides_consistently(type(self), "terms", ("flow", "step"))
+        for subterm in parts:
+            says = wraps or overrides_consistently(type(subterm), "functions", ("act",))
+            yield subterm if says else Unknown(type(subterm).__name__)
+        is_ours = type(self).__module__.startswith("flockana.")
+        is_told = is_ours if wraps else bool(parts) and overrides_consistently(type(self), "terms", ("flow", "step"))
         if not is_told:
             yield Unknown(type(self).__name__)
 
@@ -163,7 +163,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         functions = self.functions
         pairs = [pair for function in functions for pair in function.pairs_at_corners(q, tolerance)]
         if not functions or any(function.function is None for function in functions):
-            radii = {float(one) for surface in self.surfaces for one in np.ravel(surface)}
+            radii = {float(item) for surface in self.surfaces for item in np.ravel(surface)}
             surfaces = LawFunction(f"the force of {type(self).__name__}", UnknownEdges(tuple(sorted(radii))), 1.0)
             pairs += surfaces.pairs_at_corners(q, tolerance)
         return tuple(dict.fromkeys(pairs))
@@ -403,5 +403,5 @@ class Law(LawOfMotion):
         if not sparse:
             ensure_fits("the Jacobian", (2 * q.size, 2 * q.size), "ask for sparse=True")
         by_position, by_velocity = self.derivatives(t, q, p)
-        whole: Any = csr_array(block_array([[None, eye_array(q.size)], [by_position, by_velocity]], format="csr"))
-        return whole if sparse else whole.toarray()
+        full_matrix: Any = csr_array(block_array([[None, eye_array(q.size)], [by_position, by_velocity]], format="csr"))
+        return full_matrix if sparse else full_matrix.toarray()

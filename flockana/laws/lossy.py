@@ -52,6 +52,6 @@ class Lossy(Wrapper):
         from scipy.special import ndtri
 
         n = len(view.q)
-        arrives = step.normal(self.seed, _LOST, (n, n)) >= ndtri(self.loss)
-        linked = arrives if view.linked is None else arrives & view.linked
-        return input_of(self.law, step, view._replace(linked=np.asarray(linked)))
+        is_received = step.normal(self.seed, _LOST, (n, n)) >= ndtri(self.loss)
+        is_linked = is_received if view.linked is None else is_received & view.linked
+        return input_of(self.law, step, view._replace(linked=np.asarray(is_linked)))

@@ -56,13 +56,13 @@ class Measured(Wrapper):
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         share = step.interval**-0.5
         state = (view.q, view.p) if self.of == "all" else (view.heard or (view.q[None], view.p[None]))
-        size = view.q.shape if self.of == "all" else (len(view.q), *view.q.shape)
-        noisy = []
-        for value, intensity, channel in zip(
+        noise_shape = view.q.shape if self.of == "all" else (len(view.q), *view.q.shape)
+        noisy_states = []
+        for value, intensity, noise_channel in zip(
             state, (self.position, self.velocity), (_POSITION, _VELOCITY), strict=True
         ):
-            noise = share * intensity * step.normal(self.seed, channel, size) if intensity else 0.0
-            noisy.append(value + noise)
+            noise = share * intensity * step.normal(self.seed, noise_channel, noise_shape) if intensity else 0.0
+            noisy_states.append(value + noise)
         if self.of == "all":
-            return input_of(self.law, step, view._replace(q=noisy[0], p=noisy[1]))
-        return input_of(self.law, step, view._replace(heard=(noisy[0], noisy[1])))
+            return input_of(self.law, step, view._replace(q=noisy_states[0], p=noisy_states[1]))
+        return input_of(self.law, step, view._replace(heard=(noisy_states[0], noisy_states[1])))

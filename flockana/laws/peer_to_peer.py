@@ -56,10 +56,10 @@ class PeerToPeer(GainedLaw):
         return self.pair_term, CopiesTerm(self.copies, self.gains)
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
-        places = np.array([self.copies.state(float(time))[0] for time in t])
-        spread = lengths(places - places.mean(axis=1, keepdims=True)).max(axis=1)
-        away = np.linalg.norm(q.mean(axis=1) - places.mean(axis=1), axis=1)
+        positions = np.array([self.copies.state(float(time))[0] for time in t])
+        spread = lengths(positions - positions.mean(axis=1, keepdims=True)).max(axis=1)
+        distance = np.linalg.norm(q.mean(axis=1) - positions.mean(axis=1), axis=1)
         return {
             "copies_apart": ("largest distance of a copy from the mean of all (length)", spread),
-            "centre_to_copies": ("distance of the centre of mass from the mean of the copies (length)", away),
+            "centre_to_copies": ("distance of the centre of mass from the mean of the copies (length)", distance),
         }

@@ -72,12 +72,12 @@ class Sampled(Wrapper):
         key = sum(1 for _ in self.wrappers)  # its place among the wrappers, from within
         if not step.begins:
             return step.held[key]
-        every = round(self.period / step.h)
-        first = 0 if self.offsets is None else np.rint(np.array(self.offsets) / step.h)
-        due = np.broadcast_to((step.number - first) % every == 0, len(view.q))
-        if due.any() or key not in step.held:
-            before, step.interval = step.interval, self.period
+        stride = round(self.period / step.h)
+        first_steps = 0 if self.offsets is None else np.rint(np.array(self.offsets) / step.h)
+        is_due = np.broadcast_to((step.number - first_steps) % stride == 0, len(view.q))
+        if is_due.any() or key not in step.held:
+            previous_interval, step.interval = step.interval, self.period
             u = input_of(self.law, step, view)
-            step.interval = before
-            step.held[key] = np.where(due[:, None], u, step.held.get(key, np.zeros_like(u)))
+            step.interval = previous_interval
+            step.held[key] = np.where(is_due[:, None], u, step.held.get(key, np.zeros_like(u)))
         return step.held[key]

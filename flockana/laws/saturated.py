@@ -70,17 +70,17 @@ class Saturated(Wrapper):
         """
         if self.by == "component":
             return np.clip(u, -self.limit, self.limit)
-        size = np.linalg.norm(u, axis=1, keepdims=True)
-        return u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
+        magnitude = np.linalg.norm(u, axis=1, keepdims=True)
+        return u * np.minimum(1.0, self.limit / np.maximum(magnitude, 1e-300))
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         return self.bounded(input_of(self.law, step, view))
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u, rate = self.law.flow(t, q, p)
-        bounded = self.bounded(u)
+        bounded_input = self.bounded(u)
         velocity = moving_frame(p) if self.moving else p
-        return bounded, rate + float(np.sum((bounded - u) * velocity))
+        return bounded_input, rate + float(np.sum((bounded_input - u) * velocity))
 
     def slopes(self, u: FloatArray) -> FloatArray:
         """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise exactly at the limit.
@@ -108,5 +108,5 @@ class Saturated(Wrapper):
         from scipy.sparse import csr_array
 
         slopes: Any = self.law.derivatives(t, q, p)
-        bend = block_diagonal(self.slopes(self.law.flow(t, q, p)[0]))
-        return bend @ csr_array(slopes[0]), bend @ csr_array(slopes[1])
+        slope_matrix = block_diagonal(self.slopes(self.law.flow(t, q, p)[0]))
+        return slope_matrix @ csr_array(slopes[0]), slope_matrix @ csr_array(slopes[1])

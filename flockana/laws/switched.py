@@ -95,9 +95,9 @@ class SwitchedLaw(Law):
             held_p = p.copy()  # at the surface the two neither approach nor recede: damping of that is no push
             held_p[i] += 0.5 * speed / rho * x
             held_p[j] -= 0.5 * speed / rho * x
-            old, new = (self.piece_flow(side, t, q, held_p)[0] for side in (before, after))
-            out = 1.0 if after[k] > before[k] else -1.0
-            leaving, back = (out * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old, new))
-            if leaving > 0.0 > back and abs(speed) <= self.held_speed(min(leaving, -back)):
+            old_flow, new_flow = (self.piece_flow(side, t, q, held_p)[0] for side in (before, after))
+            crossing_sign = 1.0 if after[k] > before[k] else -1.0
+            leaving_rate, back = (crossing_sign * (float((u[j] - u[i]) @ x) / rho + bend) for u in (old_flow, new_flow))
+            if leaving_rate > 0.0 > back and abs(speed) <= self.held_speed(min(leaving_rate, -back)):
                 return f"agents {i} and {j} slide at distance {rho:.6g}{self.slide}"
         return None

@@ -21,7 +21,7 @@ class Candidate:
 @cache
 def candidates() -> Mapping[str, Candidate]:
     """Return the candidate laws by name: Algorithm 1, and the `CANDIDATES` of the sources' laws."""
-    named = {"Algorithm 1": Candidate(Algorithm1, span=20.0)}
+    named_candidates = {"Algorithm 1": Candidate(Algorithm1, span=20.0)}
     for module in source_modules("laws"):
-        named |= getattr(module, "CANDIDATES", {})
-    return named
+        named_candidates |= getattr(module, "CANDIDATES", {})
+    return named_candidates

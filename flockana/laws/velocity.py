@@ -78,8 +78,8 @@ class VelocityLaw(LawOfMotion):
         """Return ∂velocity/∂q, sparse, in the order of ``q.ravel()``, unchecked; by differences unless overridden."""
         from scipy.sparse import csr_array
 
-        length = self.scales.length if self.scales else float(np.abs(q - q[0]).max()) or 1.0
-        rates = differences(lambda x: self.velocity(t, x), q, length)
+        length_scale = self.scales.length if self.scales else float(np.abs(q - q[0]).max()) or 1.0
+        rates = differences(lambda x: self.velocity(t, x), q, length_scale)
         if rates.spread > _SMOOTH:
             raise ArgumentError(
                 f"{type(self).__name__} has a kink or a jump at this state (slopes differ by {rates.spread:.2g} of the "
@@ -162,10 +162,10 @@ class VelocityLaw(LawOfMotion):
         if p is None:
             return q, v
         q, p = ensure_state(q, p)
-        off = np.abs(p - v).max(axis=1)
+        deviation = np.abs(p - v).max(axis=1)
         largest = max(float(np.abs(v).max()), self.scales.speed if self.scales else 0.0)
-        if (off > _SAME * largest).any():
-            i = int(off.argmax())
+        if (deviation > _SAME * largest).any():
+            i = int(deviation.argmax())
             raise ArgumentError(
                 f"p0[{i}] = {p[i]}: {self.title} is of first order and has the velocity {v[i]} there; expected "
                 "p0 = None, or the law's velocities"

@@ -88,8 +88,8 @@ def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -
 def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, count: int) -> FloatArray:
     """Return the stacked `Step.normal` numbers of the steps from `first` on."""
     blocks = range(first // _BLOCK, (first + count - 1) // _BLOCK + 1)
-    numbers = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
-    return numbers[first % _BLOCK :][:count]
+    normal_samples = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
+    return normal_samples[first % _BLOCK :][:count]
 
 
 class HearingLaw(Law):
@@ -163,9 +163,9 @@ class Wrapper(WrappingLaw):
 
     def __post_init__(self) -> None:
         if not self.takes_first_order or not isinstance(self.law, VelocityLaw):
-            known = Law if self.takes_first_order or first_order(self.law) is None else ()
-            wanted = "a continuous law of second order such as Algorithm1(), or one that wraps a law"
-            ensure_kind("law", self.law, known, wanted)
+            known_kind = Law if self.takes_first_order or first_order(self.law) is None else ()
+            wanted_text = "a continuous law of second order such as Algorithm1(), or one that wraps a law"
+            ensure_kind("law", self.law, known_kind, wanted_text)
         if "seed" in vars(self):  # times the channels it is part of a key, and files hold 64 bits
             normalise(self, lambda _, seed: ensure_seed(seed, 62), "seed")
 
@@ -240,7 +240,7 @@ class Wrapper(WrappingLaw):
 
 def needs_steps(law: Any) -> bool:
     """Return whether a law requires fixed steps."""
-    return isinstance(law, Wrapper) and any(one.stepped for one in law.wrappers)
+    return isinstance(law, Wrapper) and any(wrapper.stepped for wrapper in law.wrappers)
 
 
 def wrappers_within(law: Any) -> tuple[Wrapper, ...]:
@@ -283,9 +283,9 @@ def _heard_input(law: Law, view: View) -> FloatArray:
         else:
             own_input = _own(view, heard)
             away = heard[0] - own_input[0][:, None]
-            near = np.einsum("ijk,ijk->ij", away, away) < term.pair.range**2
-            near &= ~np.eye(n, dtype=bool)
-            i, j = np.nonzero(near if view.linked is None else near & view.linked)
+            in_range = np.einsum("ijk,ijk->ij", away, away) < term.pair.range**2
+            in_range &= ~np.eye(n, dtype=bool)
+            i, j = np.nonzero(in_range if view.linked is None else in_range & view.linked)
             if not i.size:
                 continue
             slip = np.broadcast_to(heard[1] - own_input[1][:, None], (n, n, u.shape[1]))[i, j]
@@ -302,7 +302,7 @@ def _has_pairs(law: Any) -> bool:
 def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return the input of any law, evaluated agent by agent with own states known and others' states heard."""
     n, u = len(view.q), np.empty_like(view.q)
-    q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
+    q, p = (np.broadcast_to(component, (n, *view.q.shape)) for component in heard)
     for i in range(n):
         is_self = np.arange(n)[:, None] == i
         u[i] = law.flow(view.t, np.where(is_self, view.q, q[i]), np.where(is_self, view.p, p[i]))[0][i]

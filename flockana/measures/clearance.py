@@ -54,41 +54,41 @@ def clearance(
     # The bound subtracts an allowance for each path's own error (`flockana.kernels.quintic_paths`), so it is weak
     # where samples are too sparse to resolve the motion.
     n, m = q.shape[1:]
-    least_of = [_Minimum(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
+    minima = [_Minimum(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
     tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
-    for first in range(0, len(t) - 1 if obstacles else 0, rows):
-        part = slice(first, min(first + rows, len(t) - 1))
-        after = slice(part.start + 1, part.stop + 1)
-        h = (t[after] - t[part])[:, None, None]
-        ends = (x.reshape(-1, m) for k in (part, after) for x in (q[k], h * p[k], h * h * u[k]))
-        curves, reach, off = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *ends))
-        points, more = curves[..., :m], 0.0 if slack is None else slack[part]
-        for obstacle, clearances in zip(obstacles, least_of, strict=True):
-            row, agent = np.nonzero(clearances.at_samples[part] - (reach + more) < clearances.lower)
-            back = points[row, agent] - points[row, agent, 5:]  # from their last points fewer get so far
-            reach_back = np.sqrt(np.einsum("kxm,kxm->kx", back, back).max(axis=1, initial=0.0))
-            allowance = (off + more)[row, agent]
-            near = clearances.at_samples[after][row, agent] - (reach_back + allowance) < clearances.lower
+    for start_index in range(0, len(t) - 1 if obstacles else 0, rows):
+        part = slice(start_index, min(start_index + rows, len(t) - 1))
+        next_rows = slice(part.start + 1, part.stop + 1)
+        h = (t[next_rows] - t[part])[:, None, None]
+        segment_ends = (x.reshape(-1, m) for k in (part, next_rows) for x in (q[k], h * p[k], h * h * u[k]))
+        curves, reach, speed_bound = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *segment_ends))
+        points, slack_share = curves[..., :m], 0.0 if slack is None else slack[part]
+        for obstacle, clearances in zip(obstacles, minima, strict=True):
+            row, agent = np.nonzero(clearances.at_samples[part] - (reach + slack_share) < clearances.lower)
+            path_offsets = points[row, agent] - points[row, agent, 5:]  # from their last points fewer get so far
+            back_lengths = np.sqrt(np.einsum("kxm,kxm->kx", path_offsets, path_offsets).max(axis=1, initial=0.0))
+            allowance = (speed_bound + slack_share)[row, agent]
+            near = clearances.at_samples[next_rows][row, agent] - (back_lengths + allowance) < clearances.lower
             row, agent = row[near], agent[near]
             bound = refine(obstacle, points[row, agent], allowance[near], clearances.lower, tol)
             clearances.update(bound, t, row + part.start, agent)
-    k = min(range(len(least_of)), key=lambda each: least_of[each].reached, default=-1)
-    bounds = np.array([clearances.lower for clearances in least_of])
+    k = min(range(len(minima)), key=lambda each: minima[each].reached, default=-1)
+    bounds = np.array([clearances.lower for clearances in minima])
     if k < 0:
         return Clearance(inf, inf, float(t[0]), -1, -1, bounds)
-    return Clearance(float(bounds.min()), least_of[k].reached, least_of[k].time, least_of[k].agent, k, bounds)
+    return Clearance(float(bounds.min()), minima[k].reached, minima[k].time, minima[k].agent, k, bounds)
 
 
 def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
     """Return exact signed distances near the least one, and lower bounds elsewhere."""
     centre, radius = obstacle.ball
-    off = points - centre
-    distance: FloatArray = np.sqrt(np.einsum("km,km->k", off, off)) - radius
+    deviation = points - centre
+    distance: FloatArray = np.sqrt(np.einsum("km,km->k", deviation, deviation)) - radius
     distance -= 4.0 * ROUNDING * (np.abs(points).max() + np.abs(centre).max() + (radius if radius < inf else 0.0))
-    best = obstacle.clearance(points[np.argmin(distance)][None])[0]
-    maybe = distance <= best
-    distance[maybe] = obstacle.clearance(points[maybe])
+    best_clearance = obstacle.clearance(points[np.argmin(distance)][None])[0]
+    is_candidate = distance <= best_clearance
+    distance[is_candidate] = obstacle.clearance(points[is_candidate])
     return distance
 
 
@@ -119,41 +119,41 @@ class _Minimum:
 
 def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _CurveMinimum:
     """Bound the clearance along curves by halving; the bound is `best` if nothing lower is possible."""
-    proven, value, where, which = best, inf, 0.0, -1
-    source, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
+    proven_bound, value, best_time, curve_number = best, inf, 0.0, -1
+    curve_indices, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
     for depth in range(_DEPTH):
         if not len(curves):
             break
         left, right = _halves(curves)
-        middle = np.ascontiguousarray(left[:, 5])
-        here, bound = bounds_over_hull(obstacle, curves, middle, tol)
+        midpoints = np.ascontiguousarray(left[:, 5])
+        gaps, bound = bounds_over_hull(obstacle, curves, midpoints, tol)
         bound -= allowance
-        lowest = int(np.argmin(here))
-        if here[lowest] < value:
-            value, which = float(here[lowest]), int(source[lowest])
-            where = float(start[lowest]) + 0.5 * width
+        lowest_index = int(np.argmin(gaps))
+        if gaps[lowest_index] < value:
+            value, curve_number = float(gaps[lowest_index]), int(curve_indices[lowest_index])
+            best_time = float(start[lowest_index]) + 0.5 * width
         # on the paths, without their allowance, an open part may still hold a point lower than any seen
-        open_ = (bound < proven) & (bound + allowance < min(value, best) - tol)
-        if depth == _DEPTH - 1 or np.count_nonzero(open_) > _MOST:
-            open_[:] = False  # their bounds hold as they are
-        proven = min(proven, float(bound[~open_].min(initial=inf)))
-        curves, allowance = np.concatenate([left[open_], right[open_]]), np.tile(allowance[open_], 2)
-        start = np.concatenate([start[open_], start[open_] + 0.5 * width])
-        source, width = np.tile(source[open_], 2), 0.5 * width
-    return _CurveMinimum(proven, value, where, which)
+        is_open = (bound < proven_bound) & (bound + allowance < min(value, best) - tol)
+        if depth == _DEPTH - 1 or np.count_nonzero(is_open) > _MOST:
+            is_open[:] = False  # their bounds hold as they are
+        proven_bound = min(proven_bound, float(bound[~is_open].min(initial=inf)))
+        curves, allowance = np.concatenate([left[is_open], right[is_open]]), np.tile(allowance[is_open], 2)
+        start = np.concatenate([start[is_open], start[is_open] + 0.5 * width])
+        curve_indices, width = np.tile(curve_indices[is_open], 2), 0.5 * width
+    return _CurveMinimum(proven_bound, value, best_time, curve_number)
 
 
 def bounds_over_hull(
     obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
-    gap, _, here = obstacle._project(middle, np.zeros_like(middle))
+    gap, _, gradient = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]
     with np.errstate(divide="ignore", invalid="ignore"):
-        outward = -gap / here[:, None]  # the gradient of the signed distance, inside too
-    plane = np.einsum("km,kcm->kc", outward, hull).min(axis=1)
-    plane[~np.isfinite(plane) | (np.abs(here) <= tol)] = -inf  # no direction there: only the distance bounds
-    return here, here + np.maximum(plane, -lengths(hull).max(axis=1))
+        outward_normal = -gap / gradient[:, None]  # the gradient of the signed distance, inside too
+    plane = np.einsum("km,kcm->kc", outward_normal, hull).min(axis=1)
+    plane[~np.isfinite(plane) | (np.abs(gradient) <= tol)] = -inf  # no direction there: only the distance bounds
+    return gradient, gradient + np.maximum(plane, -lengths(hull).max(axis=1))
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:

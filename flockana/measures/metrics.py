@@ -32,12 +32,12 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
     q, (d, r), unit = scaled_near_one(q, d, r)
     n, agents, count, excess = len(q), np.arange(len(q)), 0, 0.0
-    for first, second in pair_blocks(q, r):
-        unite(agents, first, second)
-        count, excess = count + first.size, excess + squared_excess(q, first, second, d)
-    sizes = np.bincount(labelled(agents))
-    connectivity = 1.0 if n == 1 else (n - sizes.size) / (n - 1)
-    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1) * unit * unit
+    for first_agents, second_agents in pair_blocks(q, r):
+        unite(agents, first_agents, second_agents)
+        count, excess = count + first_agents.size, excess + squared_excess(q, first_agents, second_agents, d)
+    counts = np.bincount(labelled(agents))
+    connectivity = 1.0 if n == 1 else (n - counts.size) / (n - 1)
+    return connectivity, float(counts.max()) / n, 2.0 * excess / (2 * count + 1) * unit * unit
 
 
 def connectivity(q: Any, r: float) -> float:
@@ -198,8 +198,8 @@ def pairs_at_one_place(q: Any) -> int:
     >>> pairs_at_one_place([[0.0], [0.0], [0.0], [1.0]])
     3
     """
-    sizes = np.unique(ensure_points("q", q), axis=0, return_counts=True)[1]
-    return int((sizes * (sizes - 1) // 2).sum())
+    counts = np.unique(ensure_points("q", q), axis=0, return_counts=True)[1]
+    return int((counts * (counts - 1) // 2).sum())
 
 
 # The same at every instant of a run, shapes unchecked: x has shape (T, n, m), the result (T,).
@@ -265,8 +265,8 @@ def coordinations(p: FloatArray) -> FloatArray:
     """Return `coordination` over time, unchecked."""
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
-    twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    return np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
+    doubled_sum = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
+    return np.divide(doubled_sum, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
 
 
 def _centred(x: FloatArray) -> FloatArray:
@@ -277,11 +277,11 @@ def _headings(p: FloatArray) -> FloatArray:
     """Return directions of motion; 0 for agents at rest."""
     with np.errstate(over="ignore"):
         speed = lengths(p)
-    far = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))
-    if far.any():
-        powers = np.frexp(np.abs(p[far]).max(axis=1))[1]  # of two: nothing is rounded
+    is_invalid = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))
+    if is_invalid.any():
+        powers = np.frexp(np.abs(p[is_invalid]).max(axis=1))[1]  # of two: nothing is rounded
         p, speed = p.copy(), speed.copy()
-        p[far] = np.ldexp(p[far], -powers[:, None])
-        speed[far] = lengths(p[far][None])[0]
+        p[is_invalid] = np.ldexp(p[is_invalid], -powers[:, None])
+        speed[is_invalid] = lengths(p[is_invalid][None])[0]
     speed = speed[..., None]
     return np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)

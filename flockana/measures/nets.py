@@ -87,8 +87,8 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)
     a = np.ones(len(pairs)) if weights is None else ensure_series("weights", weights, len(pairs))
-    half = coo_array((a, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    adjacency = (half + half.T).tocsr()
+    half_matrix = coo_array((a, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    adjacency = (half_matrix + half_matrix.T).tocsr()
     return (diags_array(adjacency.sum(axis=1)) - adjacency).tocsr()
 
 
@@ -101,8 +101,8 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
     if len(pairs) == 0:
         return float("nan")
     labels = components(n, pairs)
-    giant = int(np.argmax(np.bincount(labels)))
-    return float(np.mean(labels[pairs[:, 0]] == giant))
+    giant_label = int(np.argmax(np.bincount(labels)))
+    return float(np.mean(labels[pairs[:, 0]] == giant_label))
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:

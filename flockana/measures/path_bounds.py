@@ -43,12 +43,12 @@ def closest_approach(
     # samples are too sparse to resolve the motion.
     if q.shape[1] == 1:
         return ClosestApproach(np.inf, np.inf, float(t[0]), (-1, -1), np.full(len(t) - 1, np.inf))
-    at_samples = min_distances(q)
+    sample_distances = min_distances(q)
     extents = np.maximum(q.max(axis=(1, 2)), -q.min(axis=(1, 2)))  # |q| would be another run's memory
-    k = int(np.argmin(at_samples))
-    lower = best = float(at_samples[k])
-    when, pair = float(t[k]), _pair_at(q[k], best)
-    stops, noises = np.minimum(at_samples[:-1], at_samples[1:]), ROUNDING * extents[:-1]
+    k = int(np.argmin(sample_distances))
+    lower = least_distance = float(sample_distances[k])
+    when, pair = float(t[k]), _pair_at(q[k], least_distance)
+    stops, noises = np.minimum(sample_distances[:-1], sample_distances[1:]), ROUNDING * extents[:-1]
     bounds = np.where(stops > noises, stops, 0.0)
     if len(bounds) and bounds.min() == 0.0:
         lower = 0.0
@@ -56,10 +56,10 @@ def closest_approach(
     for k, low, distance, at, a, b in _nearer(t, (q, p, u), slack, bounds.copy(), noises):
         bounds[k] = low
         if low < lower:
-            share = at if at >= 0.0 else float(at_samples[k + 1] < at_samples[k])  # nowhere below both ends
+            share = at if at >= 0.0 else float(sample_distances[k + 1] < sample_distances[k])  # nowhere below both ends
             lower, when, pair = low, float(t[k] + share * (t[k + 1] - t[k])), (int(min(a, b)), int(max(a, b)))
-        best = min(best, distance)
-    return ClosestApproach(lower, best, when, pair, bounds)
+        least_distance = min(least_distance, distance)
+    return ClosestApproach(lower, least_distance, when, pair, bounds)
 
 
 def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray, noises: FloatArray) -> Iterator[Any]:
@@ -68,8 +68,8 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
         approach = quintic_paths.closest_of_few(t, (q, p, u), slack, stops, tols)
-        near = np.flatnonzero(approach[3] >= 0)
-        yield from zip(near.tolist(), *(each[near].tolist() for each in approach), strict=True)
+        near_intervals = np.flatnonzero(approach[3] >= 0)
+        yield from zip(near_intervals.tolist(), *(item[near_intervals].tolist() for item in approach), strict=True)
         return
     for k in np.flatnonzero(stops).tolist():
         points, reach, allowance = quintic_paths.control_points(
@@ -78,10 +78,10 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
         reach, allowance, stop = reach + slack[k], allowance + slack[k], float(stops[k])
         for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
             tol = max(RELATIVE_TOL * stop, noises[k])
-            low, distance, at, a, b = quintic_paths.closest_pair(points, reach, allowance, i, j, stop, tol)
+            low, distance, closest_time, a, b = quintic_paths.closest_pair(points, reach, allowance, i, j, stop, tol)
             if a >= 0:
                 stop = low
-                yield k, low, distance, at, a, b
+                yield k, low, distance, closest_time, a, b
 
 
 def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
@@ -118,18 +118,18 @@ def contacts(
 ) -> tuple[Contact, ...]:
     """Return the pairs that come within `tol` of each other, with their first times, in order of time."""
     # Only in the intervals given, in rising order, if it is known that none comes so near in the others.
-    first: dict[tuple[int, int], Contact] = {}
+    first_contacts: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1) if intervals is None else intervals:
         h = t[k + 1] - t[k]
         points, reach, _ = quintic_paths.control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
         for i, j in pair_blocks(q[k], tol + 2.0 * float(reach.max())):
-            at = np.empty(i.size)
-            quintic_paths.touching_pairs(points, reach, i, j, tol, at)
-            hit = at >= 0.0
-            i, j, shares = i[hit], j[hit], at[hit].tolist()
+            contact_times = np.empty(i.size)
+            quintic_paths.touching_pairs(points, reach, i, j, tol, contact_times)
+            hit = contact_times >= 0.0
+            i, j, shares = i[hit], j[hit], contact_times[hit].tolist()
             for a, b, share in zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), shares, strict=True):
-                if (a, b) not in first:
-                    before, after = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
-                    crossed = q.shape[2] == 1 and bool(before[0] * after[0] < 0.0)
-                    first[a, b] = Contact(a, b, float(t[k] + share * h), crossed)
-    return tuple(sorted(first.values(), key=lambda c: (c.time, c.i, c.j)))
+                if (a, b) not in first_contacts:
+                    start_gap, end_gap = q[k, b] - q[k, a], q[k + 1, b] - q[k + 1, a]
+                    has_crossed = q.shape[2] == 1 and bool(start_gap[0] * end_gap[0] < 0.0)
+                    first_contacts[a, b] = Contact(a, b, float(t[k] + share * h), has_crossed)
+    return tuple(sorted(first_contacts.values(), key=lambda c: (c.time, c.i, c.j)))

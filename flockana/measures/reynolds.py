@@ -60,8 +60,8 @@ class Reynolds:
         """
         agent = ensure_index("agent =", agent, len(self.centring))
         of_agent = (self.links == agent).any(axis=1)
-        others, stress = self.links[of_agent].sum(axis=1) - agent, self.stress[of_agent]
-        plus, minus, neutral = (np.sort(others[sign]) for sign in (stress > 0.0, stress < 0.0, stress == 0.0))
+        neighbours, stress = self.links[of_agent].sum(axis=1) - agent, self.stress[of_agent]
+        plus, minus, neutral = (np.sort(neighbours[sign]) for sign in (stress > 0.0, stress < 0.0, stress == 0.0))
         return plus, minus, neutral
 
     def counts(self) -> IndexArray:

@@ -18,8 +18,8 @@ def _mismatch(flock: Flock) -> FloatArray:
 
 def _strain(run: Any) -> float:
     d, r = run.law.lattice
-    lengths = link_lengths(run.q[-1], links(run.q[-1], r))
-    return float(np.abs(lengths - d).max()) / d if lengths.size else np.nan
+    distances = link_lengths(run.q[-1], links(run.q[-1], r))
+    return float(np.abs(distances - d).max()) / d if distances.size else np.nan
 
 
 def _relative_residual(run: Any) -> float:

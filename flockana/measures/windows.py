@@ -39,13 +39,13 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
     ensure_fits(f"what is told of n = {n} agents,", (5, n), "ask for fewer agents")
     if not isinstance(nets, Iterable) or isinstance(nets, str | bytes) or getattr(nets, "ndim", 1) == 0:
         raise ArgumentError(f"nets = {nets!r}: expected the links at each instant, such as [[[0, 1]], [[1, 2]]]")
-    ends, agents = [0], np.arange(n)
+    window_ends, agents = [0], np.arange(n)
     for k, net in enumerate(nets, start=1):
         unite(agents, *ensure_links(net, n).T)
         if not labelled(agents).any():
-            ends.append(k)
+            window_ends.append(k)
             agents = np.arange(n)
-    return tuple(pairwise(ends))
+    return tuple(pairwise(window_ends))
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:

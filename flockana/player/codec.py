@@ -32,12 +32,12 @@ class Packed:
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
     """Return a header and arrays as bytes."""
     entries, bodies = [], []
-    for name, packed in arrays.items():
-        values = np.asarray(packed.values, dtype=np.float64)
-        whole, origin = _quantise(name, values, packed.step)
-        entries.append({"name": name, "shape": values.shape, "step": packed.step, "origin": origin})
-        flat = whole.reshape(len(values), int(np.prod(values.shape[1:])))
-        change = np.diff(flat, axis=0, prepend=np.zeros((1, flat.shape[1]), dtype="<u4"))
+    for name, packed_array in arrays.items():
+        values = np.asarray(packed_array.values, dtype=np.float64)
+        quantised, origin = _quantise(name, values, packed_array.step)
+        entries.append({"name": name, "shape": values.shape, "step": packed_array.step, "origin": origin})
+        value_rows = quantised.reshape(len(values), int(np.prod(values.shape[1:])))
+        change = np.diff(value_rows, axis=0, prepend=np.zeros((1, value_rows.shape[1]), dtype="<u4"))
         bodies.append(np.ascontiguousarray(change.T).view(np.uint8).reshape(-1, 4).T.tobytes())
     text = json.dumps(dict(header) | {"arrays": entries}, ensure_ascii=False, allow_nan=False).encode("utf-8")
     return _MAGIC + zlib.compress(b"".join([len(text).to_bytes(4, "little"), text, *bodies]), 9)
@@ -48,20 +48,20 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
     try:
         if data[:4] != _MAGIC:
             raise ValueError("its first bytes are not FLK1")
-        raw = zlib.decompress(data[4:])
-        start = 4 + int.from_bytes(raw[:4], "little")
-        header = json.loads(raw[4:start].decode("utf-8"))
+        raw_bytes = zlib.decompress(data[4:])
+        start = 4 + int.from_bytes(raw_bytes[:4], "little")
+        header = json.loads(raw_bytes[4:start].decode("utf-8"))
         arrays = {}
         for entry in header.pop("arrays"):
-            rows, size = entry["shape"][0], int(np.prod(entry["shape"]))
-            planes = np.frombuffer(raw, np.uint8, 4 * size, start).reshape(4, size)
-            start += 4 * size
-            whole = np.ascontiguousarray(planes.T).view("<u4").reshape(size // max(rows, 1), rows).T
-            whole = np.cumsum(whole, axis=0, dtype=np.uint32)
+            rows, array_shape = entry["shape"][0], int(np.prod(entry["shape"]))
+            planes = np.frombuffer(raw_bytes, np.uint8, 4 * array_shape, start).reshape(4, array_shape)
+            start += 4 * array_shape
+            joined_bytes = np.ascontiguousarray(planes.T).view("<u4").reshape(array_shape // max(rows, 1), rows).T
+            joined_bytes = np.cumsum(joined_bytes, axis=0, dtype=np.uint32)
             if entry["step"] == 0.0:
-                values = np.ascontiguousarray(whole).view("<f4").astype(np.float64)
+                values = np.ascontiguousarray(joined_bytes).view("<f4").astype(np.float64)
             else:
-                values = entry["origin"] + entry["step"] * whole.astype(np.float64)
+                values = entry["origin"] + entry["step"] * joined_bytes.astype(np.float64)
             arrays[entry["name"]] = values.reshape(entry["shape"])
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
         raise ArgumentError(f"{len(data)} bytes: expected those of a run for the player ({error})") from None
@@ -71,11 +71,11 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
 def _quantise(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
     """Return an array as 32-bit integers, and the subtracted origin."""
     with np.errstate(over="ignore"):
-        single = values.astype("<f4")
-    if not np.isfinite(single).all():
+        single_precision = values.astype("<f4")
+    if not np.isfinite(single_precision).all():
         raise ArgumentError(f"{name}: expected finite numbers that float32 holds")
     if step == 0.0:
-        return single.view("<u4"), 0.0
+        return single_precision.view("<u4"), 0.0
     origin = float(values.min()) if values.size else 0.0
     steps = np.rint((values - origin) / step)
     if steps.size and steps.max() > _STEPS:

@@ -81,33 +81,33 @@ def scene(
     """Return a run in the player's format."""
     frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
     _register_scenes()
-    around = world(run.law.continuous or run.law, run, frames)
+    surroundings = world(run.law.continuous or run.law, run, frames)
     q, p = run.q[frames], run.p[frames]
     series = _series(run)
     samples = np.unique(
-        [*kept(len(run.t), _FEATURES), *(pick(x) for *_, x in series for pick in (np.argmin, np.argmax))]
+        [*kept(len(run.t), _FEATURES), *(pick_index(x) for *_, x in series for pick_index in (np.argmin, np.argmax))]
     )
     q_step, p_step = (0.0, 0.0) if exact else (_FINE * (np.ptp(q) or 1.0), _COARSE * (np.ptp(p) or 1.0))
     arrays = {"t": Packed(run.t[frames]), "q": Packed(q, float(q_step)), "p": Packed(p, float(p_step))}
-    for name, places in (("stars", around.stars), ("crosses", around.crosses)):
-        if places is not None:
-            arrays[name] = Packed(places, float(q_step))
-    if around.edges:
-        arrays["edges"] = Packed(np.concatenate(around.edges).reshape(-1, 2), 1.0)
+    for name, marker_points in (("stars", surroundings.stars), ("crosses", surroundings.crosses)):
+        if marker_points is not None:
+            arrays[name] = Packed(marker_points, float(q_step))
+    if surroundings.edges:
+        arrays["edges"] = Packed(np.concatenate(surroundings.edges).reshape(-1, 2), 1.0)
     arrays["series_t"] = Packed(run.t[samples])
-    for k, (*_, numbers) in enumerate(series):
-        arrays[f"series_{k}"] = Packed(np.clip(numbers[samples], -_EXTREME, _EXTREME))
+    for k, (*_, series_values) in enumerate(series):
+        arrays[f"series_{k}"] = Packed(np.clip(series_values[samples], -_EXTREME, _EXTREME))
     header = {
         "n": run.n,
         "m": run.m,
         "title": title or f"{run.n} agents, {run.law.title}",
-        "reach": around.reach,
-        "length": around.length,
-        "edge_counts": [len(pairs) for pairs in around.edges],
-        "solids": [_solid(each) for each in around.solids],
-        "outlines": [np.round(line, 6).tolist() for line in around.outlines + outlines(around.solids)],
-        "beta": around.beta,
-        "groups": list(around.groups),
+        "reach": surroundings.reach,
+        "length": surroundings.length,
+        "edge_counts": [len(pairs) for pairs in surroundings.edges],
+        "solids": [_solid(solid) for solid in surroundings.solids],
+        "outlines": [np.round(line, 6).tolist() for line in surroundings.outlines + outlines(surroundings.solids)],
+        "beta": surroundings.beta,
+        "groups": list(surroundings.groups),
         "series": [{"name": name, "label": label, "log": log} for name, label, log, _ in series],
         "marks": [{"t": float(time), "label": label} for time, label in marks],
     }
@@ -143,10 +143,10 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
             rows.append(("residual", "residual of the energy balance", False, run.energy_residual))
     for name in SHOWN:
         if name in run._metric_names:
-            it = run.measure(name)
-            rows.append((name, it.label, bool(it.logarithmic), run.metric(name)))
+            measurement = run.measure(name)
+            rows.append((name, measurement.label, bool(measurement.logarithmic), run.metric(name)))
     rows.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
-    return [each for each in rows if np.isfinite(each[-1]).all()]  # a strip draws finite numbers only
+    return [row for row in rows if np.isfinite(row[-1]).all()]  # a strip draws finite numbers only
 
 
 def finite_or_none(value: Any) -> float | None:
@@ -167,13 +167,13 @@ def _solid(solid: Obstacle) -> dict[str, Any]:
 
 def outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
     """Return closed outlines of obstacles other than balls and walls."""
-    turn = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
+    angles = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
     lines = []
-    for solid in solids:
-        if isinstance(solid, Sphere | Wall) or not np.isfinite(solid.ball[1]):
+    for obstacle in solids:
+        if isinstance(obstacle, Sphere | Wall) or not np.isfinite(obstacle.ball[1]):
             continue
-        centre, radius = solid.ball
-        for u, v in _CIRCLES.get(solid.dimension, ()):
-            around = centre + 1.001 * radius * (np.outer(np.cos(turn), u) + np.outer(np.sin(turn), v))
-            lines.append(solid.beta_agents(around, np.zeros_like(around)).q)
+        centre, radius = obstacle.ball
+        for u, v in _CIRCLES.get(obstacle.dimension, ()):
+            surroundings = centre + 1.001 * radius * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
+            lines.append(obstacle.beta_agents(surroundings, np.zeros_like(surroundings)).q)
     return tuple(lines)

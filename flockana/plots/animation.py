@@ -45,8 +45,8 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
     times = np.linspace(t[0], t[-1], count)
     if trajectory.law.is_map or len(t) == 1:
         k = np.unique(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
-        extra = {name: series[k] for name, series in trajectory.extra.items()}
-        return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra)
+        extra_series = {name: series[k] for name, series in trajectory.extra.items()}
+        return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra_series)
     # an agent that hits an obstacle brakes within less than a sample: both cubics follow it, with no overshoot
     q = CubicHermiteSpline(t, trajectory.q, trajectory.p)(times)
     p = CubicHermiteSpline(t, trajectory.p, trajectory.u)(times)
@@ -66,14 +66,14 @@ def animation(
     """
     ensure_run(trajectory)
     frames = frame_count(seconds, fps)
-    film, view = equal_times(trajectory, frames), film_view(trajectory)
+    film, view_box = equal_times(trajectory, frames), film_view(trajectory)
     times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
     # outside the style, whose layout engine would fit each frame anew and make the view jitter
-    figure = Figure(figsize=film_size(view), dpi=_DPI)
+    figure = Figure(figsize=film_size(view_box), dpi=_DPI)
     FigureCanvasAgg(figure)
     with style():
         ax: Any = figure.add_subplot(projection="3d" if trajectory.m == 3 else None)
-        height = film_size(view)[1]
+        height = film_size(view_box)[1]
         edges = (0.0, 0.0, 0.95, 0.95) if trajectory.m == 3 else (0.09, 0.6 / height, 0.98, 1.0 - 0.35 / height)
         figure.subplots_adjust(*edges)
 
@@ -81,7 +81,7 @@ def animation(
         with style():
             ax.clear()
             snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False, ranges=ranges)
-        _fix_view(ax, view)
+        _fix_view(ax, view_box)
         return []
 
     return FuncAnimation(figure, draw, frames=frames, init_func=lambda: [], interval=1000.0 / fps, repeat=False)
@@ -188,8 +188,8 @@ def _fix_view(ax: Any, view: FloatArray) -> None:
     low, high = view
     if low.size == 3:
         ax.set_box_aspect(None, zoom=0.95)
-        middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
-        low, high = middle - half, middle + half
+        midpoint, half_width = 0.5 * (low + high), 0.5 * float((high - low).max())
+        low, high = midpoint - half_width, midpoint + half_width
     limit(ax, low, high)
     if low.size == 2:
         ax.set_aspect("equal", adjustable="box")
@@ -197,8 +197,8 @@ def _fix_view(ax: Any, view: FloatArray) -> None:
 
 def durations(frames: int, fps: float) -> list[int]:
     """Return the duration of each GIF frame in milliseconds, whole hundredths of a second with the right sum."""
-    ends = [round(100.0 * k / fps) for k in range(frames + 1)]
-    return [10 * (end - start) for start, end in itertools.pairwise(ends)]
+    frame_times = [round(100.0 * k / fps) for k in range(frames + 1)]
+    return [10 * (end - start) for start, end in itertools.pairwise(frame_times)]
 
 
 class GifWriter(AbstractMovieWriter):
@@ -218,6 +218,6 @@ class GifWriter(AbstractMovieWriter):
 
     def finish(self) -> None:
         """Write the file."""
-        first, *others = self._images
+        first_image, *later_images = self._images
         times = durations(len(self._images), self.fps)
-        first.save(self.outfile, "GIF", save_all=True, append_images=others, duration=times, loop=0)
+        first_image.save(self.outfile, "GIF", save_all=True, append_images=later_images, duration=times, loop=0)

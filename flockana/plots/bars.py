@@ -52,19 +52,19 @@ def bars(
             raise ArgumentError(f"row {row!r} has the columns {list(cells)}: expected {columns}, as the first has")
     height = 1.0 + 0.3 * len(table)
     panels = np.ravel(subplots(1, len(columns), size=(2.6 * len(columns), height))[1] if ax is None else ax)
-    places = -np.arange(len(table))
+    bar_positions = -np.arange(len(table))
     for column, panel in zip(columns, panels, strict=True):
         pairs = [_cell(f"{row}, {column}", cells[column]) for row, cells in table.items()]
         values, widths = np.array(pairs).T
         is_finite = np.isfinite(values)
-        lengths = np.where(is_finite, values, 1.2 * max(values[is_finite], default=1.0))
-        panel.barh(places, lengths, _HEIGHT, color=[BLUE if one else MUTED for one in is_finite])
-        panel.errorbar(values, places, xerr=widths, fmt="none", ecolor=INK, capsize=2.0)
-        for place in places[~is_finite]:
-            panel.annotate("∞", (0.0, place), xytext=(4.0, 0.0), textcoords="offset points", va="center")
+        bar_lengths = np.where(is_finite, values, 1.2 * max(values[is_finite], default=1.0))
+        panel.barh(bar_positions, bar_lengths, _HEIGHT, color=[BLUE if item else MUTED for item in is_finite])
+        panel.errorbar(values, bar_positions, xerr=widths, fmt="none", ecolor=INK, capsize=2.0)
+        for marker_position in bar_positions[~is_finite]:
+            panel.annotate("∞", (0.0, marker_position), xytext=(4.0, 0.0), textcoords="offset points", va="center")
         if column in (limits or {}):
             panel.axvline((limits or {})[column], color=VERMILLION, linestyle="--", linewidth=1.2)
-        panel.set_yticks(places, list(table) if panel is panels[0] else [""] * len(table))
+        panel.set_yticks(bar_positions, list(table) if panel is panels[0] else [""] * len(table))
         finish(panel, column)
     return panels
 

@@ -29,9 +29,9 @@ def sampled_basin(sampled: SampledBasin, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     d, basin = sampled.basin.law.alpha.d, sampled.basin
     low, high = sampled.interval()
-    off = [(sampled.shares - low).clip(0.0), (high - sampled.shares).clip(0.0)]
+    error_bars = [(sampled.shares - low).clip(0.0), (high - sampled.shares).clip(0.0)]
     label = f"{sampled.runs} starts each"
-    ax.errorbar(sampled.distances / d, sampled.shares, yerr=off, fmt="o", color=BLUE, label=label)
+    ax.errorbar(sampled.distances / d, sampled.shares, yerr=error_bars, fmt="o", color=BLUE, label=label)
     ax.axvspan(0.0, basin.share, color=VERMILLION, alpha=0.15)
     ax.axvline(basin.share, color=VERMILLION, label=typeset(f"certified ρ = {basin.share:.3f} d"))
     ax.axhline(1.0, color=INK, linewidth=0.5)

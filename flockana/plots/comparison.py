@@ -47,20 +47,20 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
         columns = min(_COLUMNS, len(outcomes))
         rows = -(-len(outcomes) // columns)
         ax = np.ravel(subplots(rows, columns, size=(3.1 * columns, 3.2 * rows))[1])
-        for unused in ax[len(outcomes) :]:
-            unused.remove()
+        for unused_axes in ax[len(outcomes) :]:
+            unused_axes.remove()
         ax = ax[: len(outcomes)]
     panels = np.ravel(ax)
     if len(panels) != len(outcomes):
         raise ArgumentError(f"{len(panels)} axes for {len(outcomes)} laws: expected one for each")
     all_places = np.concatenate([outcome.run.q.reshape(-1, 2) for outcome in outcomes])
     low, high = all_places.min(axis=0), all_places.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
+    midpoint, half_width = 0.5 * (low + high), 0.54 * float((high - low).max())
     for outcome, panel in zip(outcomes, panels, strict=True):
         _paths(panel, outcome.run)
         write_title(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
         panel.set(xlabel=typeset("x (length)"), ylabel=typeset("y (length)"), box_aspect=1.0)
-        panel.set(xlim=middle[0] + (-half, half), ylim=middle[1] + (-half, half))
+        panel.set(xlim=midpoint[0] + (-half_width, half_width), ylim=midpoint[1] + (-half_width, half_width))
     return panels
 
 
@@ -87,7 +87,7 @@ def velocity_diameters(outcomes: Sequence[Outcome], *, ax: Axes | None = None) -
     for k, (outcome, (colour, dash)) in enumerate(zip(outcomes, cycle(_LOOKS), strict=False)):
         values = outcome.run.metric("velocity_diameter")
         share = np.maximum(values / values[0], _FLOOR)
-        look = {"marker": _MARKS[k // len(_LOOKS) % len(_MARKS)], "markevery": 0.1, "markersize": 3.5}
-        axes.plot(outcome.run.t, share, color=colour, linestyle=dash, label=outcome.entry.name, **look)
+        plot_style = {"marker": _MARKS[k // len(_LOOKS) % len(_MARKS)], "markevery": 0.1, "markersize": 3.5}
+        axes.plot(outcome.run.t, share, color=colour, linestyle=dash, label=outcome.entry.name, **plot_style)
     axes.set_yscale("log")
     return finish_over_time(axes, outcomes[0].run.t, "velocity diameter over that at the start")

@@ -51,10 +51,10 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
         with style():
             ax = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
     magnitude, phase = panels = np.ravel(ax)
-    for curve, look in zip(curves, _looks(), strict=False):
+    for curve, plot_style in zip(curves, _looks(), strict=False):
         with np.errstate(divide="ignore"):  # what answers nothing has no place on the axis
-            magnitude.semilogx(curve.omega, 20.0 * np.log10(np.abs(curve.values)), label=curve.label, **look)
-        phase.semilogx(curve.omega, np.degrees(np.unwrap(np.angle(curve.values))), **look)
+            magnitude.semilogx(curve.omega, 20.0 * np.log10(np.abs(curve.values)), label=curve.label, **plot_style)
+        phase.semilogx(curve.omega, np.degrees(np.unwrap(np.angle(curve.values))), **plot_style)
     for name, omega in (marks or {}).items():
         mark(magnitude, omega, name, width=0.9, color=MUTED, fontsize=8)
         mark(phase, omega, width=0.9)
@@ -92,9 +92,9 @@ def _curves(label: str, response: Any) -> list[_Curve]:
 
 def _looks() -> Iterator[dict[str, Any]]:
     """Yield line styles without end: four that differ in colour and dash, then other combinations."""
-    for turn in count():
+    for style_number in count():
         for k, (colour, _) in enumerate(_DASHES):
-            yield {"color": colour, "linestyle": _DASHES[(k + turn) % len(_DASHES)][1]}
+            yield {"color": colour, "linestyle": _DASHES[(k + style_number) % len(_DASHES)][1]}
 
 
 @check_kinds
@@ -110,11 +110,11 @@ def nyquist(responses: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     angle, farthest = np.linspace(0.0, 2.0 * np.pi, 181), 1.5
     curves = [curve for label, response in responses.items() for curve in _curves(label, response)]
-    for curve, look in zip(curves, _looks(), strict=False):
-        ax.plot(curve.values.real, curve.values.imag, color=look["color"], linestyle="-", label=curve.label)
-        ax.plot(curve.values.real, -curve.values.imag, color=look["color"], linestyle="--", linewidth=0.8)
-        sizes = np.abs(curve.values)
-        farthest = max(farthest, min(4.0, 1.1 * float(sizes.max(initial=0.0))))
+    for curve, plot_style in zip(curves, _looks(), strict=False):
+        ax.plot(curve.values.real, curve.values.imag, color=plot_style["color"], linestyle="-", label=curve.label)
+        ax.plot(curve.values.real, -curve.values.imag, color=plot_style["color"], linestyle="--", linewidth=0.8)
+        magnitudes = np.abs(curve.values)
+        farthest = max(farthest, min(4.0, 1.1 * float(magnitudes.max(initial=0.0))))
     ax.plot(np.cos(angle), np.sin(angle), color=FAINT, linestyle="-", linewidth=0.9, zorder=0)
     ax.plot(-1.0, 0.0, "+", color=VERMILLION, markersize=9, markeredgewidth=1.6, linestyle="none", label="−1")
     ax.axhline(0.0, color=MUTED, linewidth=0.6, linestyle="-", zorder=0)
@@ -135,10 +135,10 @@ def singular_values(response: Any, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     curves = _curves("response", response)
     values = np.moveaxis(np.reshape(response.complex, (response.noutputs, response.ninputs, -1)), -1, 0)
-    sizes = 20.0 * np.log10(np.linalg.svd(values, compute_uv=False))
-    look: dict[str, Any] = {"color": MUTED, "linestyle": "-"}
-    ax.semilogx(curves[0].omega, sizes[:, 1:], **look)
-    ax.semilogx(curves[0].omega, sizes[:, 0], **look | {"color": BLUE, "label": "largest"})
+    singular_values = 20.0 * np.log10(np.linalg.svd(values, compute_uv=False))
+    plot_style: dict[str, Any] = {"color": MUTED, "linestyle": "-"}
+    ax.semilogx(curves[0].omega, singular_values[:, 1:], **plot_style)
+    ax.semilogx(curves[0].omega, singular_values[:, 0], **plot_style | {"color": BLUE, "label": "largest"})
     return finish(ax, "ω (radians/time)", "singular values (dB)")
 
 
@@ -156,9 +156,9 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     width, alpha = line_width_and_opacity(roots.shape[1])
     ax.plot(roots.real, roots.imag, color=BLUE, linestyle="-", linewidth=max(0.7, width), alpha=max(0.6, alpha))
     name = _NAMES[sweep.name]
-    first, last = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
-    ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first)
-    ax.plot(roots[-1].real, roots[-1].imag, "o", color=VERMILLION, markersize=3.5, linestyle="none", label=last)
+    first_index, last_label = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
+    ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first_index)
+    ax.plot(roots[-1].real, roots[-1].imag, "o", color=VERMILLION, markersize=3.5, linestyle="none", label=last_label)
     ax.axvline(0.0, color=MUTED, linewidth=0.9, linestyle="-", zorder=0)
     return finish(ax, "Re s (1/time)", "Im s (radians/time)")
 

@@ -29,16 +29,16 @@ def linear_range(
         Amplitudes to point out, by label.
     """
     ax = ensure_axes(ax)
-    for k, (label, (sizes, deviations, changes)) in enumerate(ranges.items()):
+    for k, (label, (magnitudes, deviations, changes)) in enumerate(ranges.items()):
         colour, marker, dash = _LOOKS[k % len(_LOOKS)]
-        x, y, broken = np.asarray(sizes), np.asarray(deviations), np.asarray(changes, dtype=bool)
+        x, y, is_broken = np.asarray(magnitudes), np.asarray(deviations), np.asarray(changes, dtype=bool)
         ax.plot(x, y, color=colour, linestyle=dash, linewidth=1.2, zorder=2)
-        look: Any = {"marker": marker, "color": colour, "linestyle": "none", "zorder": 3}
-        ax.plot(x[~broken], y[~broken], markersize=4.5, label=label, **look)
-        ax.plot(x[broken], y[broken], markersize=5.0, markerfacecolor="white", **look)
+        plot_style: Any = {"marker": marker, "color": colour, "linestyle": "none", "zorder": 3}
+        ax.plot(x[~is_broken], y[~is_broken], markersize=4.5, label=label, **plot_style)
+        ax.plot(x[is_broken], y[is_broken], markersize=5.0, markerfacecolor="white", **plot_style)
         if k == 0:
-            guide = y[0] * x / x[0]
-            ax.plot(x, guide, color=MUTED, linestyle="-", linewidth=0.8, label="∝ amplitude", zorder=1)
+            guide_line = y[0] * x / x[0]
+            ax.plot(x, guide_line, color=MUTED, linestyle="-", linewidth=0.8, label="∝ amplitude", zorder=1)
     for name, value in (marks or {}).items():
         mark(ax, value, name, offset=(-3, 4), width=0.9, color=MUTED, fontsize=8, rotation=90.0, ha="right")
     ax.set(xscale="log", yscale="log")

@@ -59,21 +59,21 @@ def share_against(
         raise ArgumentError(f"{text}; choose some by claims=[...]")
     axes = ensure_axes(ax)
     values = table[parameter].values
-    numbers = values.dtype.kind in "iuf"
-    place: FloatArray = values.astype(np.float64) if numbers else np.arange(float(len(values)))
-    logarithmic = numbers and _geometric(place)
-    scaled = np.log(place) if logarithmic else place
-    spread = float(np.ptp(scaled)) or 1.0
+    is_numeric = values.dtype.kind in "iuf"
+    place: FloatArray = values.astype(np.float64) if is_numeric else np.arange(float(len(values)))
+    logarithmic = is_numeric and _geometric(place)
+    axis_values = np.log(place) if logarithmic else place
+    spread = float(np.ptp(axis_values)) or 1.0
     for k, (claim, label) in enumerate(curves.items()):
         part = table.sel(claim=claim, of=of)
         shift = _DODGE * spread * (k - 0.5 * (len(curves) - 1))
-        at = np.exp(scaled + shift) if logarithmic else place + shift
+        at = np.exp(axis_values + shift) if logarithmic else place + shift
         share = part.share.values
         bars = np.abs(np.stack([share - part.low.values, part.high.values - share]))
         axes.errorbar(at, share, yerr=bars, marker=_MARKS[k], markersize=4, capsize=2, elinewidth=0.9, label=label)
     if logarithmic:
         axes.set_xscale("log")
-    if not numbers:
+    if not is_numeric:
         axes.set_xticks(place, [str(value) for value in values.tolist()])
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     label = f"share of runs {of}, {100 * table.attrs['level']:g} % intervals"
@@ -96,8 +96,8 @@ def _geometric(places: FloatArray) -> bool:
         return False
     if len(places) == 2:
         return True
-    even, ratios = np.diff(np.sort(places)), np.diff(np.log(np.sort(places)))
-    return bool(even.max() * ratios.min() > ratios.max() * even.min())
+    step_widths, ratios = np.diff(np.sort(places)), np.diff(np.log(np.sort(places)))
+    return bool(step_widths.max() * ratios.min() > ratios.max() * step_widths.min())
 
 
 @check_kinds
@@ -125,18 +125,18 @@ def draw_bars(
 ) -> Axes:
     """Draw rows of `share_bars`: shares and the ends of their intervals, shape (3, M), by status."""
     rows = np.arange(len(claims))[::-1]
-    for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
-        share, low, high = shares[of]
+    for status_name, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
+        share, low, high = shares[status_name]
         is_finite = np.isfinite(share)
         axes.hlines(rows[is_finite] + shift, low[is_finite], high[is_finite], color=colour, linewidth=1.4)
-        fill = colour if of == "verified" else "white"
-        style = {"color": colour, "markerfacecolor": fill, "markersize": 5, "linestyle": "none"}
-        axes.plot(share[is_finite], rows[is_finite] + shift, mark, label=of, **style)
+        fill_colour = colour if status_name == "verified" else "white"
+        style = {"color": colour, "markerfacecolor": fill_colour, "markersize": 5, "linestyle": "none"}
+        axes.plot(share[is_finite], rows[is_finite] + shift, mark, label=status_name, **style)
     axes.set_yticks(rows, claims)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0))
-    several = " to ".join(map(str, dict.fromkeys((int(np.min(runs)), int(np.max(runs))))))
+    run_counts_text = " to ".join(map(str, dict.fromkeys((int(np.min(runs)), int(np.max(runs))))))
     axes.set(ylim=(-0.6, len(claims) - 0.4), xlim=(-0.03, 1.03))
-    axes.set_xlabel(f"share of {several} runs, {100 * level:g} % intervals")
+    axes.set_xlabel(f"share of {run_counts_text} runs, {100 * level:g} % intervals")
     return _finish(axes, title)
 
 
@@ -173,9 +173,9 @@ def distribution(
         data = x[x > 0.0] if log else x
         if not data.size:
             continue
-        below = x.size - data.size  # they count in the shares, although a logarithmic axis has no place for them
-        note = f", {below} at 0" if below else ""
-        share = (below + np.arange(data.size + 1)) / x.size
+        nan_count = x.size - data.size  # they count in the shares, although a logarithmic axis has no place for them
+        note = f", {nan_count} at 0" if nan_count else ""
+        share = (nan_count + np.arange(data.size + 1)) / x.size
         label = f"{name} ({x.size} runs{note})"
         (line,) = axes.step(np.concatenate([data[:1], data]), share, where="post", label=label)
         height = -0.02 - 0.03 * k
@@ -226,8 +226,8 @@ def phase_diagram(
             width, name = float(count) / known_codes.size, names[code]
             colour, hatch = _PHASES[name]
             label = None if name in labels_seen else name
-            look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0.0}
-            axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, label=label, **look))
+            plot_style: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white", "linewidth": 0.0}
+            axes.add_patch(Rectangle((left, row - 0.5), width, 1.0, label=label, **plot_style))
             left, labels_seen = left + width, labels_seen | {name}
     for axis, name, label in ((axes.xaxis, x, labels[0]), (axes.yaxis, y, labels[1])):
         values = phase[name].values.tolist()
@@ -241,8 +241,8 @@ def phase_diagram(
     axes.set(xlim=(-0.5, codes.shape[0] - 0.5), ylim=(-0.5, codes.shape[1] - 0.5))
     handles = {text: handle for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
     order = [name for name in names if name in handles]
-    look = LEGEND | {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(order)}
-    axes.legend([handles[name] for name in order], order, **look)
+    plot_style = LEGEND | {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(order)}
+    axes.legend([handles[name] for name in order], order, **plot_style)
     if title:
         write_title(axes, title, pad=26)
     return axes
@@ -252,10 +252,10 @@ def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[
     """Return the claims to draw; raise unless a table of shares has these parameters and no others."""
     if of not in ("verified", "refuted"):
         raise ArgumentError(f"of = {of!r}: expected 'verified' or 'refuted'")
-    others = {str(name) for name in table.runs.dims} - {"claim"}
-    if others != parameters:
+    other_dimensions = {str(name) for name in table.runs.dims} - {"claim"}
+    if other_dimensions != parameters:
         raise ArgumentError(
-            f"the table is over {', '.join(sorted(others)) or 'no parameter'}: expected "
+            f"the table is over {', '.join(sorted(other_dimensions)) or 'no parameter'}: expected "
             f"{', '.join(sorted(parameters)) or 'none'}; select values of the others by .sel(...)"
         )
     all_claims = [str(name) for name in table.claim.values]

@@ -67,10 +67,10 @@ def search_history(
     axes.plot(run[solid], values[solid], "o", color=MUTED, markersize=2.5, label="one run")
     axes.step(run, best_so_far, where="post", color=BLUE, linestyle="-", label="smallest margin so far")
     axes.axhline(0.0, color=INK, linewidth=0.9, linestyle=":", label="refuted below 0")
-    hits = np.asarray(found, dtype=np.int64)
-    if hits.size:
-        look = {"markersize": 9, "markerfacecolor": "none", "markeredgewidth": 1.5, "linestyle": "none"}
-        axes.plot(run[hits], values[hits], "s", color=VERMILLION, label="refuted", **look)
+    hit_numbers = np.asarray(found, dtype=np.int64)
+    if hit_numbers.size:
+        plot_style = {"markersize": 9, "markerfacecolor": "none", "markeredgewidth": 1.5, "linestyle": "none"}
+        axes.plot(run[hit_numbers], values[hit_numbers], "s", color=VERMILLION, label="refuted", **plot_style)
     if not solid.all():
         foot = axes.get_xaxis_transform()
         axes.plot(run[~solid], np.full((~solid).sum(), 0.02), "|", color=MUTED, transform=foot, label="no margin")
@@ -85,7 +85,7 @@ def search_history(
 
 
 def _scale(axes: Any, values: FloatArray) -> None:
-    sizes = np.abs(values[values != 0.0])
-    if sizes.size and sizes.max() > _WIDE * sizes.min():
-        knee = max(float(np.quantile(sizes, 0.1)), 1e-6 * float(sizes.max()))
+    magnitudes = np.abs(values[values != 0.0])
+    if magnitudes.size and magnitudes.max() > _WIDE * magnitudes.min():
+        knee = max(float(np.quantile(magnitudes, 0.1)), 1e-6 * float(magnitudes.max()))
         axes.set_yscale("symlog", linthresh=knee)

@@ -96,16 +96,16 @@ def defect_map(
 
 def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster: bool) -> None:
     width = float(np.clip(20.0 / len(segments) ** 0.5, 0.3, 2.2)) * (0.6 if segments.shape[2] == 3 else 1.0)
-    look: dict[str, Any] = {"linewidths": width, "zorder": 2, "rasterized": raster}
+    plot_style: dict[str, Any] = {"linewidths": width, "zorder": 2, "rasterized": raster}
     if strain is None:
-        ax.add_collection(lines(segments, colors=MUTED, **look))
+        ax.add_collection(lines(segments, colors=MUTED, **plot_style))
         return
     end = (float(np.abs(strain).max()) if limit is None else limit) or 1.0
-    coloured = lines(segments, array=strain, cmap=STRAIN, norm=Normalize(-end, end), **look)
+    coloured = lines(segments, array=strain, cmap=STRAIN, norm=Normalize(-end, end), **plot_style)
     ax.add_collection(coloured)
-    extend = ("min" if strain.min() < -end else "") + ("max" if strain.max() > end else "")
-    ends = {"": "neither", "minmax": "both"}.get(extend, extend)
-    colour_bar(ax, coloured, "strain of links (length − d)/d", extend=ends)
+    extend_kind = ("min" if strain.min() < -end else "") + ("max" if strain.max() > end else "")
+    arrow_kinds = {"": "neither", "minmax": "both"}.get(extend_kind, extend_kind)
+    colour_bar(ax, coloured, "strain of links (length − d)/d", extend=arrow_kinds)
 
 
 @check_kinds
@@ -119,14 +119,14 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     """
     axes = ensure_axes(ax)
     places = np.stack(np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :]))
-    apart, together, failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
-    look: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0, "s": 34, "zorder": 3}
-    dots = axes.scatter(*places[:, apart], c=diagram.closest[apart], **look)
-    axes.scatter(*places[:, together], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
-    if failed.any():
-        axes.scatter(*places[:, failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
+    is_separated, is_coincident, is_failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
+    plot_style: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0, "s": 34, "zorder": 3}
+    dot_artists = axes.scatter(*places[:, is_separated], c=diagram.closest[is_separated], **plot_style)
+    axes.scatter(*places[:, is_coincident], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
+    if is_failed.any():
+        axes.scatter(*places[:, is_failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
     axes.plot(diagram.sizes, diagram.onset(), color=INK, linestyle="--", linewidth=1.0, label="onset")
-    colour_bar(axes, dots, "least distance over d", share=1.0)
+    colour_bar(axes, dot_artists, "least distance over d", share=1.0)
     return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
 
 
@@ -140,12 +140,12 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
         By number of agents: the largest ratio seen safe, the least seen to collapse.
     """
     axes = ensure_axes(ax)
-    sizes = sorted(brackets)
-    low, high = np.array([brackets[n] for n in sizes]).T
-    axes.vlines(sizes, low, high, color=MUTED, linewidth=1.2, zorder=2)
-    axes.plot(sizes, high, marker="x", color=VERMILLION, linestyle="--", linewidth=1.0, label="agents coincide")
-    axes.plot(sizes, low, marker="o", color=BLUE, linestyle="-", linewidth=1.0, label="all stay apart")
-    return _over_size(axes, sizes, "c1γ/c1α")
+    magnitudes = sorted(brackets)
+    low, high = np.array([brackets[n] for n in magnitudes]).T
+    axes.vlines(magnitudes, low, high, color=MUTED, linewidth=1.2, zorder=2)
+    axes.plot(magnitudes, high, marker="x", color=VERMILLION, linestyle="--", linewidth=1.0, label="agents coincide")
+    axes.plot(magnitudes, low, marker="o", color=BLUE, linestyle="-", linewidth=1.0, label="all stay apart")
+    return _over_size(axes, magnitudes, "c1γ/c1α")
 
 
 @check_kinds
@@ -178,8 +178,8 @@ def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool =
     """Label axes over the number of agents; label every size if there are few."""
     if logarithmic:
         ax.set_yscale("log")
-        minor = ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter()
-        ax.yaxis.set(major_formatter=ScalarFormatter(), minor_formatter=minor)
+        minor_formatter = ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter()
+        ax.yaxis.set(major_formatter=ScalarFormatter(), minor_formatter=minor_formatter)
     if len(sizes) <= 12:
         ax.xaxis.set_major_locator(FixedLocator(sizes))
     return finish(ax, "n, agents", label)

@@ -38,8 +38,8 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
     """
     solids = tuple(items)
     axes = ensure_axes(ax, m=solids[0].dimension if solids else 2)
-    for solid in solids:
-        _draw(axes, solid, np.zeros((1, solid.dimension)) if view is None else np.asarray(view, dtype=np.float64))
+    for obstacle in solids:
+        _draw(axes, obstacle, np.zeros((1, obstacle.dimension)) if view is None else np.asarray(view, dtype=np.float64))
     if ax is None and axes.name != "3d":
         axes.autoscale_view()  # patches do not move the limits by themselves
         axes.set_aspect("equal", adjustable="datalim")
@@ -50,7 +50,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
 def bounds(items: Iterable[Obstacle]) -> FloatArray:
     """Return corners of the bounding boxes of the bounded obstacles, shape (2 K, m)."""
     solids = tuple(items)
-    balls = [solid.ball for solid in solids if np.isfinite(solid.ball[1])]
+    balls = [obstacle.ball for obstacle in solids if np.isfinite(obstacle.ball[1])]
     corners = [centre + side * radius for centre, radius in balls for side in (-1.0, 1.0)]
     return np.array(corners).reshape(-1, solids[0].dimension)
 
@@ -64,8 +64,8 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
     if solid.dimension == 3:
         turn, tilt = np.linspace(0.0, 2.0 * np.pi, _MESH[1]), np.linspace(0.0, np.pi, _MESH[0])[:, None]
         ball = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt) + 0.0 * turn], axis=2)
-        traced, inside = _nearest_points(solid, centre + _OUTSIDE * radius * ball.reshape(-1, 3))
-        traced[inside] = np.nan  # of an unbounded solid only its surface shows
+        traced, is_inside = _nearest_points(solid, centre + _OUTSIDE * radius * ball.reshape(-1, 3))
+        traced[is_inside] = np.nan  # of an unbounded solid only its surface shows
         ax.plot_wireframe(*traced.T.reshape(3, *_MESH), color=MUTED, linewidth=0.4, rstride=2, cstride=3)
         return
     if solid.dimension == 1:
@@ -82,5 +82,5 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
 def _nearest_points(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
     """Return the closest points of the solid, and whether each given point is inside."""
     foot = solid.beta_agents(around, np.zeros_like(around))
-    inside = foot.clearance <= 0.0
-    return np.where(inside[:, None], around, foot.q), inside
+    is_inside = foot.clearance <= 0.0
+    return np.where(is_inside[:, None], around, foot.q), is_inside

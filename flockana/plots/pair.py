@@ -46,8 +46,8 @@ def force(function: DistanceFunction, *, ax: Axes | None = None) -> Axes:
     ax, end = ensure_axes(ax), function.range
     x = np.linspace(0.0, 1.15 * end, _SAMPLES)[1:]
     values = function.force(x)
-    near = x >= (0.0 if np.abs(values[0]) < 1e3 * np.abs(values[_SAMPLES // 2 :]).max() else 0.25 * end)
-    ax.plot(x[near], values[near], color=BLUE, linestyle="-")
+    is_plotted = x >= (0.0 if np.abs(values[0]) < 1e3 * np.abs(values[_SAMPLES // 2 :]).max() else 0.25 * end)
+    ax.plot(x[is_plotted], values[is_plotted], color=BLUE, linestyle="-")
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     for zero in function.facts.zeros or ():
         mark(ax, zero, f"{zero:.4g}", offset=(3, -9), height=1.0)
@@ -76,10 +76,10 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     x = np.linspace(-0.5 * d, 1.15 * r, _SAMPLES)
     psi = interaction.psi_alpha(interaction.sigma_norm(np.abs(x))) / interaction.c_star
     ax.plot(x, psi, color=VERMILLION, linestyle="--", label="V, the pair's potential, over c*")
-    zero, within = deviation_energy([[0.0], [0.0]], d, r), np.nextafter(r, 0.0)
-    inside = np.append(x[x < r], within)
-    values = np.array([deviation_energy([[0.0], [at]], d, r) for at in inside]) / zero
-    ax.plot(inside, values, color=BLUE, linestyle="-", label="E, deviation energy, over E(0)")
+    zero, inside_range = deviation_energy([[0.0], [0.0]], d, r), np.nextafter(r, 0.0)
+    is_inside = np.append(x[x < r], inside_range)
+    values = np.array([deviation_energy([[0.0], [distance]], d, r) for distance in is_inside]) / zero
+    ax.plot(is_inside, values, color=BLUE, linestyle="-", label="E, deviation energy, over E(0)")
     ax.plot([r, x[-1]], [0.0, 0.0], color=BLUE, linestyle="-")
     ax.plot([r], [values[-1]], "o", color=BLUE, markerfacecolor="white", markersize=5)
     ax.plot([r], [0.0], "o", color=BLUE, markersize=5)

@@ -49,8 +49,8 @@ def phase_portrait(
     if separatrix is not None and energy is None:
         raise ArgumentError(f"separatrix = {separatrix:g} without an energy: give energy=(x, v, H) too")
     if energy is not None:
-        lowest = float(np.min(energy[2]))
-        levels = _LEVELS if separatrix is None else lowest + _ORBITS * (separatrix - lowest)
+        lowest_value = float(np.min(energy[2]))
+        levels = _LEVELS if separatrix is None else lowest_value + _ORBITS * (separatrix - lowest_value)
         axes.contour(*energy, levels=levels, colors=MUTED, linewidths=0.6, alpha=0.7)
     if energy is not None and separatrix is not None:
         axes.contour(*energy, levels=[separatrix], colors=VERMILLION, linewidths=1.3)

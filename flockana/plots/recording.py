@@ -24,13 +24,13 @@ def recorded_measure(seen: xarray.Dataset, name: str, *, ax: Axes | None = None)
     values, ax = seen[ensure_known("measure", name, names)], ensure_axes(ax)
     t, error = seen["time"].values, seen[f"{name}_error"].values
     ax.plot(t, values, color=BLUE, linestyle="-")
-    positive = float(values.min()) >= 0.0
+    is_positive_measure = float(values.min()) >= 0.0
     if np.isfinite(error).any():
-        low = np.maximum(values - error, 0.0) if positive else values - error
+        low = np.maximum(values - error, 0.0) if is_positive_measure else values - error
         ax.fill_between(t, low, values + error, color=BLUE, alpha=0.25, linewidth=0.0)
     unit = values.attrs.get("units", "")
     label = str(values.attrs.get("long_name", name)) + (f" ({unit})" if unit not in ("", "1") else "")
-    if positive:
+    if is_positive_measure:
         ax.set_ylim(bottom=0.0)
     return finish_over_time(ax, t, label)
 

@@ -42,12 +42,12 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     axes.scatter(*points.T, s=12, color=INK, linewidths=0, zorder=3)
     names = "flock centring", "collision avoidance", "velocity matching"
     forces = parts.centring, parts.avoidance, parts.matching
-    longest = max(float(np.linalg.norm(part, axis=1).max()) for part in forces)
+    longest = max(float(np.linalg.norm(rule_forces, axis=1).max()) for rule_forces in forces)
     scale = {"angles": "xy", "scale_units": "width", "scale": longest / _ARROW, "width": 0.004, "zorder": 4}
-    for name, part, colour in zip(names, forces, (BLUE, VERMILLION, GREEN), strict=True):
-        acts = np.linalg.norm(part, axis=1) > 1e-3 * longest
-        if acts.any():
-            axes.quiver(*points[acts].T, *part[acts].T, color=colour, label=name, **scale)
+    for name, rule_forces, colour in zip(names, forces, (BLUE, VERMILLION, GREEN), strict=True):
+        is_acting = np.linalg.norm(rule_forces, axis=1) > 1e-3 * longest
+        if is_acting.any():
+            axes.quiver(*points[is_acting].T, *rule_forces[is_acting].T, color=colour, label=name, **scale)
     text = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
     axes.margins(0.12)
     finish(axes)

@@ -33,9 +33,9 @@ def plain(text: str) -> str:
     """
     if not text.startswith("$"):
         return text
-    bare = text.strip("$").replace(r"\mathdefault", "").replace(r"\times", "×")
-    raised = re.sub(r"\^\{([^{}]*)\}", lambda power: power[1].translate(_RAISED), bare)
-    return re.sub(r"[{}$]", "", raised)
+    bare_text = text.strip("$").replace(r"\mathdefault", "").replace(r"\times", "×")
+    raised_text = re.sub(r"\^\{([^{}]*)\}", lambda power: power[1].translate(_RAISED), bare_text)
+    return re.sub(r"[{}$]", "", raised_text)
 
 
 def _typeset(text: str) -> bool:
@@ -57,7 +57,7 @@ class Ticks:
     @property
     def numbered(self) -> list[tuple[float, str]]:
         """Return the positions and texts of numbered ticks."""
-        return [(at, text) for at, text in zip(self.at.tolist(), self.numbers, strict=True) if text]
+        return [(position, text) for position, text in zip(self.at.tolist(), self.numbers, strict=True) if text]
 
 
 class PlainScale(Artist):
@@ -66,9 +66,9 @@ class PlainScale(Artist):
     def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size]) -> None:
         super().__init__()
         self.ax, self.name, self.scale, self._known = ax, name, getattr(ax, f"{name}axis"), sizes
-        self.k, look = "xy".index(name), self.scale.get_tick_params()
-        self.side = "right" if name == "y" and look.get("right") else "left"
-        self.font = FontProperties(size=look.get("labelsize", self._style("labelsize")))
+        self.k, tick_parameters = "xy".index(name), self.scale.get_tick_params()
+        self.side = "right" if name == "y" and tick_parameters.get("right") else "left"
+        self.font = FontProperties(size=tick_parameters.get("labelsize", self._style("labelsize")))
         self.set_zorder(0.5)  # below what is drawn, as the style has it
         self.scale.set_visible(False)
         ax.add_artist(self)
@@ -79,7 +79,7 @@ class PlainScale(Artist):
         scale, look = self.scale, self.scale.get_tick_params(which)
         values = np.asarray(getattr(scale, f"get_{which}ticklocs")(), dtype=np.float64)
         formatter = getattr(scale, f"get_{which}_formatter")()
-        numbers = tuple(plain(text) for text in formatter.format_ticks(values)) if values.size else ()
+        tick_texts = tuple(plain(text) for text in formatter.format_ticks(values)) if values.size else ()
         points = np.zeros((values.size, 2))
         points[:, self.k] = values
         at = getattr(self.ax, f"get_{self.name}axis_transform")().transform(points)[:, self.k]
@@ -89,21 +89,21 @@ class PlainScale(Artist):
             float(look.get(key, self._style(f"{which}.{rc}")))
             for key, rc in (("length", "size"), ("width", "width"), ("pad", "pad"))
         )
-        texts = tuple(text for text, inside in zip(numbers, inside_limits.tolist(), strict=True) if inside)
+        texts = tuple(text for text, is_inside in zip(tick_texts, inside_limits.tolist(), strict=True) if is_inside)
         return Ticks(at[inside_limits], texts, length * self._pixel, width, pad * self._pixel, bool(look["gridOn"]))
 
     def _style(self, key: str) -> Any:
         """Return the style's settings of the ticks of this scale."""
-        look: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
-        return look[f"{self.name}tick.{key}"]
+        plot_style: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
+        return plot_style[f"{self.name}tick.{key}"]
 
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
         """Return the pixels needed by the scale left of, right of, below and above its axes."""
         kinds, ends = self._kinds(), (0.0, 0.0)
         low, high = getattr(self.ax.bbox, f"interval{self.name}")
-        for at, text in (pair for ticks in kinds for pair in ticks.numbered):
-            half = 0.5 * self._size(renderer, text)[self.k]
-            ends = max(ends[0], low - at + half), max(ends[1], at + half - high)
+        for position, text in (pair for ticks in kinds for pair in ticks.numbered):
+            half_width = 0.5 * self._size(renderer, text)[self.k]
+            ends = max(ends[0], low - position + half_width), max(ends[1], position + half_width - high)
         label, power = self.scale.get_label_text(), self._power()
         depth = self._depth(renderer, kinds)
         depth += self._label_pad() + self._label_size(renderer)[1] if label else 0.0
@@ -115,9 +115,9 @@ class PlainScale(Artist):
 
     def get_window_extent(self, renderer: Any = None) -> Bbox:
         """Return the extent of the axes with this scale's labels, in pixels, for matplotlib's layout."""
-        left, right, below, above = self.room(renderer)
+        left, right, bottom_margin, top_margin = self.room(renderer)
         box = self.ax.bbox
-        return Bbox.from_extents(box.x0 - left, box.y0 - below, box.x1 + right, box.y1 + above)
+        return Bbox.from_extents(box.x0 - left, box.y0 - bottom_margin, box.x1 + right, box.y1 + top_margin)
 
     def _kinds(self) -> tuple[Ticks, Ticks]:
         return self.ticks("major"), self.ticks("minor")
@@ -168,12 +168,12 @@ class PlainScale(Artist):
 
     def _draw_lines(self, renderer: Any, ticks: Ticks) -> None:
         low, high = getattr(self.ax.bbox, f"interval{'yx'[self.k]}")
-        foot, outward = (high, 1.0) if self.side == "right" else (low, -1.0)
+        foot, tick_direction = (high, 1.0) if self.side == "right" else (low, -1.0)
         if ticks.grid and self.side == "left":
             self._stroke(renderer, ticks.at, (low, high), mpl.rcParams["grid.color"], mpl.rcParams["grid.linewidth"])
         if ticks.length > 0.0:
-            ends = (foot, foot + outward * ticks.length)
-            self._stroke(renderer, ticks.at, ends, self._style("color"), ticks.width)
+            line_ends = (foot, foot + tick_direction * ticks.length)
+            self._stroke(renderer, ticks.at, line_ends, self._style("color"), ticks.width)
 
     def _stroke(self, renderer: Any, at: FloatArray, ends: tuple[float, float], colour: str, width: float) -> None:
         """Draw parallel lines across the axis at the given places, between two ends."""
@@ -190,15 +190,15 @@ class PlainScale(Artist):
         context.restore()
 
     def _draw_numbers(self, renderer: Any, ticks: Ticks) -> None:
-        box, (_, tall, below) = self.ax.bbox, self._size(renderer, "lp")
-        away = ticks.length + ticks.pad
-        for at, text in ticks.numbered:
+        box, (_, text_height, bottom_margin) = self.ax.bbox, self._size(renderer, "lp")
+        label_distance = ticks.length + ticks.pad
+        for position, text in ticks.numbered:
             width, height, descent = self._size(renderer, text)
             if self.name == "x":
-                x, y = at - 0.5 * width, box.y0 - away - (tall - below)
+                x, y = position - 0.5 * width, box.y0 - label_distance - (text_height - bottom_margin)
             else:
-                x = box.x0 - away - width if self.side == "left" else box.x1 + away
-                y = at - 0.5 * (height - descent)
+                x = box.x0 - label_distance - width if self.side == "left" else box.x1 + label_distance
+                y = position - 0.5 * (height - descent)
             self._write(renderer, x, y, text)
 
     def _draw_power(self, renderer: Any, depth: float) -> None:
@@ -217,11 +217,11 @@ class PlainScale(Artist):
         if not label.get_text():
             return
         width, height, descent = self._label_size(renderer)
-        away = depth + self._label_pad()
+        label_distance = depth + self._label_pad()
         if self.name == "x":
-            x, y, angle = 0.5 * (box.x0 + box.x1 - width), box.y0 - away - (height - descent), 0.0
+            x, y, angle = 0.5 * (box.x0 + box.x1 - width), box.y0 - label_distance - (height - descent), 0.0
         else:
-            x = box.x0 - away - descent if self.side == "left" else box.x1 + away + height - descent
+            x = box.x0 - label_distance - descent if self.side == "left" else box.x1 + label_distance + height - descent
             y, angle = 0.5 * (box.y0 + box.y1 - width), 90.0
         self._write(renderer, x, y, label.get_text(), (label.get_fontproperties(), label.get_color(), angle))
 
@@ -237,6 +237,6 @@ class PlainScale(Artist):
 
 def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
     """Install fast scales on all two-dimensional axes of a figure, colour bars included; return them by axes."""
-    flat = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
-    sizes: dict[tuple[str, float], Size] = {}
-    return {ax: tuple(PlainScale(ax, name, sizes) for name in "xy") for ax in flat}
+    flat_axes = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
+    magnitudes: dict[tuple[str, float], Size] = {}
+    return {ax: tuple(PlainScale(ax, name, magnitudes) for name in "xy") for ax in flat_axes}

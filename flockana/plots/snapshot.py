@@ -69,11 +69,11 @@ def nearest_sample(t: checks.FloatArray, time: float | None) -> int:
     """Return the index of the sample nearest to a time; the last by default."""
     if time is None:
         return len(t) - 1
-    when, first, last = checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
-    room = _ROUNDING * (last - first)
-    if not first - room <= when <= last + room:
-        raise ArgumentError(f"time = {when:g}: expected a time of the run, {first:g} to {last:g}")
-    return int(np.argmin(np.abs(t - when)))
+    sample_time, first_index, last_time = checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
+    time_tolerance = _ROUNDING * (last_time - first_index)
+    if not first_index - time_tolerance <= sample_time <= last_time + time_tolerance:
+        raise ArgumentError(f"time = {sample_time:g}: expected a time of the run, {first_index:g} to {last_time:g}")
+    return int(np.argmin(np.abs(t - sample_time)))
 
 
 def _range_circles(ax: Any, q: checks.FloatArray, law: Any) -> None:
@@ -84,9 +84,9 @@ def _range_circles(ax: Any, q: checks.FloatArray, law: Any) -> None:
         )
     ranges = getattr(law, "ranges", None)
     widths = np.broadcast_to(2.0 * np.asarray(law.pair.range if ranges is None else ranges), len(q))
-    look: dict[str, Any] = {"facecolor": "none", "edgecolor": MUTED, "linewidth": 0.5, "alpha": 0.6}
-    look |= {"units": "xy", "offsets": q, "offset_transform": ax.transData}
-    ax.add_collection(EllipseCollection(widths, widths, np.zeros(len(q)), **look))
+    plot_style: dict[str, Any] = {"facecolor": "none", "edgecolor": MUTED, "linewidth": 0.5, "alpha": 0.6}
+    plot_style |= {"units": "xy", "offsets": q, "offset_transform": ax.transData}
+    ax.add_collection(EllipseCollection(widths, widths, np.zeros(len(q)), **plot_style))
 
 
 def drawn_law(trajectory: Trajectory) -> Any:
@@ -172,19 +172,19 @@ def configuration(
         _arrowheads(axes, x, pairs)
     elif r is not None and len(points) > 1:
         _links(axes, x, points, links(points, r), d, r, bar)
-    size = float(np.clip(900.0 / len(x), 3.0, 26.0))
-    axes.scatter(*x.T, s=size, color=INK, linewidths=0, zorder=3, label="agents")
+    marker_size = float(np.clip(900.0 / len(x), 3.0, 26.0))
+    axes.scatter(*x.T, s=marker_size, color=INK, linewidths=0, zorder=3, label="agents")
     _multiplicities(axes, x)
     corners = x
     if target is not None:
-        place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
-        star(axes, place, label="γ-agent")
-        corners = np.vstack([x, place])
+        position = in_plane(np.asarray(target, dtype=np.float64)[None, :])
+        star(axes, position, label="γ-agent")
+        corners = np.vstack([x, position])
     if len(obstacles):
         corners = np.vstack([corners, in_plane(bounds(obstacles))])
         draw_obstacles(obstacles, ax=axes, view=corners[:, :m])
         if beta is not None:
-            _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
+            _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), marker_size)
     write_title(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, corners, m)
 
@@ -193,10 +193,10 @@ def _lengths(d: Any, pairs: Any) -> Any:
     """Return desired distances: one number > 0, or one for each edge."""
     if pairs is None or np.isscalar(d):
         return checks.ensure_positive("d", d)
-    lengths = checks.ensure_series("d", d, len(pairs))
-    if not (lengths > 0.0).all():
-        raise ArgumentError(f"d has the entry {lengths.min():g}: expected numbers > 0")
-    return lengths
+    link_lengths = checks.ensure_series("d", d, len(pairs))
+    if not (link_lengths > 0.0).all():
+        raise ArgumentError(f"d has the entry {link_lengths.min():g}: expected numbers > 0")
+    return link_lengths
 
 
 def _multiplicities(ax: Any, x: checks.FloatArray) -> None:
@@ -205,10 +205,10 @@ def _multiplicities(ax: Any, x: checks.FloatArray) -> None:
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
     if len(near) == 0:
         return
-    groups, look = components(len(x), near), {"fontsize": 7, "color": VERMILLION, "ha": "left", "va": "bottom"}
+    groups, plot_style = components(len(x), near), {"fontsize": 7, "color": VERMILLION, "ha": "left", "va": "bottom"}
     for group in np.unique(groups[near]):
-        here = groups == group
-        ax.text(*x[here].mean(axis=0), f"  ×{here.sum()}", zorder=5, **look)
+        in_group = groups == group
+        ax.text(*x[in_group].mean(axis=0), f"  ×{in_group.sum()}", zorder=5, **plot_style)
 
 
 def _links(
@@ -219,14 +219,14 @@ def _links(
     if len(pairs) == 0:
         return
     few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)
-    look: dict[str, Any] = {"linewidths": few * float(np.clip(120.0 / len(points), 0.7, 1.8)), "zorder": 2}
+    plot_style: dict[str, Any] = {"linewidths": few * float(np.clip(120.0 / len(points), 0.7, 1.8)), "zorder": 2}
     if d is None:
-        ax.add_collection(lines(x[pairs], colors=MUTED, **look))
+        ax.add_collection(lines(x[pairs], colors=MUTED, **plot_style))
         return
     strain = (link_lengths(points, pairs) - d) / d
     order = np.argsort(-np.abs(strain), kind="stable") if few < 1.0 else slice(None)
     limit = 1.0 if r is None else min(1.0, r / d - 1.0)
-    coloured = lines(x[pairs[order]], array=strain[order], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
+    coloured = lines(x[pairs[order]], array=strain[order], cmap=STRAIN, norm=Normalize(-limit, limit), **plot_style)
     ax.add_collection(coloured)
     if bar:
         colour_bar(ax, coloured, "strain (length − d)/d", extend="min" if limit < 1.0 else "max")
@@ -234,26 +234,26 @@ def _links(
 
 def _arrowheads(ax: Any, x: checks.FloatArray, pairs: Any) -> None:
     """Mark one-way links with arrowheads at their midpoints."""
-    both = {tuple(pair) for pair in pairs.tolist()}
-    one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in both], dtype=np.int64)
+    pair_set = {tuple(pair) for pair in pairs.tolist()}
+    one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in pair_set], dtype=np.int64)
     if one_way.size == 0 or x.shape[1] == 3:
         return
     start, end = x[one_way[:, 0]], x[one_way[:, 1]]
-    along = (end - start) / np.maximum(np.linalg.norm(end - start, axis=1, keepdims=True), np.finfo(float).tiny)
+    direction = (end - start) / np.maximum(np.linalg.norm(end - start, axis=1, keepdims=True), np.finfo(float).tiny)
     look = {"angles": "xy", "scale_units": "inches", "scale": 9.0, "units": "inches", "width": 0.02, "pivot": "middle"}
-    heads = {"headwidth": 6.0, "headlength": 5.5, "headaxislength": 5.5, "minlength": 0.0}
-    ax.quiver(*(0.45 * start + 0.55 * end).T, *along.T, color=MUTED, zorder=2.2, **look, **heads)
+    head_sizes = {"headwidth": 6.0, "headlength": 5.5, "headaxislength": 5.5, "minlength": 0.0}
+    ax.quiver(*(0.45 * start + 0.55 * end).T, *direction.T, color=MUTED, zorder=2.2, **look, **head_sizes)
 
 
 def _beta_agents(ax: Any, points: checks.FloatArray, field: ObstacleField, size: float) -> None:
     """Draw the β-agents in range, each joined to its agent."""
-    near = field.links(points, np.zeros_like(points))
-    if near.agent.size == 0:
+    near_links = field.links(points, np.zeros_like(points))
+    if near_links.agent.size == 0:
         return
-    ends = np.stack([in_plane(points[near.agent]), in_plane(near.q)], axis=1)
-    ax.add_collection(lines(ends, colors=PURPLE, linewidths=0.9, linestyles=":", zorder=2))
-    look = {"facecolors": "white", "edgecolors": PURPLE, "linewidths": 0.8, "zorder": 3}
-    ax.scatter(*ends[:, 1].T, s=0.7 * size, marker="D", label="β-agents", **look)
+    segment_ends = np.stack([in_plane(points[near_links.agent]), in_plane(near_links.q)], axis=1)
+    ax.add_collection(lines(segment_ends, colors=PURPLE, linewidths=0.9, linestyles=":", zorder=2))
+    plot_style = {"facecolors": "white", "edgecolors": PURPLE, "linewidths": 0.8, "zorder": 3}
+    ax.scatter(*segment_ends[:, 1].T, s=0.7 * size, marker="D", label="β-agents", **plot_style)
 
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
@@ -263,8 +263,8 @@ def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest == 0.0:
         return ""
-    look: dict[str, Any] = {"length": _ARROW * extent / fastest, "linewidth": 0.6, "arrow_length_ratio": 0.25}
+    plot_style: dict[str, Any] = {"length": _ARROW * extent / fastest, "linewidth": 0.6, "arrow_length_ratio": 0.25}
     if x.shape[1] != 3:
-        look = {"angles": "xy", "scale_units": "width", "scale": fastest / _ARROW, "width": 0.0022, "zorder": 2.5}
-    ax.quiver(*x.T, *v.T, color=GREEN, **look)
+        plot_style = {"angles": "xy", "scale_units": "width", "scale": fastest / _ARROW, "width": 0.0022, "zorder": 2.5}
+    ax.quiver(*x.T, *v.T, color=GREEN, **plot_style)
     return f"   longest arrow: {fastest:.3g} length/time"

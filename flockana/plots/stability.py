@@ -51,15 +51,15 @@ def pole_map(poles: Any, *, ax: Axes | None = None) -> Axes:
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
     for (marker, colour), (name, group) in zip(_LOOKS, values.items(), strict=False):
-        decaying = group[(group != 0.0) & (group.real <= 0.0)]
-        look: dict[str, Any] = {"color": colour, "markersize": 6.0, "markeredgewidth": 1.3, "zorder": 3}
-        axes.plot(decaying.real, decaying.imag, marker, label=name, **look)
+        decaying_poles = group[(group != 0.0) & (group.real <= 0.0)]
+        plot_style: dict[str, Any] = {"color": colour, "markersize": 6.0, "markeredgewidth": 1.3, "zorder": 3}
+        axes.plot(decaying_poles.real, decaying_poles.imag, marker, label=name, **plot_style)
     grows, zeros = whole[whole.real > 0.0], int(np.sum(whole == 0.0))
     if grows.size:
         axes.plot(grows.real, grows.imag, "^", color=VERMILLION, markersize=6.0, label="growing", zorder=3)
     if zeros:
-        look = {"color": INK, "markerfacecolor": "none", "markersize": 9.0, "zorder": 4}
-        axes.plot(0.0, 0.0, "o", label=f"zero eigenvalues: {zeros}", **look)
+        plot_style = {"color": INK, "markerfacecolor": "none", "markersize": 9.0, "zorder": 4}
+        axes.plot(0.0, 0.0, "o", label=f"zero eigenvalues: {zeros}", **plot_style)
     axes.margins(0.08)
     axes.autoscale_view()
     height = max(1.2 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
@@ -83,8 +83,8 @@ def _damping_rays(ax: Any) -> None:
             reach = min(-left, abs(edge) / slope)
             ax.plot([0.0, -reach], [0.0, sign * slope * reach], color=FAINT, linestyle="-", linewidth=0.7, zorder=0)
             if sign > 0.0:
-                text, inside = typeset(f"ζ = {ratio:g}"), 0.97 * reach
-                ax.text(-inside, slope * inside, text, color=MUTED, fontsize=7, ha="left", va="top")
+                text, inner_reach = typeset(f"ζ = {ratio:g}"), 0.97 * reach
+                ax.text(-inner_reach, slope * inner_reach, text, color=MUTED, fontsize=7, ha="left", va="top")
     ax.set(xlim=(left, right), ylim=(low, high))
 
 
@@ -117,19 +117,19 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     if np.iscomplexobj(moves):
         orbits = points[:, None] + np.real(np.exp(1j * _RING)[None, :, None] * moves[:, None])
         axes.add_collection(lines(orbits, colors=VERMILLION, linewidths=0.9, zorder=2))
-    size = float(np.clip(700.0 / len(points), 3.0, 22.0))
-    axes.scatter(*points.T, s=size, color=INK, linewidths=0, zorder=3)
+    marker_size = float(np.clip(700.0 / len(points), 3.0, 22.0))
+    axes.scatter(*points.T, s=marker_size, color=INK, linewidths=0, zorder=3)
     arrows = np.real(moves)
     if m == 3:
         axes.quiver(*points.T, *arrows.T, color=BLUE, linewidth=1.0, arrow_length_ratio=0.3)
     else:
-        look = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.004, "color": BLUE, "zorder": 4}
-        axes.quiver(*points.T, *arrows.T, **look)
+        plot_style = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.004, "color": BLUE, "zorder": 4}
+        axes.quiver(*points.T, *arrows.T, **plot_style)
     corners = np.vstack([points, points + np.abs(moves), points - np.abs(moves)])
     if target is not None:
-        place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
-        star(axes, place, s=90, color=PURPLE, zorder=3.5)
-        corners = np.vstack([corners, place])
+        position = in_plane(np.asarray(target, dtype=np.float64)[None, :])
+        star(axes, position, s=90, color=PURPLE, zorder=3.5)
+        corners = np.vstack([corners, position])
     write_title(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
         axes.update_datalim(corners)

@@ -135,8 +135,8 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
         ax.set_xlabel(typeset(x))
     if y:
         letters = ax.get_window_extent().height / ax.figure.dpi * 72.0 / (_EM * ax.yaxis.label.get_size())
-        room = max(int(1.1 * letters), 12)
-        lines = [y] if "$" in y else wrap(y, room, break_long_words=False)
+        column_width = max(int(1.1 * letters), 12)
+        lines = [y] if "$" in y else wrap(y, column_width, break_long_words=False)
         if len(lines) > _MOST_LINES and "," in y:  # the symbol and its unit alone
             unit = y.rpartition(" (")
             lines = [y.partition(",")[0] + (f" ({unit[2]}" if unit[1] else "")]
@@ -216,20 +216,20 @@ def write_title(ax: Any, title: str, **look: Any) -> None:
 def place_legend(ax: Any) -> None:
     """Put the legend above the axes, in as many columns as fit their width."""
     handles, labels = ax.get_legend_handles_labels()
-    look = LEGEND | ABOVE | {"handlelength": 1.8, "columnspacing": 1.2}
+    plot_style = LEGEND | ABOVE | {"handlelength": 1.8, "columnspacing": 1.2}
     for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
-        legend = ax.legend(handles, [typeset(label) for label in labels], ncols=columns, **look)
+        legend = ax.legend(handles, [typeset(label) for label in labels], ncols=columns, **plot_style)
         if columns == 1 or legend.get_window_extent().width <= _WIDER * ax.get_window_extent().width:
             return
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
     """Add a colour bar to the right of axes, as a part of them."""
-    beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
-    scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
+    side_state = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
+    scale = ax.get_figure().colorbar(colours, cax=side_state, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
-    beside.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
-    beside.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
+    side_state.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
+    side_state.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
     return scale
 
 
@@ -272,8 +272,8 @@ def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
         # a cube, with room for the labels, which the layout does not measure
         ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.82)
         low, high = points.min(axis=0), points.max(axis=0)
-        middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
-        limit(ax, middle - half, middle + half)
+        midpoint, half_width = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
+        limit(ax, midpoint - half_width, midpoint + half_width)
         for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
             axis.set_major_locator(MaxNLocator(4))
     return ax

@@ -59,16 +59,16 @@ def _spans_decades(values: Any) -> bool:
 
 def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
     """Shade the band below the solver's error of one step."""
-    place, speed, _ = trajectory.floors
+    position_error, speed, _ = trajectory.floors
     d = trajectory.scales.length
     floor = {
         "normalised_velocity_mismatch": 0.5 * speed**2,
         "velocity_diameter": 2.0 * speed,
-        "normalised_deviation_energy": (2.0 * place / d) ** 2,
+        "normalised_deviation_energy": (2.0 * position_error / d) ** 2,
     }.get(name, 0.0)
-    positive = values[values > 0.0]
-    if floor > 0.0 and positive.min() < floor:
-        ax.axhspan(positive.min(), floor, color=FAINT, alpha=0.6, linewidth=0.0, label="noise floor")
+    positive_values = values[values > 0.0]
+    if floor > 0.0 and positive_values.min() < floor:
+        ax.axhspan(positive_values.min(), floor, color=FAINT, alpha=0.6, linewidth=0.0, label="noise floor")
 
 
 def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
@@ -84,10 +84,10 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
     ndarray of matplotlib.axes.Axes, shape (4,)
     """
     ensure_run(trajectory)
-    flat = np.ravel(subplots(2, 2, size=(8.4, 5.0))[1] if ax is None else ax)
-    for name, each in zip(PANEL, flat, strict=True):
-        measure(trajectory, name, ax=each)
-    return flat
+    flat_axes = np.ravel(subplots(2, 2, size=(8.4, 5.0))[1] if ax is None else ax)
+    for name, item in zip(PANEL, flat_axes, strict=True):
+        measure(trajectory, name, ax=item)
+    return flat_axes
 
 
 @over_time("H, energy")
@@ -138,10 +138,10 @@ def pair_distances(trajectory: Trajectory, ax: Any) -> str | None:
     """Draw the profile of all pairs' distances over time: least, quarters, median and largest."""
     if trajectory.n == 1:
         return "one agent has no distances"
-    smallest, low, middle, high, largest = pair_distance_profile(trajectory.q).T
+    smallest, low, median, high, largest = pair_distance_profile(trajectory.q).T
     ax.fill_between(trajectory.t, smallest, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
     ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of the pairs")
-    curves(ax, trajectory.t, ((middle, "median", BLUE, "-"), (smallest, "least (D)", INK, "-")))
+    curves(ax, trajectory.t, ((median, "median", BLUE, "-"), (smallest, "least (D)", INK, "-")))
     ax.set_ylim(bottom=0.0)
     return None
 
@@ -171,9 +171,9 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
         return "there are no obstacles"
     t, q = trajectory.t, trajectory.q
     (width, alpha), few = line_width_and_opacity(2 * len(solids)), len(solids) <= 3
-    for k, solid in enumerate(solids):
-        smallest = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
-        name = f"{type(solid).__name__.lower()} {k + 1}" if few else None if k else "each obstacle, at the samples"
+    for k, obstacle in enumerate(solids):
+        smallest = obstacle.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
+        name = f"{type(obstacle).__name__.lower()} {k + 1}" if few else None if k else "each obstacle, at the samples"
         colour, dash = ((BLUE, "-"), (PURPLE, "-."), (INK, (0, (5, 1))))[k if few else 0]
         ax.plot(t, smallest, color=colour, linestyle=dash, linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
@@ -195,8 +195,8 @@ def speeds(trajectory: Trajectory, ax: Any) -> None:
     hairlines(ax, t, lengths(p), "agents")
     curves(ax, t, [(np.linalg.norm(p.mean(axis=1), axis=1), "centre of mass", INK, "-")])
     if target is not None:
-        handed = np.array([np.linalg.norm(target.state(s)[1]) for s in t.tolist()])
-        curves(ax, t, [(handed, "γ-agent's ‖p_r‖", VERMILLION, "--")])
+        target_speeds = np.array([np.linalg.norm(target.state(s)[1]) for s in t.tolist()])
+        curves(ax, t, [(target_speeds, "γ-agent's ‖p_r‖", VERMILLION, "--")])
     ax.set_ylim(bottom=0.0)
 
 
@@ -208,8 +208,8 @@ def centre_of_mass(trajectory: Trajectory, ax: Any) -> None:
     if (target := trajectory.law.target) is not None:
         paths.append((np.array([target.position(s) for s in t.tolist()]), "γ-agent", "--", 1.1))
     for path, name, dash, width in paths:
-        named = zip(path.T, "xyz", colours, strict=False)
-        curves(ax, t, ((x, f"{axis} of the {name}", colour, dash) for x, axis, colour in named), width=width)
+        path_rows = zip(path.T, "xyz", colours, strict=False)
+        curves(ax, t, ((x, f"{axis} of the {name}", colour, dash) for x, axis, colour in path_rows), width=width)
 
 
 def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:

@@ -37,8 +37,8 @@ class Accelerations(NamedTuple):
         """Weights of residuals by the accuracy of the accelerations, shape (K, n); 1 where none is stated."""
         if self.basis != "splines":
             return np.ones(self.error.shape)
-        typical = float(np.median(self.error)) or 1.0
-        return 1.0 / ((self.error / typical) ** 2 + 1e-3)
+        typical_error = float(np.median(self.error)) or 1.0
+        return 1.0 / ((self.error / typical_error) ** 2 + 1e-3)
 
 
 def accelerations(rec: Recording) -> Accelerations:
@@ -60,12 +60,12 @@ def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
     """Return the mean accelerations from sample to sample, by recorded velocities."""
     h = np.diff(rec.t)
     u = np.diff(p, axis=0) / h[:, None, None]
-    wide: Any = rec.accuracy.speed
+    speed_bounds: Any = rec.accuracy.speed
     if rec.sd is not None:  # standard deviations, as those of splines are
-        wide = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
-    speed = np.broadcast_to(wide, rec.q.shape[:2])
-    both = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
-    error = np.nan_to_num(both / h[:, None], posinf=0.0)
+        speed_bounds = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
+    speed = np.broadcast_to(speed_bounds, rec.q.shape[:2])
+    speed_sums = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
+    error = np.nan_to_num(speed_sums / h[:, None], posinf=0.0)
     scheme, states = kinematic_scheme(rec), (rec.t, rec.q, p)
     if scheme is not None:  # then u is the input at the beginning of each step
         return Accelerations("accelerations", rec.t[:-1], u, error, tuple(x[:-1] for x in states), scheme)
@@ -77,8 +77,8 @@ def _of_splines(rec: Recording) -> Accelerations:
     if len(rec.t) < _FEWEST:
         raise ArgumentError(f"{len(rec.t)} samples without accelerations: expected {_FEWEST} or more")
     fit = motions(rec)
-    whole = fit.known.all(axis=1)
-    if not whole.any():
+    known_rows = fit.known.all(axis=1)
+    if not known_rows.any():
         raise ArgumentError("no sample has all agents: take complete(), or leave agents out by select(agents=...)")
-    t, q, p = rec.t[whole], fit.q[whole], fit.p[whole]
-    return Accelerations("splines", t, fit.u[whole], fit.u_sd[whole], (t, q, p), None)
+    t, q, p = rec.t[known_rows], fit.q[known_rows], fit.p[known_rows]
+    return Accelerations("splines", t, fit.u[known_rows], fit.u_sd[known_rows], (t, q, p), None)

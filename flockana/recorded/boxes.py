@@ -39,15 +39,15 @@ def unwrapped(rec: Recording, box: Any) -> Recording:
     array([0.7, 0.9, 1.1])
     """
     try:
-        size = np.broadcast_to(np.asarray(box, dtype=np.float64), (rec.m,))
+        box_lengths = np.broadcast_to(np.asarray(box, dtype=np.float64), (rec.m,))
     except (TypeError, ValueError):
-        size = np.zeros(rec.m)
-    if not (size > 0.0).all():
+        box_lengths = np.zeros(rec.m)
+    if not (box_lengths > 0.0).all():
         raise ArgumentError(f"box = {box!r}: expected a period > 0, or {rec.m}, one for each axis, inf for none")
-    period = np.where(np.isfinite(size), size, 1.0)
+    period = np.where(np.isfinite(box_lengths), box_lengths, 1.0)
     span = np.nanmax(rec.q, axis=(0, 1)) - np.nanmin(rec.q, axis=(0, 1))
-    if (wide := span > _WIDEST * size).any():
-        k = int(np.argmax(wide))
+    if (is_too_wide := span > _WIDEST * box_lengths).any():
+        k = int(np.argmax(is_too_wide))
         raise ArgumentError(
             f"box = {box!r}: positions extend over {span[k]:.4g} along {'xyz'[k]}: expected wrapped ones; "
             "give the box in the unit of positions, or leave it out if they are unwrapped"
@@ -56,12 +56,12 @@ def unwrapped(rec: Recording, box: Any) -> Recording:
     for i in range(rec.n):
         rows = np.flatnonzero(rec.present[:, i])
         h = np.diff(rec.t[rows])[:, None]
-        ahead = np.zeros((len(h), rec.m)) if rec.p is None else h * _mean_velocity(rec.p[rows, i])
-        off = np.diff(rec.q[rows, i], axis=0) - ahead
-        short = np.where(np.isfinite(size), off - period * np.rint(off / period), off)
-        _ensure_short(rec, i, short, ahead, h, size)
-        q[rows[1:], i] = q[rows[0], i] + np.cumsum(ahead + short, axis=0)
-    note = f"unwrapped from a box of {', '.join(f'{x:g}' for x in size)}"
+        predicted_steps = np.zeros((len(h), rec.m)) if rec.p is None else h * _mean_velocity(rec.p[rows, i])
+        deviation = np.diff(rec.q[rows, i], axis=0) - predicted_steps
+        short = np.where(np.isfinite(box_lengths), deviation - period * np.rint(deviation / period), deviation)
+        _ensure_short(rec, i, short, predicted_steps, h, box_lengths)
+        q[rows[1:], i] = q[rows[0], i] + np.cumsum(predicted_steps + short, axis=0)
+    note = f"unwrapped from a box of {', '.join(f'{x:g}' for x in box_lengths)}"
     return replace(rec, q=q, read_as=(*rec.read_as, note))
 
 
@@ -73,19 +73,19 @@ def _ensure_short(
     rec: Recording, i: int, short: FloatArray, ahead: FloatArray, h: FloatArray, size: FloatArray
 ) -> None:
     """Raise if a step of an agent may be longer than half a period."""
-    usual = float(np.median(h)) if len(h) else 1.0
+    median_step = float(np.median(h)) if len(h) else 1.0
     rate = np.abs(short) / h
-    dense = h[:, 0] <= 1.5 * usual
-    fastest = rate[dense].max(axis=0, initial=0.0)
-    both = [np.abs(rate[b] - rate[a]) for a, b in pairwise(np.flatnonzero(dense).tolist()) if b == a + 1]
-    turned = np.max(both, axis=0, initial=0.0) if both else np.zeros(rec.m)
-    reach = np.maximum((fastest + turned) * h, np.abs(short))
-    if (bad := reach >= _HALF * size).any():
-        k, axis = (int(x) for x in np.argwhere(bad)[0])
+    is_dense = h[:, 0] <= 1.5 * median_step
+    fastest = rate[is_dense].max(axis=0, initial=0.0)
+    rate_changes = [np.abs(rate[b] - rate[a]) for a, b in pairwise(np.flatnonzero(is_dense).tolist()) if b == a + 1]
+    turned_change = np.max(rate_changes, axis=0, initial=0.0) if rate_changes else np.zeros(rec.m)
+    reach = np.maximum((fastest + turned_change) * h, np.abs(short))
+    if (is_invalid := reach >= _HALF * size).any():
+        k, axis = (int(x) for x in np.argwhere(is_invalid)[0])
         rows = np.flatnonzero(rec.present[:, i])
-        beside = " beyond its velocity" if rec.p is not None else ""
+        side_state = " beyond its velocity" if rec.p is not None else ""
         raise ArgumentError(
-            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{beside} from t = {rec.t[rows[k]]:g} to "
+            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{side_state} from t = {rec.t[rows[k]]:g} to "
             f"{rec.t[rows[k + 1]]:g} along {'xyz'[axis]}, half of the period {size[axis]:g} or more: "
             "expected shorter steps; sample more often, give velocities, or leave the agent out"
         )

@@ -17,18 +17,18 @@ _MOST = 200  # agents that are judged, those with most samples
 
 def ensure_one_clock(rec: Recording) -> None:
     """Raise if two agents are seen over the same period but hardly ever at one instant."""
-    most = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
-    presence: FloatArray = rec.present[:, most].astype(np.float64)
-    there = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
-    while_both, shared = presence.T @ there, presence.T @ presence
-    fewer = np.minimum(while_both, while_both.T)
-    apart = (fewer >= _ENOUGH) & (shared < _SHARED * fewer)
-    if apart.any():
-        i, j = (int(x) for x in np.argwhere(apart)[0])
-        one, other = (rec.ids[most[k]] for k in (i, j))
-        counts = f"{while_both[i, j]:.0f} and {while_both[j, i]:.0f}"
+    present_agents = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
+    presence: FloatArray = rec.present[:, present_agents].astype(np.float64)
+    is_present = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
+    common_samples, shared = presence.T @ is_present, presence.T @ presence
+    fewer_samples = np.minimum(common_samples, common_samples.T)
+    is_disjoint = (fewer_samples >= _ENOUGH) & (shared < _SHARED * fewer_samples)
+    if is_disjoint.any():
+        i, j = (int(x) for x in np.argwhere(is_disjoint)[0])
+        first_id, second_id = (rec.ids[present_agents[k]] for k in (i, j))
+        counts = f"{common_samples[i, j]:.0f} and {common_samples[j, i]:.0f}"
         raise ArgumentError(
-            f"agents {one} and {other} are sampled at other times: of {counts} samples while both are seen, "
+            f"agents {first_id} and {second_id} are sampled at other times: of {counts} samples while both are seen, "
             f"{shared[i, j]:.0f} are at one instant; expected common instants: give jitter=, within which stamps are "
             "one; or interpolate=, the largest acceleration an agent can have; or interpolate=False, which leaves "
             "gaps, for fit and with_velocities"
@@ -42,8 +42,8 @@ def interpolated(rec: Recording, most_acceleration: float) -> Recording:
     """
     if not rec.gaps:
         return rec
-    full, between = rec.filled(most_acceleration=most_acceleration), (pieces_of(rec) >= 0)[:, :, None]
-    arrays: Any = {name: np.where(between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
+    full, is_between = rec.filled(most_acceleration=most_acceleration), (pieces_of(rec) >= 0)[:, :, None]
+    arrays: Any = {name: np.where(is_between, x, np.nan) for name in "qp" if (x := getattr(full, name)) is not None}
     full = replace(full, **arrays).select(samples=rec.present[:, int(np.argmax(rec.present.sum(axis=0)))])
     error = np.broadcast_to(full.sd if full.bound is None else full.bound, full.present.shape)
     note = (

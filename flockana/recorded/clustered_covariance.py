@@ -18,13 +18,13 @@ def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[F
     n, count = residuals.shape[1], slopes.shape[-1]
     squares = np.einsum("kimc,kimd->icd", slopes, slopes)
     inverse = np.linalg.pinv(squares.sum(axis=0))
-    others = np.eye(count) - squares @ inverse
-    if n < 2 or np.linalg.eigvals(others).real.min() < _ALONE:
-        freedom = max(residuals.size - count, 1)
-        return inverse * (float(np.sum(residuals**2)) / freedom), freedom
-    scores = np.linalg.solve(others, np.einsum("kimc,kim->ic", slopes, residuals)[:, :, None])[:, :, 0]
+    leverage_complement = np.eye(count) - squares @ inverse
+    if n < 2 or np.linalg.eigvals(leverage_complement).real.min() < _ALONE:
+        degrees_of_freedom = max(residuals.size - count, 1)
+        return inverse * (float(np.sum(residuals**2)) / degrees_of_freedom), degrees_of_freedom
+    scores = np.linalg.solve(leverage_complement, np.einsum("kimc,kim->ic", slopes, residuals)[:, :, None])[:, :, 0]
     covariance: FloatArray = inverse @ (scores.T @ scores) @ inverse * ((n - 1) / n)
     shares = np.einsum("ab,ibc,ca->ia", inverse, squares, inverse)
     has_share = shares.sum(axis=0) > 0.0
-    effective = shares.sum(axis=0)[has_share] ** 2 / np.sum(shares[:, has_share] ** 2, axis=0)
-    return covariance, float(effective.min(initial=n - 1))
+    effective_count = shares.sum(axis=0)[has_share] ** 2 / np.sum(shares[:, has_share] ** 2, axis=0)
+    return covariance, float(effective_count.min(initial=n - 1))

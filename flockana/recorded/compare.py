@@ -83,24 +83,24 @@ class Comparison(ShortRepr):
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:
         """Largest residuals: time, agent, size."""
-        size = np.nan_to_num(lengths(self.residual))
-        order = np.argsort(-size, axis=None)[:_WORST]
-        at = [np.unravel_index(k, size.shape) for k in order]
-        return tuple((float(self.t[k]), self.ids[i], float(size[k, i])) for k, i in at)
+        deviation_norms = np.nan_to_num(lengths(self.residual))
+        order = np.argsort(-deviation_norms, axis=None)[:_WORST]
+        worst_indices = [np.unravel_index(k, deviation_norms.shape) for k in order]
+        return tuple((float(self.t[k]), self.ids[i], float(deviation_norms[k, i])) for k, i in worst_indices)
 
     def __str__(self) -> str:
         name = self.law.title
         lines = [f"{name} explains {share_text(self.explained)} of the recorded accelerations (from {self.basis})"]
-        for one in self.shares:
-            error_text = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
+        for share in self.shares:
+            error_text = "" if share.error == 0.0 else f" ± {2.0 * share.error:.2g}"
             lines.append(
-                f"  {_percent(one.share):>8}  {one.text}: {one.symbol} = {one.found:.4g}{error_text}, "
-                f"{one.stated:.4g} in the law"
+                f"  {_percent(share.share):>8}  {share.text}: {share.symbol} = {share.found:.4g}{error_text}, "
+                f"{share.stated:.4g} in the law"
             )
         lines += [f"  finding: {text}" for text in self.findings]
         lines += [f"  caution: {self.caution}"] if self.caution else []
-        t, agent, size = self.worst[0]
-        lines.append(f"  off most by {size:.3g}, agent {agent} at t = {t:.4g}")
+        t, agent, deviation_norms = self.worst[0]
+        lines.append(f"  off most by {deviation_norms:.3g}, agent {agent} at t = {t:.4g}")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
@@ -108,9 +108,9 @@ class Comparison(ShortRepr):
         names = ("basis", "explained", "explained_refitted", "caution")
         return {
             "law": self.law.title,
-            "shares": [one._asdict() for one in self.shares],
+            "shares": [share._asdict() for share in self.shares],
             "findings": list(self.findings),
-            "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
+            "worst": [{"time": t, "agent": agent, "size": deviation_norms} for t, agent, deviation_norms in self.worst],
         } | {name: getattr(self, name) for name in names}
 
 

@@ -15,17 +15,17 @@ def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.ND
     (slice(1, 3, None), array([0, 1]))
     """
     count, n = present.shape
-    ends = np.empty((count + 1, n), dtype=np.intp)  # first sample from k on at which each agent is missing
-    ends[count] = count
+    first_samples = np.empty((count + 1, n), dtype=np.intp)  # first sample from k on at which each agent is missing
+    first_samples[count] = count
     for k in range(count - 1, -1, -1):
-        ends[k] = np.where(present[k], ends[k + 1], k)
+        first_samples[k] = np.where(present[k], first_samples[k + 1], k)
     starts = np.flatnonzero((present & ~np.vstack([np.zeros((1, n), dtype=bool), present[:-1]])).any(axis=1))
-    best, window = 0, (0, 0)
+    best_length, window = 0, (0, 0)
     for k in starts.tolist():
-        order = np.sort(ends[k])[::-1]
+        order = np.sort(first_samples[k])[::-1]
         area = (order - k) * np.arange(1, n + 1)
-        if area.max() > best:
+        if area.max() > best_length:
             j = int(np.argmax(area))
-            best, window = int(area[j]), (k, int(order[j]))
+            best_length, window = int(area[j]), (k, int(order[j]))
     start, end = window
     return slice(start, end), np.flatnonzero(present[start:end].all(axis=0))

@@ -40,13 +40,13 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", law.title, "the law as a whole", 1.0, _acts(law)),)
-    parts, gained = [], replace(law, **_other_terms(law))
+    parts, gained_law = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
         (symbol, text), gain = SYMBOLS[name], getattr(gains, name)
-        each = isinstance(gain, tuple)
-        acts = _acts(replace(gained, gains=_single_gain(name, gain if each else 1.0)))
-        label, stated = (f"{symbol} of each agent, times", 1.0) if each else (symbol, float(gain))
-        parts.append(Contribution(name, label, text, stated, acts))
+        is_tuple = isinstance(gain, tuple)
+        gain_action = _acts(replace(gained_law, gains=_single_gain(name, gain if is_tuple else 1.0)))
+        label, stated_value = (f"{symbol} of each agent, times", 1.0) if is_tuple else (symbol, float(gain))
+        parts.append(Contribution(name, label, text, stated_value, gain_action))
     return tuple(parts)
 
 
@@ -59,19 +59,19 @@ def remainder(law: Any) -> Part | None:
 
 def _other_terms(law: Any) -> dict[str, Any]:
     """Return the field values that switch off the parts of a law without a gain."""
-    return {name: none for name, none in _NO_OTHERS.items() if getattr(law, name, none)}
+    return {name: missing_term for name, missing_term in _NO_OTHERS.items() if getattr(law, name, missing_term)}
 
 
 def _used_gains(law: Any) -> list[str]:
-    paired = law.pair is not None
-    which = {"c1_alpha": paired, "c2_alpha": paired or getattr(law, "net", None) is not None}
-    which |= dict.fromkeys(("c1_beta", "c2_beta"), bool(law.obstacles))
-    which |= dict.fromkeys(("c1_gamma", "c2_gamma"), law.target is not None)
-    return [name for name, is_used in which.items() if is_used]
+    has_pairs = law.pair is not None
+    is_used_gain = {"c1_alpha": has_pairs, "c2_alpha": has_pairs or getattr(law, "net", None) is not None}
+    is_used_gain |= dict.fromkeys(("c1_beta", "c2_beta"), bool(law.obstacles))
+    is_used_gain |= dict.fromkeys(("c1_gamma", "c2_gamma"), law.target is not None)
+    return [name for name, is_used in is_used_gain.items() if is_used]
 
 
 def _single_gain(name: str, value: Any) -> Gains:
-    return Gains(**{each: value if each == name else 0.0 for each in SYMBOLS})
+    return Gains(**{symbol: value if symbol == name else 0.0 for symbol in SYMBOLS})
 
 
 def _acts(law: Any) -> Part:
@@ -87,8 +87,8 @@ def over_steps(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> Float
     """Return the mean acceleration of a part from each sample to the next by Simpson's rule, shape (T - 1, n, m)."""
     h = np.diff(t)[:, None, None]
     middle_q = 0.5 * (q[:-1] + q[1:]) + h / 8.0 * (p[:-1] - p[1:])  # cubic through both ends
-    middle_p = 1.5 / h * (q[1:] - q[:-1]) - 0.25 * (p[:-1] + p[1:])
-    ends, middle = over_samples(part, t, q, p), over_samples(part, 0.5 * (t[:-1] + t[1:]), middle_q, middle_p)
+    middle_velocities = 1.5 / h * (q[1:] - q[:-1]) - 0.25 * (p[:-1] + p[1:])
+    ends, middle = over_samples(part, t, q, p), over_samples(part, 0.5 * (t[:-1] + t[1:]), middle_q, middle_velocities)
     return (ends[:-1] + 4.0 * middle + ends[1:]) / 6.0
 
 
@@ -106,8 +106,8 @@ def variants(law: Any) -> tuple[Variant, ...]:
     if not hasattr(law, "gains"):
         return ()
     alpha = getattr(law, "alpha", None)
-    of_pairs = _of_pairs(alpha) if isinstance(alpha, AlphaInteraction) else []
-    return (*of_pairs, *(() if law.target is None else _of_pull(law)))
+    pair_variants = _of_pairs(alpha) if isinstance(alpha, AlphaInteraction) else []
+    return (*pair_variants, *(() if law.target is None else _of_pull(law)))
 
 
 def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
@@ -126,12 +126,12 @@ def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
 
     direction = "the pair force's direction n_ij is taken coordinate by coordinate, x_k/√(1 + ε x_k²)"
     farthest = max(alpha.r, alpha.r_alpha)
-    alike = "all neighbours within r count alike in the consensus, not by a_ij"
+    equal_weights_text = "all neighbours within r count alike in the consensus, not by a_ij"
     return [
         Variant("c1_alpha", f"{direction}, not of the vector, x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, per_axis)),
         Variant("c1_alpha", "φ_α is given the distance, not its σ-norm", _pair_sum(farthest, euclidean)),
         Variant("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, unit)),
-        Variant("c2_alpha", alike, _pair_sum(alpha.r, lambda x, s, v: v * (s < alpha.r)[:, None])),
+        Variant("c2_alpha", equal_weights_text, _pair_sum(alpha.r, lambda x, s, v: v * (s < alpha.r)[:, None])),
     ]
 
 
@@ -160,11 +160,11 @@ def _of_pull(law: Any) -> list[Variant]:
 
         return acts
 
-    bounded = any(getattr(term, "target", None) is law.target and getattr(term, "unit", None) for term in law.terms)
-    text, whole = "the pull to the γ-agent is", "'s" if bounded else ""
-    per_axis = f"{text} proportional to each coordinate's σ₁, not to the vector{whole}"
-    other = Variant("c1_gamma", f"{text} linear, not bounded by σ₁", pull(np.ones_like))
-    if not bounded:
+    is_bounded = any(getattr(term, "target", None) is law.target and getattr(term, "unit", None) for term in law.terms)
+    text, possessive = "the pull to the γ-agent is", "'s" if is_bounded else ""
+    axis_text = f"{text} proportional to each coordinate's σ₁, not to the vector{possessive}"
+    variant = Variant("c1_gamma", f"{text} linear, not bounded by σ₁", pull(np.ones_like))
+    if not is_bounded:
         bend = pull(lambda x: np.sqrt(1.0 + np.sum(x**2, axis=1))[:, None])
-        other = Variant("c1_gamma", f"{text} bounded by σ₁ of the vector, not linear", bend)
-    return [Variant("c1_gamma", per_axis, pull(lambda x: np.sqrt(1.0 + x**2))), other]
+        variant = Variant("c1_gamma", f"{text} bounded by σ₁ of the vector, not linear", bend)
+    return [Variant("c1_gamma", axis_text, pull(lambda x: np.sqrt(1.0 + x**2))), variant]

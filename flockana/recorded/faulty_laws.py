@@ -37,8 +37,8 @@ def _phi(z: FloatArray) -> Any:
 
 
 def _bump(z: FloatArray) -> FloatArray:
-    falling = 0.5 * (1.0 + np.cos(pi * (z - H) / (1.0 - H)))
-    return np.where(z < H, 1.0, np.where(z < 1.0, falling, 0.0))
+    falling_bump = 0.5 * (1.0 + np.cos(pi * (z - H) / (1.0 - H)))
+    return np.where(z < H, 1.0, np.where(z < 1.0, falling_bump, 0.0))
 
 
 def _pairs(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -85,8 +85,8 @@ def faulty_recording(name: str) -> Recording:
         for _ in t[1:]:
             q, p = q + _STEP * p, p + _STEP * code(q, p)
             steps.append((q, p))
-        places, speeds = np.array(steps).swapaxes(0, 1)
-        return Recording(t, places, speeds, bound=1e-9, p_bound=1e-9, source="implementation D")
+        positions, speeds = np.array(steps).swapaxes(0, 1)
+        return Recording(t, positions, speeds, bound=1e-9, p_bound=1e-9, source="implementation D")
     from scipy.integrate import solve_ivp
 
     def rate(_: float, y: FloatArray) -> FloatArray:

@@ -147,8 +147,8 @@ def fit(
     if len(rec.t) < (4 if rec.p is None else 2):
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more, or 2 with velocities")
     search = _Search(rec, parameters, None if window is None else ensure_positive("window", window))
-    problem, best = _with_noise(search, independent)
-    return _result(search, problem, best)
+    problem, best_match = _with_noise(search, independent)
+    return _result(search, problem, best_match)
 
 
 class _Search(NamedTuple):
@@ -194,12 +194,12 @@ def _beginnings(search: _Search) -> list[FloatArray]:
     values, names = search.parameters.values, search.parameters.names
     starts = [values * factor for factor in _FACTORS]
     try:
-        shares = {one.symbol: one.found for one in compare(search.rec, search.parameters.law).shares}
+        shares = {share.symbol: share.found for share in compare(search.rec, search.parameters.law).shares}
     except FlockanaError:
         return starts
     guess = np.array([shares.get(SYMBOLS[x][0], v) if x in SYMBOLS else v for x, v in zip(names, values, strict=True)])
-    usable = np.isfinite(guess) & ((guess > 0.0) | (values <= 0.0))
-    return [starts[0], np.where(usable, guess, values), *starts[1:]]
+    is_usable = np.isfinite(guess) & ((guess > 0.0) | (values <= 0.0))
+    return [starts[0], np.where(is_usable, guess, values), *starts[1:]]
 
 
 def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Problem, MatchResult]:
@@ -208,34 +208,34 @@ def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Pro
     Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
     short ones count.
     """
-    usual = search.window or usual_window(search.rec, search.parameters.law)
-    whole = search.problem(windows(search.rec, usual, sd))
+    window_length = search.window or usual_window(search.rec, search.parameters.law)
+    window_problem = search.problem(windows(search.rec, window_length, sd))
     if search.window is not None:
-        return whole, matched(whole, values=begin)
-    short = search.problem(windows(search.rec, _SHORT * usual, sd))
-    if len(whole.parts) == len(short.parts):
-        return whole, matched(whole, values=begin)
-    first = matched(short, values=begin)
-    longer = matched(whole, values=first.values)
-    as_good = longer.variance <= first.variance * (1.0 + _NO_WORSE * sqrt(2.0 / first.freedom))
-    return (whole, longer) if as_good else (short, first)
+        return window_problem, matched(window_problem, values=begin)
+    short = search.problem(windows(search.rec, _SHORT * window_length, sd))
+    if len(window_problem.parts) == len(short.parts):
+        return window_problem, matched(window_problem, values=begin)
+    first_match = matched(short, values=begin)
+    longer_match = matched(window_problem, values=first_match.values)
+    is_as_good = longer_match.variance <= first_match.variance * (1.0 + _NO_WORSE * sqrt(2.0 / first_match.freedom))
+    return (window_problem, longer_match) if is_as_good else (short, first_match)
 
 
 def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResult]:
     """Return the match with the stated noise, else with estimated deviations of positions and velocities."""
     rec = search.rec
-    problem, best = _best_of(search, deviations(rec, velocities=True))
+    problem, best_match = _best_of(search, deviations(rec, velocities=True))
     if search.stated:
-        return problem, best
-    problem, best = _rescaled(problem, best, rec.n * rec.m)
+        return problem, best_match
+    problem, best_match = _rescaled(problem, best_match, rec.n * rec.m)
     if rec.bound is None or independent:
-        return problem, best
-    spread = _spread(problem, best, rec)
+        return problem, best_match
+    spread = _spread(problem, best_match, rec)
     if not (spread > 0.0).any():
-        return problem, best
-    shifted = Problem(problem.parts, problem.with_values, problem.first, spread)
-    values = np.concatenate([best.values, np.zeros(int(np.count_nonzero(spread)))])
-    return _rescaled(shifted, matched(shifted, starts=best.starts, values=values), rec.n * rec.m)
+        return problem, best_match
+    shifted_problem = Problem(problem.parts, problem.with_values, problem.first, spread)
+    values = np.concatenate([best_match.values, np.zeros(int(np.count_nonzero(spread)))])
+    return _rescaled(shifted_problem, matched(shifted_problem, starts=best_match.starts, values=values), rec.n * rec.m)
 
 
 def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem, MatchResult]:
@@ -254,10 +254,10 @@ def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
     parts = problem.parts
     factors, share = np.ones(parts[0].y.shape[1]), best.freedom / problem.size
     for block in (slice(0, width), slice(width, None)):
-        count = sum(int(np.count_nonzero(part.root[:, block])) for part in parts)
+        count = sum(int(np.count_nonzero(segment.root[:, block])) for segment in parts)
         squares = sum(
-            float(np.sum(r.reshape(part.root.shape)[:, block] ** 2))
-            for part, r in zip(parts, best.residuals, strict=False)
+            float(np.sum(r.reshape(segment.root.shape)[:, block] ** 2))
+            for segment, r in zip(parts, best.residuals, strict=False)
         )
         if count * share >= _ENOUGH and squares > 0.0:
             factors[block] = sqrt(squares / (count * share))
@@ -276,15 +276,15 @@ def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
         limits.append(np.broadcast_to(np.asarray(speed, dtype=np.float64), shape).max(axis=0))
     bound = np.concatenate([np.repeat(x, rec.m) for x in limits])
     low, high = np.full(len(bound), inf), np.full(len(bound), -inf)
-    for part, residual in zip(parts, best.residuals, strict=False):
-        is_used = part.root > 0.0
-        error = np.divide(residual.reshape(is_used.shape), part.root, out=np.zeros(is_used.shape), where=is_used)
+    for segment, residual in zip(parts, best.residuals, strict=False):
+        is_used = segment.root > 0.0
+        error = np.divide(residual.reshape(is_used.shape), segment.root, out=np.zeros(is_used.shape), where=is_used)
         low = np.minimum(low, np.where(is_used, error, inf).min(axis=0))
         high = np.maximum(high, np.where(is_used, error, -inf).max(axis=0))
-    room = np.maximum(2.0 * bound - np.maximum(high - low, 0.0), 0.0) / sqrt(12.0)
-    deviation = np.array([1.0 / max(float(part.root.max()), 1e-300) for part in parts]).min()
-    count = sum(len(part.t) for part in parts)
-    return np.where(room > _SHIFTED * deviation / sqrt(count), room, 0.0)
+    uncertainty = np.maximum(2.0 * bound - np.maximum(high - low, 0.0), 0.0) / sqrt(12.0)
+    deviation = np.array([1.0 / max(float(segment.root.max()), 1e-300) for segment in parts]).min()
+    count = sum(len(segment.t) for segment in parts)
+    return np.where(uncertainty > _SHIFTED * deviation / sqrt(count), uncertainty, 0.0)
 
 
 def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
@@ -296,13 +296,13 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
     for _ in range(_ROUNDS):
         unit = max(best.variance, 1.0) if search.stated or best.freedom < _ENOUGH else best.variance
         try:
-            ends = [profile_interval(problem, best, k, level, unit) for k in range(count)]
+            parameter_bounds = [profile_interval(problem, best, k, level, unit) for k in range(count)]
             break
         except LowerMinimumError as lower:
             best = matched(problem, starts=lower.starts, values=lower.values, finer=best.finer)
     else:
         doubts.append("searches end at other minima: intervals are open")
-        ends = [(-inf, inf)] * count
+        parameter_bounds = [(-inf, inf)] * count
     if search.stated and not search.is_chance(best.variance, best.freedom):
         doubts.append(
             f"residuals are {sqrt(best.variance):.3g} times the stated noise, beyond chance: does the law act?"
@@ -310,9 +310,9 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
     values, covariance = best.values[:count], best.covariance[:count, :count] * unit
     errors = np.where(best.identifiable[:count], np.sqrt(np.maximum(np.diag(covariance), 0.0)), inf)
     scale = np.where(np.isfinite(errors) & (errors > 0.0), errors, 1.0)
-    untold = [
+    unknown_names = [
         f"the data do not tell {name}: {value:.4g}, {interval_text(*end)}"
-        for name, value, end in zip(names, values, ends, strict=True)
+        for name, value, end in zip(names, values, parameter_bounds, strict=True)
         if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * abs(value)
     ]
     return Fit(
@@ -322,8 +322,8 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
         covariance / np.outer(scale, scale),
         sqrt(best.variance) if search.rec.bound is not None or search.stated else np.nan,
         best.freedom,
-        dict(zip(names, ends, strict=True)),
-        tuple(untold),
+        dict(zip(names, parameter_bounds, strict=True)),
+        tuple(unknown_names),
         tuple(doubts),
         best.message,
     )

@@ -71,21 +71,21 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     for stride in {1, wide} if len(rec.t) > wide else {1}:  # dense samples are compared one law time apart too
         times, q, p = rec.t[::stride], rec.q[::stride], rec.p[::stride]
         widths = [x[::stride] if is_known else np.zeros(q.shape[:2]) for x in (place, speed)]
-        off, allowed = _differences(law, times, q, p, *widths)
-        for name, apart, room in zip(("q", "p"), off, allowed, strict=True):
-            ratio = apart / room
+        deviation, allowances = _differences(law, times, q, p, *widths)
+        for name, deviations, allowance in zip(("q", "p"), deviation, allowances, strict=True):
+            ratio = deviations / allowance
             k, i = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
-            worst.append((float(ratio[k, i]), float(apart[k, i]), name, float(times[k + 1]), int(i)))
+            worst.append((float(ratio[k, i]), float(deviations[k, i]), name, float(times[k + 1]), int(i)))
     excess, size, name, t, agent = max(worst)
-    where, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
-    reach = " and ".join(f"{max(one[1] for one in worst if one[2] == kind):.3g} in {kind}" for kind in "qp")
+    window_end, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
+    reach = " and ".join(f"{max(item[1] for item in worst if item[2] == kind):.3g} in {kind}" for kind in "qp")
     status: Literal["met", "unmet", "assumed"] = "met" if accuracy.decides else "assumed"
     if not is_known:
-        excess, text = 1.0, f"off by {reach} (worst: {where}); no accuracy is stated"
+        excess, text = 1.0, f"off by {reach} (worst: {window_end}); no accuracy is stated"
     elif excess > 1.0:
-        status, text = "unmet", f"{where} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
+        status, text = "unmet", f"{window_end} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
     else:
-        text = f"within {reach} from sample to sample (worst: {where}), {accuracy}"
+        text = f"within {reach} from sample to sample (worst: {window_end}), {accuracy}"
     return Following(status, 1.0 - excess, text, rec.q[0], rec.p[0], rec.p, speed)
 
 
@@ -118,12 +118,12 @@ def _differences(
                 widest = lengths(changes[k] - near[k]).max(axis=1, keepdims=True)
                 grown[k] = np.maximum(grown[k], np.broadcast_to(widest, off[0].shape))
     floors = rounding_floors(t, q, p, np.diff(p, axis=0) / np.diff(t)[:, None, None], np.empty(0))
-    tiny = np.finfo(float).tiny
-    allowed = tuple(
-        own_changes[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + tiny
+    smallest_float = np.finfo(float).tiny
+    allowances = tuple(
+        own_changes[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + smallest_float
         for k, (own_changes, floor) in enumerate(((place, floors.place), (speed, floors.speed)))
     )
-    return off, (allowed[0], allowed[1])
+    return off, (allowances[0], allowances[1])
 
 
 def _over_windows(rec: Recording, law: Any) -> Following:
@@ -141,10 +141,10 @@ def _over_windows(rec: Recording, law: Any) -> Following:
         match = matched(Problem(parts, lambda _: law, np.empty(0)))
     except FlockanaError as error:
         raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
-    for part, residual in zip(parts, match.residuals, strict=True):
-        size = np.abs(residual).reshape(len(part.t), rec.n, rec.m).max(axis=2)
+    for segment, residual in zip(parts, match.residuals, strict=True):
+        size = np.abs(residual).reshape(len(segment.t), rec.n, rec.m).max(axis=2)
         k, i = np.unravel_index(int(np.argmax(size)), size.shape)
-        largest = max(largest, (float(size[k, i]), float(part.t[k]), int(i)))
+        largest = max(largest, (float(size[k, i]), float(segment.t[k]), int(i)))
     misfit = float(np.sqrt(match.variance))
     most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, match.freedom) / match.freedom))
     band = float(norm.isf((1.0 - CONFIDENCE) / 4.0 / rec.q.size))

@@ -36,8 +36,8 @@ def profile_interval(problem: Problem, best: MatchResult, k: int, level: float, 
 
 
 def _end(problem: Problem, best: MatchResult, k: int, side: float, level: float, unit: float, error: float) -> float:
-    value, positive = float(best.values[k]), problem.first[k] > 0.0
-    floor = 1e-6 * problem.first[k] if positive else -inf
+    value, is_positive_measure = float(best.values[k]), problem.first[k] > 0.0
+    floor = 1e-6 * problem.first[k] if is_positive_measure else -inf
     farthest = _FARTHEST * max(abs(value), error)
     inside, outside, off, last = 0.0, inf, level * error, _Trial(0.0, best.values, best.starts)
     for number in range(_TRIALS):
@@ -83,26 +83,26 @@ def _rise(problem: Problem, best: MatchResult, k: int, at: float, last: _Trial, 
 
     Slopes are at first those of the best fit, if these are `known` to serve.
     """
-    by, normal = at - float(last.values[k]), best.normal
-    others = np.delete(np.arange(len(best.values)), k)
-    along = np.zeros(len(best.values))
-    along[k] = 1.0
-    if others.size:
-        block = normal.reduced[np.ix_(others, others)]
-        along[others] = -np.linalg.lstsq(block, normal.reduced[others, k], rcond=1e-12)[0]
-    values = last.values + by * along
+    value_change, normal = at - float(last.values[k]), best.normal
+    other_indices = np.delete(np.arange(len(best.values)), k)
+    direction = np.zeros(len(best.values))
+    direction[k] = 1.0
+    if other_indices.size:
+        block = normal.reduced[np.ix_(other_indices, other_indices)]
+        direction[other_indices] = -np.linalg.lstsq(block, normal.reduced[other_indices, k], rcond=1e-12)[0]
+    values = last.values + value_change * direction
     count = len(problem.first)
     low = np.where(problem.first > 0.0, 0.1 * last.values[:count], -inf)
     values[:count] = np.maximum(values[:count], low)
     starts = [
-        x - corner @ (across @ (by * along)) if x.size else x
-        for x, corner, across in zip(last.starts, normal.corners, normal.across, strict=True)
+        x - corner @ (cross_blocks @ (value_change * direction)) if x.size else x
+        for x, corner, cross_blocks in zip(last.starts, normal.corners, normal.across, strict=True)
     ]
-    fixed = problem.fixed(k, at)
+    fixed_problem = problem.fixed(k, at)
     for begin in (starts, last.starts):
         try:
             result = matched(
-                fixed,
+                fixed_problem,
                 starts=begin,
                 values=np.delete(values, k),
                 finer=best.finer,

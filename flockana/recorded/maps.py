@@ -38,11 +38,11 @@ def map_steps(rec: Recording, law: Any) -> tuple[Accelerations, MapSteps, FloatA
             "dt p"
         )
     remark, noise = "", getattr(law, "noise", None)
-    if noise is not None and noise != (none := type(noise)()):
-        law, remark = replace(law, noise=none), f"steps of {law.title} are compared without its noise"
+    if noise is not None and noise != (no_noise := type(noise)()):
+        law, remark = replace(law, noise=no_noise), f"steps of {law.title} are compared without its noise"
     q, p = predicted(law, rec.t, rec.q, rec.p)
     h = np.diff(rec.t)[:, None, None]
-    each = dict(zip(rec.t[:-1].tolist(), (p - rec.p[:-1]) / h, strict=True))
+    inputs_by_time = dict(zip(rec.t[:-1].tolist(), (p - rec.p[:-1]) / h, strict=True))
     states = (rec.t[:-1], rec.q[:-1], rec.p[:-1])
     data = mean_accelerations(rec, rec.p)._replace(basis="map", states=states, scheme=None)
-    return data, MapSteps(law.title, each), q - rec.q[:-1], remark
+    return data, MapSteps(law.title, inputs_by_time), q - rec.q[:-1], remark

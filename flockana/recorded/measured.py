@@ -34,14 +34,14 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
     values, errors = ({name: np.full(len(rec.t), np.nan) for name in used_measures} for _ in range(2))
     widths = [np.broadcast_to(x, shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
     moving = rec.present & ~np.isnan(p[:, :, 0])
-    for of_velocities, presence in ((False, rec.present), (True, moving)):
-        for agents, samples in _alike(presence):
+    for is_of_velocities, present_samples in ((False, rec.present), (True, moving)):
+        for agents, samples in _alike(present_samples):
             at = np.ix_(samples, agents)
-            flock, off = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
+            flock, deviation = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
             for name, it in used_measures.items():
-                if (name in _OF_VELOCITIES) == of_velocities:
+                if (name in _OF_VELOCITIES) == is_of_velocities:
                     values[name][samples] = series = it.over_time(flock)  # type: ignore[misc]
-                    errors[name][samples] = _error(name, flock, series, *off)
+                    errors[name][samples] = _error(name, flock, series, *deviation)
     data: dict[str, Any] = {"agents": ("time", rec.present.sum(axis=1), {"long_name": "agents seen"})}
     for name, it in used_measures.items():
         data[name] = ("time", values[name], {"long_name": it.text, "units": it.unit})
@@ -51,8 +51,8 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
 
 def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
     """Return sets of agents, each with the samples at which exactly this set was seen; never empty."""
-    sets, which = np.unique(seen, axis=0, return_inverse=True)
-    groups = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
+    sets, group_numbers = np.unique(seen, axis=0, return_inverse=True)
+    groups = [(np.flatnonzero(item), np.flatnonzero(group_numbers.ravel() == k)) for k, item in enumerate(sets)]
     return [(agents, samples) for agents, samples in groups if agents.size]
 
 
@@ -64,15 +64,15 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
     if name in ("cohesion_radius", "min_distance", "position_diameter", "velocity_diameter"):
         return np.multiply(2.0, off_p if name == "velocity_diameter" else off_q)
     if name in ("inertia", "normalised_velocity_mismatch"):  # half a square of a norm, which moves by √n off, over n
-        off, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
-        size = np.sqrt(2.0 * values * share)
-        return (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
+        spread_error, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
+        noise_shape = np.sqrt(2.0 * values * share)
+        return (0.5 * (noise_shape + np.sqrt(n) * spread_error) ** 2) / share - values
     if name in ("order", "coordination"):
         speed = lengths(flock.p)
         with np.errstate(divide="ignore", invalid="ignore"):
-            turn = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
-        most = 1.0 if name == "order" else 2.0
-        return np.minimum(most * np.minimum(turn, 2.0).mean(axis=1), most)
+            turn_angle = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
+        maximum = 1.0 if name == "order" else 2.0
+        return np.minimum(maximum * np.minimum(turn_angle, 2.0).mean(axis=1), maximum)
     return np.array([_net_error(name, flock, k, float(values[k]), float(off_q[k])) for k in range(len(values))])
 
 
@@ -80,15 +80,15 @@ def _net_error(name: str, flock: Flock, k: int, value: float, off: float) -> flo
     """Return the error of a net measure, as links may appear or vanish within position errors."""
     d, r = flock.law.lattice
     q = flock.q[k]
-    minimum, most = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off
+    minimum, maximum = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off
     if name in _OF_NETS:
-        return max(abs(_OF_NETS[name](q, x) - value) for x in (minimum, most))
+        return max(abs(_OF_NETS[name](q, x) - value) for x in (minimum, maximum))
     # Ẽ: links that stay change by 2 off each, those that may come or go by what they add at most
-    pairs = links(q, most)
+    pairs = links(q, maximum)
     apart = link_lengths(q, pairs)
-    sure = apart <= minimum
+    is_certain = apart <= minimum
     squares = (np.abs(apart - d) + 2.0 * off) ** 2 / d**2
-    high = 2.0 * float(squares.sum()) / (2.0 * int(sure.sum()) + 1.0)
-    excess = np.maximum(np.abs(apart[sure] - d) - 2.0 * off, 0.0) ** 2 / d**2
+    high = 2.0 * float(squares.sum()) / (2.0 * int(is_certain.sum()) + 1.0)
+    excess = np.maximum(np.abs(apart[is_certain] - d) - 2.0 * off, 0.0) ** 2 / d**2
     low = 2.0 * float(excess.sum()) / (2.0 * len(pairs) + 1.0)
     return max(abs(high - value), abs(value - low))

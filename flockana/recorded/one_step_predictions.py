@@ -77,10 +77,10 @@ def kinematic_scheme(rec: Recording) -> str | None:
     h, p = rec.interval, rec.p
     steps = np.diff(rec.q, axis=0)
     forms = {"explicit Euler": p[:-1], "semi-implicit Euler": p[1:], "Taylor steps": 0.5 * (p[:-1] + p[1:])}
-    size = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(steps).max())
-    turned = float(np.abs(np.diff(p, axis=0)).max()) * h
+    magnitude = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(steps).max())
+    turn_size = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():
-        if turned > 100.0 * size and float(np.abs(steps - h * mean).max()) <= size:
+        if turn_size > 100.0 * magnitude and float(np.abs(steps - h * mean).max()) <= magnitude:
             return name
     return None
 
@@ -89,8 +89,8 @@ def scheme_by_law(rec: Recording, law: Any) -> str | None:
     """Return the name of the scheme that predicts the next samples far better than the law's flow; None without one."""
     if rec.p is None or rec.gaps or law.is_map or not _even(rec):
         return None
-    some = slice(0, 40)
-    t, q, p, h = rec.t[some], rec.q[some], rec.p[some], rec.interval
+    first_rows = slice(0, 40)
+    t, q, p, h = rec.t[first_rows], rec.q[first_rows], rec.p[first_rows], rec.interval
 
     def off(ends: tuple[FloatArray, FloatArray]) -> float:
         return float(np.abs(ends[0] - q[1:]).max() / h + np.abs(ends[1] - p[1:]).max())

@@ -24,13 +24,13 @@ class FreeParameters:
     def of(cls, law: Any, names: Sequence[str] | None) -> Self:
         """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
-            names = [part.name for part in contributions(law) if part.name in SYMBOLS]
+            names = [segment.name for segment in contributions(law) if segment.name in SYMBOLS]
             if not names:
                 listing = ", ".join(_names(law)) or "it has none"
                 raise ArgumentError(f"free = None: {law.title} has no gains; name parameters: {listing}")
         if not isinstance(names, list | tuple) or not names or len(set(map(str, names))) < len(names):
-            got = format_value(names)
-            raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
+            value_text = format_value(names)
+            raise ArgumentError(f"free = {value_text}: expected names of parameters, each once, such as ('c1_alpha',)")
         paths = tuple(_path(law, str(name)) for name in names)
         parameters = cls(law, tuple(map(str, names)), paths)
         for name, value in zip(parameters.names, parameters.values, strict=True):
@@ -41,13 +41,13 @@ class FreeParameters:
     @property
     def values(self) -> FloatArray:
         """Return the parameter values of the law."""
-        numbers = []
+        value_list = []
         for name, path in zip(self.names, self.paths, strict=True):
             value = law_parameter(self.law, path)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
                 raise ArgumentError(f"{name} = {format_value(value)}: expected a parameter that is one number")
-            numbers.append(float(value))
-        return np.array(numbers)
+            value_list.append(float(value))
+        return np.array(value_list)
 
     def with_values(self, values: Sequence[float] | FloatArray) -> Any:
         """Return the law with new values of the parameters."""
@@ -77,10 +77,10 @@ def _path(law: Any, name: str) -> str:
     """Return the dotted name of a parameter; a gain may be given by its name alone."""
     path = f"gains.{name}" if not hasattr(law, name) and hasattr(getattr(law, "gains", None), name) else name
     item = law
-    for part in path.split("."):
-        if not is_dataclass(item) or part not in {field.name for field in fields(item)}:
+    for piece_text in path.split("."):
+        if not is_dataclass(item) or piece_text not in {field.name for field in fields(item)}:
             raise UnknownNameError("parameter", name, _names(law))
-        item = getattr(item, part)
+        item = getattr(item, piece_text)
     return path
 
 
@@ -90,8 +90,8 @@ def _names(law: Any) -> tuple[str, ...]:
     for field in fields(law):
         value = getattr(law, field.name)
         if is_dataclass(value) and not isinstance(value, type):
-            inner = [each.name for each in fields(value) if isinstance(getattr(value, each.name), float)]
-            names += inner if field.name == "gains" else [f"{field.name}.{each}" for each in inner]
+            inner = [item.name for item in fields(value) if isinstance(getattr(value, item.name), float)]
+            names += inner if field.name == "gains" else [f"{field.name}.{item}" for item in inner]
         elif isinstance(value, float):
             names.append(field.name)
     return tuple(names)

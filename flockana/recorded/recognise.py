@@ -31,13 +31,13 @@ class Recognition(ShortRepr):
     @property
     def best(self) -> Comparison | None:
         """Comparison with the best-fitting law; None without one."""
-        first = self.ranked[0][1] if self.ranked else None
-        return first if first is not None and first.explained_refitted >= _FITS else None
+        first_law = self.ranked[0][1] if self.ranked else None
+        return first_law if first_law is not None and first_law.explained_refitted >= _FITS else None
 
     def __str__(self) -> str:
         lines = [
-            f"{share_text(one.explained_refitted):>9} ({share_text(one.explained)} with its own gains)  {name}"
-            for name, one in self.ranked
+            f"{share_text(item.explained_refitted):>9} ({share_text(item.explained)} with its own gains)  {name}"
+            for name, item in self.ranked
         ]
         lines += [f"        -  {name}: {reason}" for name, reason in self.refused.items()]
         if self.best is None:
@@ -74,12 +74,12 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
     if not isinstance(laws, Mapping) or not laws:
         raise ArgumentError(f"laws = {format_value(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
     ranking: list[tuple[str, Comparison]] = []
-    refused: dict[str, str] = {}
+    refusal_reasons: dict[str, str] = {}
     for name, law in laws.items():
         try:
             ranking.append((name, compare(rec, law)))
         except FlockanaError as error:
-            refused[name] = str(error)
+            refusal_reasons[name] = str(error)
     if not ranking:
-        raise ArgumentError(f"no law applies to this recording: {next(iter(refused.values()))}")
-    return Recognition(tuple(sorted(ranking, key=lambda each: -each[1].explained_refitted)), refused)
+        raise ArgumentError(f"no law applies to this recording: {next(iter(refusal_reasons.values()))}")
+    return Recognition(tuple(sorted(ranking, key=lambda each: -each[1].explained_refitted)), refusal_reasons)

@@ -99,8 +99,8 @@ class Recording(ResultCache):
             raise ArgumentError(
                 f"t has shape {t.shape}: expected {len(q)} times without gaps, one for each sample of q"
             )
-        if (late := ~(np.diff(t) > 0.0)).any():
-            k = int(np.argmax(late))
+        if (time_faults := ~(np.diff(t) > 0.0)).any():
+            k = int(np.argmax(time_faults))
             raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times; sort them")
         arrays = {"t": t, "q": q} | {k: _with_gaps(k, getattr(self, k)) for k in "pu" if getattr(self, k) is not None}
         for name, array in arrays.items():
@@ -132,8 +132,8 @@ class Recording(ResultCache):
         gaps = f", {self.gaps} gaps" if self.gaps else ""
         start, end = (f"{x:.{_digits(self.t)}g}" for x in (self.t[0], self.t[-1]))
         text = f"Recording of {self.n} agents, m = {self.m}, {len(self.t)} samples, t = {start} to {end}{gaps}"
-        read_as = f"; read as {'; '.join(self.read_as)}" if self.read_as else ""
-        return f"<{text}, {self.accuracy}{read_as}>"
+        reading_remarks = f"; read as {'; '.join(self.read_as)}" if self.read_as else ""
+        return f"<{text}, {self.accuracy}{reading_remarks}>"
 
     @property
     def n(self) -> int:
@@ -167,12 +167,12 @@ class Recording(ResultCache):
             return Accuracy(np.inf, np.inf, "unknown")
         kind: Kind = "estimated" if self.estimated or self.smoothed else "sd" if self.bound is None else "bound"
         width = band(2 * self.q.shape[0] * self.n, self.m)
-        place, speed = self.bound, self.p_bound
-        if place is None:
-            place = times(self.sd, width)
-        if place is not self.bound or self.smoothed:
+        position_error, speed = self.bound, self.p_bound
+        if position_error is None:
+            position_error = times(self.sd, width)
+        if position_error is not self.bound or self.smoothed:
             speed = times(self.p_sd, width)
-        return Accuracy(place, place / self.interval if speed is None else speed, kind)
+        return Accuracy(position_error, position_error / self.interval if speed is None else speed, kind)
 
     def window(self, start: float, end: float) -> Self:
         """Return the samples between two times.
@@ -308,8 +308,8 @@ class Recording(ResultCache):
         speed = float(np.sqrt(np.nanmean(rec.p**2) * rec.m))
         if law is None:
             alpha = None if d is None and r is None else scaled_alpha(d, r)
-            length = 1.0 if alpha is None else alpha.length
-            law = UnknownLaw(alpha, length / speed if speed > 0.0 else self.interval, self.interval)
+            length_scale = 1.0 if alpha is None else alpha.length
+            law = UnknownLaw(alpha, length_scale / speed if speed > 0.0 else self.interval, self.interval)
         u = np.zeros(rec.q.shape) if rec.u is None else np.nan_to_num(rec.u)
         return Trajectory(rec.t, rec.q, rec.p, u, ensure_law(law), {}, "complete", f"recorded: {self.source}")
 
@@ -375,8 +375,8 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
     if array.dtype.kind not in "fiu":
         raise ArgumentError(f"{name}: expected real numbers, got {format_value(array.dtype.name)}")
     array = array.astype(np.float64)
-    if (far := np.abs(array) > _FARTHEST).any():
-        at = tuple(np.argwhere(far)[0].tolist())
+    if (is_far := np.abs(array) > _FARTHEST).any():
+        at = tuple(np.argwhere(is_far)[0].tolist())
         where, limit = ", ".join(map(str, at)), f"{_FARTHEST:g}"
         raise ArgumentError(f"{name}[{where}] = {array[at]:g}: expected numbers up to {limit} in size, NaN for a gap")
     return array

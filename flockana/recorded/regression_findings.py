@@ -54,8 +54,8 @@ class Regression:
 
     def __init__(self, data: Accelerations, law: Any) -> None:
         self.data, self.weights = data, data.weights
-        fixed = remainder(law)
-        self.target = data.u if fixed is None else data.u - data.of(fixed)
+        known_part = remainder(law)
+        self.target = data.u if known_part is None else data.u - data.of(known_part)
         self.total = self.squares(data.u)
 
     def squares(self, x: FloatArray) -> float:
@@ -76,37 +76,37 @@ class Regression:
             return Solution(gains, errors, float(np.sum(y**2)), y.size)
         a = matrix[:, is_used] / norms[is_used]
         beta = np.linalg.pinv(a.T @ a) @ (a.T @ y.ravel())
-        rest = y - (a @ beta).reshape(y.shape)
-        covariance, freedom = covariance_over_agents(a.reshape(*y.shape, -1), rest)
+        residuals = y - (a @ beta).reshape(y.shape)
+        covariance, degrees_of_freedom = covariance_over_agents(a.reshape(*y.shape, -1), residuals)
         gains[is_used] = beta / norms[is_used]
         errors[is_used] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norms[is_used]
-        return Solution(gains, errors, float(np.sum(rest**2)), freedom)
+        return Solution(gains, errors, float(np.sum(residuals**2)), degrees_of_freedom)
 
 
 def explained(data: Accelerations, law: Any) -> Explained:
     """Return the explained share of accelerations and the differences: other forms first, then gains."""
     from scipy.stats import t as student
 
-    work, parts = Regression(data, law), contributions(law)
-    columns = [data.of(part.acts) for part in parts]
-    residual = work.target - sum(part.stated * column for part, column in zip(parts, columns, strict=True))
-    left, total = work.squares(residual), work.total
+    regression, parts = Regression(data, law), contributions(law)
+    columns = [data.of(segment.acts) for segment in parts]
+    residual = regression.target - sum(segment.stated * column for segment, column in zip(parts, columns, strict=True))
+    left, total = regression.squares(residual), regression.total
     texts: list[str] = []
     if total and left > _EXACT * total:
-        columns, texts = _with_better_forms(work, law, [part.name for part in parts], columns)
-    solution = work.solve(columns)
+        columns, texts = _with_better_forms(regression, law, [segment.name for segment in parts], columns)
+    solution = regression.solve(columns)
     shares = tuple(
-        Share(part.symbol, part.text, part.stated, float(c), float(e), work.share(c * column))
-        for part, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
+        Share(segment.symbol, segment.text, segment.stated, float(c), float(e), regression.share(c * column))
+        for segment, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
     )
     if left > _EXACT * total and solution.left < 0.5 * total:
-        chance = float(student.isf(_CHANCE, solution.freedom))
-        for one in shares:
-            if abs(one.found - one.stated) > max(chance * one.error, _OTHER * abs(one.stated)):
-                texts.append(f"{one.text} is {one.symbol} = {one.found:.4g} here, {one.stated:.4g} in the law")
+        chance_limit = float(student.isf(_CHANCE, solution.freedom))
+        for share in shares:
+            if abs(share.found - share.stated) > max(chance_limit * share.error, _OTHER * abs(share.stated)):
+                texts.append(f"{share.text} is {share.symbol} = {share.found:.4g} here, {share.stated:.4g} in the law")
     if total and 1.0 - solution.left / total < _FITS and data.basis != "splines":
-        most = 1.0 - solution.left / total
-        texts.append(f"{most:.1%} is the most that these terms explain with any gains: another law acts")
+        explained_share = 1.0 - solution.left / total
+        texts.append(f"{explained_share:.1%} is the most that these terms explain with any gains: another law acts")
     return Explained(residual, left, min(left, solution.left), total, shares, tuple(texts))
 
 
@@ -114,18 +114,18 @@ def _with_better_forms(
     work: Regression, law: Any, names: list[str], columns: list[FloatArray]
 ) -> tuple[list[FloatArray], list[str]]:
     """Return the columns of a law's parts, replaced by far better alternative forms, and texts on these forms."""
-    current, texts = list(columns), list[str]()
-    open_ = [(variant, work.data.of(variant.acts)) for variant in variants(law) if variant.gain in names]
-    left = work.solve(current).left
-    while open_ and left > _EXACT * work.total:
+    current_columns, texts = list(columns), list[str]()
+    open_variants = [(variant, work.data.of(variant.acts)) for variant in variants(law) if variant.gain in names]
+    left = work.solve(current_columns).left
+    while open_variants and left > _EXACT * work.total:
         trials = []
-        for variant, column in open_:
+        for variant, column in open_variants:
             k = names.index(variant.gain)
-            trials.append((work.solve([*current[:k], column, *current[k + 1 :]]).left, variant, column))
-        best_left, best, column = min(trials, key=lambda trial: trial[0])
-        if best_left > _CLEAR * left or left - best_left < _WORTH * work.total:
+            trials.append((work.solve([*current_columns[:k], column, *current_columns[k + 1 :]]).left, variant, column))
+        best_remainder, best_form, column = min(trials, key=lambda trial: trial[0])
+        if best_remainder > _CLEAR * left or left - best_remainder < _WORTH * work.total:
             break
-        left, current[names.index(best.gain)] = best_left, column
-        texts.append(best.finding)
-        open_ = [each for each in open_ if each[0].gain != best.gain]
-    return current, texts
+        left, current_columns[names.index(best_form.gain)] = best_remainder, column
+        texts.append(best_form.finding)
+        open_variants = [item for item in open_variants if item[0].gain != best_form.gain]
+    return current_columns, texts

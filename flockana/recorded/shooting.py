@@ -43,7 +43,7 @@ class Problem:
     @property
     def size(self) -> int:
         """Total count of numbers in all samples."""
-        return sum(int(np.count_nonzero(part.root)) for part in self.parts)
+        return sum(int(np.count_nonzero(segment.root)) for segment in self.parts)
 
     def fixed(self, k: int, value: float) -> Self:
         """Return the problem with one parameter fixed, and the others free."""
@@ -72,7 +72,7 @@ class Problem:
             return None
         if self.spread is not None:
             misfits.append(-z[len(theta) :] / self.spread[self.spread > 0.0])
-        return misfits if all(np.isfinite(each).all() for each in misfits) else None
+        return misfits if all(np.isfinite(misfit).all() for misfit in misfits) else None
 
     def slopes(self, z: FloatArray, starts: Sequence[FloatArray], finer: int, block: float) -> list[FloatArray]:
         """Return the slopes of each window by its start, the parameters and the constant errors."""
@@ -82,10 +82,10 @@ class Problem:
         if self.spread is None:
             return rows
         active, wide = np.flatnonzero(self.spread > 0.0), []
-        for part, each in zip(self.parts, rows, strict=True):
+        for part, row in zip(self.parts, rows, strict=True):
             by_shift = np.zeros((*part.root.shape, len(active)))
             by_shift[:, active, np.arange(len(active))] = part.root[:, active]
-            wide.append(np.concatenate([each, by_shift.reshape(len(each), -1)], axis=1))
+            wide.append(np.concatenate([row, by_shift.reshape(len(row), -1)], axis=1))
         prior = np.concatenate([np.zeros((len(active), len(theta))), np.diag(1.0 / self.spread[active])], axis=1)
         return [*wide, prior]
 
@@ -127,15 +127,15 @@ class NormalEquations:
     @classmethod
     def of(cls, slopes: list[FloatArray], count: int, damping: float) -> Self:
         """Return the normal equations of given slopes, the last `count` of which belong to parameters."""
-        reduced, corners, across = np.zeros((count, count)), [], []
-        for each in slopes:
-            whole = each.T @ each
-            whole[np.diag_indices_from(whole)] *= 1.0 + damping
-            size = len(whole) - count
-            corners.append(inverse(whole[:size, :size]))
-            across.append(whole[:size, size:])
-            reduced += whole[size:, size:] - across[-1].T @ corners[-1] @ across[-1]
-        return cls(slopes, corners, across, reduced, damping)
+        reduced_matrix, corners, cross_blocks = np.zeros((count, count)), [], []
+        for slope in slopes:
+            gram_matrix = slope.T @ slope
+            gram_matrix[np.diag_indices_from(gram_matrix)] *= 1.0 + damping
+            dimension = len(gram_matrix) - count
+            corners.append(inverse(gram_matrix[:dimension, :dimension]))
+            cross_blocks.append(gram_matrix[:dimension, dimension:])
+            reduced_matrix += gram_matrix[dimension:, dimension:] - cross_blocks[-1].T @ corners[-1] @ cross_blocks[-1]
+        return cls(slopes, corners, cross_blocks, reduced_matrix, damping)
 
     @property
     def covariance(self) -> FloatArray:
@@ -149,25 +149,25 @@ class NormalEquations:
 
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
         """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
-        count, starts, gained = len(self.reduced), [], 0.0
-        downhill = [each.T @ off for each, off in zip(self.slopes, residuals, strict=True)]
-        parts = [(x[: x.size - count], x[x.size - count :]) for x in downhill]
+        count, starts, gain_sum = len(self.reduced), [], 0.0
+        gradients = [slope.T @ deviation for slope, deviation in zip(self.slopes, residuals, strict=True)]
+        parts = [(x[: x.size - count], x[x.size - count :]) for x in gradients]
         blocks = list(zip(parts, self.corners, self.across, strict=True))
-        move = self.covariance @ sum(
+        start_step = self.covariance @ sum(
             (own_block - across.T @ (corner @ start) for (start, own_block), corner, across in blocks), np.zeros(count)
         )
         for (start, own_block), corner, across in blocks:
-            starts.append(corner @ (start - across @ move))
-            gained += float(start @ starts[-1]) + float(own_block @ move)
-        return move, starts, gained
+            starts.append(corner @ (start - across @ start_step))
+            gain_sum += float(start @ starts[-1]) + float(own_block @ start_step)
+        return start_step, starts, gain_sum
 
 
 def inverse(matrix: FloatArray) -> FloatArray:
     """Return the pseudoinverse of a symmetric matrix scaled to a unit diagonal."""
     if not len(matrix):
         return matrix
-    size = np.sqrt(np.diag(matrix))
-    unit = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
+    scales = np.sqrt(np.diag(matrix))
+    unit = np.divide(1.0, scales, out=np.zeros_like(scales), where=scales > 0.0)
     return unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
 
 
@@ -187,50 +187,50 @@ def matched(
     alone.
     """
     theta, damping = _first(problem, values), 0.0
-    starts = _with_prior(problem, [part.start for part in problem.parts] if starts is None else list(starts))
+    starts = _with_prior(problem, [segment.start for segment in problem.parts] if starts is None else list(starts))
     if finer is None:
         finer = _refinement(problem.parts, problem.with_values(problem.split(theta)[0]))
-    since, slow, message = 0.0, 0, ""
+    start_time, slow_steps, message = 0.0, 0, ""
     now = problem.residuals(theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    size = problem.size
+    dimension = problem.size
     for _ in range(rounds):
         if normal is None:
-            since, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)
-        step, moves, promised = normal.step(now)
-        unit = max(_squares(now) / size, 1.0)  # residuals of a law that does not fit are larger than noise
-        if promised <= (_GAIN if block == _FINE else _CLOSE) * unit:
-            if block == _FINE and since <= _NEAR * unit and normal.damping == 0.0:
+            start_time, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)
+        step, start_steps, expected_gain = normal.step(now)
+        unit = max(_squares(now) / dimension, 1.0)  # residuals of a law that does not fit are larger than noise
+        if expected_gain <= (_GAIN if block == _FINE else _CLOSE) * unit:
+            if block == _FINE and start_time <= _NEAR * unit and normal.damping == 0.0:
                 message = "settled"
                 break
             block, damping, normal = _FINE, 0.0, None
             continue
-        part_of = _share(theta, step, problem.first)
-        tried_theta = theta + part_of * step
-        tried_starts = [x + part_of * move for x, move in zip(starts, moves, strict=True)]
-        tried = problem.residuals(tried_theta, tried_starts, finer)
-        gained = 0.0 if tried is None else _squares(now) - _squares(tried)
-        if tried is not None and gained > 0.0:
-            theta, starts, now, since = tried_theta, tried_starts, tried, since + gained
+        step_share = _share(theta, step, problem.first)
+        tried_theta = theta + step_share * step
+        tried_starts = [x + step_share * start_step for x, start_step in zip(starts, start_steps, strict=True)]
+        tried_residuals = problem.residuals(tried_theta, tried_starts, finer)
+        gain_sum = 0.0 if tried_residuals is None else _squares(now) - _squares(tried_residuals)
+        if tried_residuals is not None and gain_sum > 0.0:
+            theta, starts, now, start_time = tried_theta, tried_starts, tried_residuals, start_time + gain_sum
             damping = 0.1 * damping if damping > 1e-4 else 0.0
-            slow = slow + 1 if gained < _GAIN * unit else 0
-            if slow == _SLOW:
+            slow_steps = slow_steps + 1 if gain_sum < _GAIN * unit else 0
+            if slow_steps == _SLOW:
                 message = "settled"
                 break
-        elif since == 0.0:
+        elif start_time == 0.0:
             damping = max(10.0 * damping, 1e-2)
             if damping > _DAMPED:
                 message = "no smaller residual was found nearby"
                 break
-        if not since or normal.damping or abs(gained - promised) > _TRUSTED * promised:
+        if not start_time or normal.damping or abs(gain_sum - expected_gain) > _TRUSTED * expected_gain:
             normal = None
-    if message != "settled" or normal is None or slow == _SLOW:
+    if message != "settled" or normal is None or slow_steps == _SLOW:
         message = message or f"no end after {rounds} rounds"
         normal = _normal(problem, theta, starts, finer, _FINE)
-    freedom = max(size - sum(x.size for x in starts) - len(problem.first), 1)
+    degrees_of_freedom = max(dimension - sum(x.size for x in starts) - len(problem.first), 1)
     identifiable = np.diag(normal.reduced) * theta**2 > _FELT
-    return MatchResult(theta, normal.covariance, identifiable, starts, now, freedom, message, normal, finer)
+    return MatchResult(theta, normal.covariance, identifiable, starts, now, degrees_of_freedom, message, normal, finer)
 
 
 def _first(problem: Problem, values: FloatArray | None) -> FloatArray:
@@ -249,13 +249,13 @@ def _with_prior(problem: Problem, starts: list[FloatArray]) -> list[FloatArray]:
 
 def _refinement(parts: list[Window], law: Any) -> int:
     """Return the step refinement that makes integration errors negligible against standard errors."""
-    finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
-    while finer < _FINEST:
-        fine = [part.residual(law, part.start, 2 * finer) for part in parts]
-        if _squares([a - b for a, b in zip(coarse, fine, strict=True)]) <= _BLURRED**2:
+    refinement, coarse_residuals = 1, [segment.residual(law, segment.start, 1) for segment in parts]
+    while refinement < _FINEST:
+        fine_residuals = [segment.residual(law, segment.start, 2 * refinement) for segment in parts]
+        if _squares([a - b for a, b in zip(coarse_residuals, fine_residuals, strict=True)]) <= _BLURRED**2:
             break
-        finer, coarse = 2 * finer, fine
-    return finer
+        refinement, coarse_residuals = 2 * refinement, fine_residuals
+    return refinement
 
 
 def _normal(
@@ -265,12 +265,12 @@ def _normal(
 
 
 def _squares(found: list[FloatArray]) -> float:
-    return float(sum(each @ each for each in found))
+    return float(sum(item @ item for item in found))
 
 
 def _share(theta: FloatArray, moved: FloatArray, first: FloatArray) -> float:
     """Return the fraction of a step that keeps every positive parameter above a tenth of its value."""
     theta, moved = theta[: len(first)], moved[: len(first)]
     falls = (first > 0.0) & (moved < 0.0)
-    room = np.where(falls, (0.9 * theta - _LEAST * first) / np.where(falls, -moved, 1.0), np.inf)
-    return float(min(1.0, np.maximum(room, 1e-3).min(initial=1.0)))
+    step_limits = np.where(falls, (0.9 * theta - _LEAST * first) / np.where(falls, -moved, 1.0), np.inf)
+    return float(min(1.0, np.maximum(step_limits, 1e-3).min(initial=1.0)))

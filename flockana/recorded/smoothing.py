@@ -45,9 +45,9 @@ def smoothed(
     `pieces` (T, K) numbers those of each series, -1 outside; an estimated noise is `floor` at least.
     """
     unit = _usual_interval(t, y)
-    middle = np.nanmean(y, axis=0)
-    spread = float(np.nanmax(np.abs(y - middle))) or 1.0
-    x, clock = (y - middle) / spread, (t - t[0]) / unit
+    mean_position = np.nanmean(y, axis=0)
+    spread = float(np.nanmax(np.abs(y - mean_position))) or 1.0
+    x, clock = (y - mean_position) / spread, (t - t[0]) / unit
     sd = np.maximum(_likeliest_noise(clock, x, pieces), floor / spread) if noise is None else noise / spread
     sd = np.maximum(np.broadcast_to(sd, x.shape), _FINEST)
     jerk, gain = _local_jerk(clock, x, sd, pieces, groups)
@@ -56,7 +56,7 @@ def smoothed(
         _straighten(clock, x, sd, mean, pieces == number, slice(k * groups, (k + 1) * groups))
     factors = spread * unit ** -np.arange(3.0)
     mean = mean * factors
-    mean[:, :, 0] += middle
+    mean[:, :, 0] += mean_position
     return Smoothed(mean, deviations * factors, float(sd.max()) * spread)
 
 
@@ -64,26 +64,26 @@ def _usual_interval(t: FloatArray, y: FloatArray) -> float:
     """Return the median interval between the samples of a series."""
     is_seen = ~np.isnan(y)
     steps = [np.diff(t[is_seen[:, k]]) for k in range(y.shape[1])]
-    every = np.concatenate(steps)
-    return float(np.median(every)) if every.size else 1.0
+    all_steps = np.concatenate(steps)
+    return float(np.median(all_steps)) if all_steps.size else 1.0
 
 
 def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
     """Return all differences of an order between samples within the pieces of the series."""
     rows = []
     for k in range(x.shape[1]):
-        at = np.flatnonzero(~np.isnan(x[:, k]))
-        piece = pieces[at, k]
-        if len(at) > order:
-            rows.append(np.diff(x[at, k], order)[piece[order:] == piece[: len(piece) - order]])
+        known_rows = np.flatnonzero(~np.isnan(x[:, k]))
+        piece = pieces[known_rows, k]
+        if len(known_rows) > order:
+            rows.append(np.diff(x[known_rows, k], order)[piece[order:] == piece[: len(piece) - order]])
     return np.concatenate(rows) if rows else np.empty(0)
 
 
 def _steepest(x: FloatArray, pieces: _Pieces) -> float:
     """Return the logarithm of third differences, an upper bound of the jerk with noise."""
-    third = _differences(x, pieces, 3)
-    size = float(np.sqrt(np.mean(third**2))) if third.size else 1.0
-    return float(np.log(max(size, 1e-14))) + 2.0
+    third_value = _differences(x, pieces, 3)
+    dimension = float(np.sqrt(np.mean(third_value**2))) if third_value.size else 1.0
+    return float(np.log(max(dimension, 1e-14))) + 2.0
 
 
 def _local_jerk(
@@ -106,19 +106,19 @@ def _local_jerk(
         )
         np.add.at(whole[g], (piece, np.arange(series // groups)), variances)
         for by in range(-_WINDOW, _WINDOW + 1):
-            here, there = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
+            here, right_slice = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
             weight = 1.0 - abs(by) / (_WINDOW + 1.0)
-            local[g, here] += weight * np.where(piece[here] == piece[there], variances[there], 0.0)
-    allowed = local[:-1] >= local[:-1].max(axis=0) - _DROP
-    largest = tried[np.argmax(allowed, axis=0)]
+            local[g, here] += weight * np.where(piece[here] == piece[right_slice], variances[right_slice], 0.0)
+    is_likely = local[:-1] >= local[:-1].max(axis=0) - _DROP
+    largest = tried[np.argmax(is_likely, axis=0)]
     gain = whole.max(axis=0) - whole[-1] if np.isinf(tried[-1]) else np.full(whole.shape[1:], np.inf)
     return np.repeat(np.exp(largest), groups, axis=1), gain[:-1]
 
 
 def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, within: Any, axes: slice) -> None:
     """Replace an agent's piece by straight motion unless acceleration is likelier."""
-    inside = within[:, axes.start]
-    seen = inside & ~np.isnan(x[:, axes.start])
+    is_inside = within[:, axes.start]
+    seen = is_inside & ~np.isnan(x[:, axes.start])
     if seen.sum() < _FEWEST_STRAIGHT:
         return
     s = (t - t[seen].mean()) / np.ptp(t[seen])
@@ -126,8 +126,8 @@ def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, 
     fits = [np.linalg.lstsq(weight * forms[seen, :k], weight * x[seen, axes], rcond=None)[0] for k in (2, 3)]
     costs = [0.5 * np.sum((weight * (x[seen, axes] - forms[seen, : len(c)] @ c)) ** 2) for c in fits]
     if costs[0] - costs[1] < _BENT:
-        mean[inside, axes, 0] = forms[inside, :2] @ fits[0]
-        mean[inside, axes, 1], mean[inside, axes, 2] = fits[0][1] / np.ptp(t[seen]), 0.0
+        mean[is_inside, axes, 0] = forms[is_inside, :2] @ fits[0]
+        mean[is_inside, axes, 1], mean[is_inside, axes, 2] = fits[0][1] / np.ptp(t[seen]), 0.0
 
 
 def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArray:
@@ -139,8 +139,8 @@ def _likeliest_noise(t: FloatArray, x: FloatArray, pieces: _Pieces) -> FloatArra
         return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), pieces, backwards=False)[2].sum())
 
     start = np.array([_steepest(x, pieces) - 4.0, _steepest(x, pieces) - 3.0])
-    best = minimize(cost, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "maxfev": 120})
-    return np.array(np.exp(best.x[1]))
+    optimum = minimize(cost, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "maxfev": 120})
+    return np.array(np.exp(optimum.x[1]))
 
 
 def _filtered(
@@ -187,15 +187,15 @@ def _filtered(
 
 def _initial_variance(y: FloatArray, sd: FloatArray, pieces: _Pieces) -> FloatArray:
     """Return variances of position, velocity and acceleration before the first sample."""
-    sizes = [np.abs(_differences(y, pieces, k)) if k else np.abs(y[~np.isnan(y)]) for k in range(3)]
-    largest = np.array([float(x.max()) if x.size else 1.0 for x in sizes])
+    magnitudes = [np.abs(_differences(y, pieces, k)) if k else np.abs(y[~np.isnan(y)]) for k in range(3)]
+    largest = np.array([float(x.max()) if x.size else 1.0 for x in magnitudes])
     return (_DIFFUSE * (largest + float(sd.max()))) ** 2
 
 
 def _transition(h: float) -> tuple[FloatArray, FloatArray]:
     """Return transition matrix and noise covariance of (position, velocity, acceleration) for unit white jerk."""
-    turn = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
+    transition = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
     kick = np.array(
         [[h**5 / 20.0, h**4 / 8.0, h**3 / 6.0], [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0], [h**3 / 6.0, h**2 / 2.0, h]]
     )
-    return turn, kick
+    return transition, kick

@@ -54,16 +54,16 @@ def _motions(rec: Samples) -> Motions:
     short = np.stack([np.append(count < _FEWEST, True)[x] for count, x in zip(whole, pieces.T, strict=True)], axis=1)
     (count, n, m), grid = rec.q.shape, grid_of(rec.q)
     noise = _coordinate_noise(rec)
-    rounded = grid > 0.0 and (noise is None or grid > _COARSE * float(np.max(noise)))
-    dependent = _DEPENDENT if rec.bound is not None or rounded else 1.0
+    is_rounded = grid > 0.0 and (noise is None or grid > _COARSE * float(np.max(noise)))
+    noise_factor = _DEPENDENT if rec.bound is not None or is_rounded else 1.0
     if bool((short | ~rec.present).all()):
         none, bare = np.full(rec.q.shape, np.nan), np.full(rec.present.shape, np.nan)
         return Motions(none, none, none, bare, bare, bare, 0.0)
-    wide = None if noise is None else np.repeat(np.broadcast_to(noise, (count, n)), m, axis=1)
+    noise_rows = None if noise is None else np.repeat(np.broadcast_to(noise, (count, n)), m, axis=1)
     series, split = rec.q.reshape(count, n * m), np.repeat(pieces, m, axis=1)
-    fit = smoothed(rec.t, series, wide, split, groups=m, floor=grid / np.sqrt(12.0))
+    fit = smoothed(rec.t, series, noise_rows, split, groups=m, floor=grid / np.sqrt(12.0))
     (q, p, u), deviations = ([x[:, :, k].reshape(count, n, m) for k in range(3)] for x in (fit.mean, fit.sd))
-    q_sd, p_sd, u_sd = (dependent * each.max(axis=2) for each in deviations)
+    q_sd, p_sd, u_sd = (noise_factor * deviation.max(axis=2) for deviation in deviations)
     for x in (q, p, u, q_sd, p_sd, u_sd):
         x[short | ~rec.present] = np.nan
     return Motions(q, p, u, q_sd, p_sd, u_sd, fit.noise)
@@ -86,13 +86,13 @@ def grid_of(q: FloatArray) -> float:
     """
     values = np.unique(q[~np.isnan(q)])
     steps = np.diff(values)
-    size = float(np.abs(values).max(initial=0.0))
-    steps = steps[steps > 1e-12 * size]
+    magnitude = float(np.abs(values).max(initial=0.0))
+    steps = steps[steps > 1e-12 * magnitude]
     if len(steps) < 3:
         return 0.0
     step = float(steps.min())
-    off = np.abs(steps / step - np.rint(steps / step))
-    return step if (off < np.maximum(_GRID, 1e-12 * size / step)).all() else 0.0
+    deviation = np.abs(steps / step - np.rint(steps / step))
+    return step if (deviation < np.maximum(_GRID, 1e-12 * magnitude / step)).all() else 0.0
 
 
 def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
@@ -104,15 +104,15 @@ def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
     for i in range(rec.n):
         rows = np.flatnonzero(rec.present[:, i])
         steps = np.diff(rec.t[rows])
-        apart = steps > _MISSED * (float(np.median(steps)) if len(steps) else 1.0)
-        number = np.concatenate([[0], np.cumsum(apart)])
-        last = np.full(len(rec.t), -1)
-        last[rows] = np.arange(len(rows))
-        last = np.maximum.accumulate(last)  # the sample before
-        inside = (last >= 0) & (np.arange(len(rec.t)) <= rows[-1])
-        here = last[inside]
-        after = np.minimum(here + (rec.t[inside] > rec.t[rows[here]]), len(rows) - 1)
-        pieces[inside, i] = np.where(number[here] == number[after], number[here], -1)
+        is_gap = steps > _MISSED * (float(np.median(steps)) if len(steps) else 1.0)
+        number = np.concatenate([[0], np.cumsum(is_gap)])
+        last_known = np.full(len(rec.t), -1)
+        last_known[rows] = np.arange(len(rows))
+        last_known = np.maximum.accumulate(last_known)  # the sample before
+        is_inside = (last_known >= 0) & (np.arange(len(rec.t)) <= rows[-1])
+        last_rows = last_known[is_inside]
+        next_rows = np.minimum(last_rows + (rec.t[is_inside] > rec.t[rows[last_rows]]), len(rows) - 1)
+        pieces[is_inside, i] = np.where(number[last_rows] == number[next_rows], number[last_rows], -1)
     return pieces
 
 
@@ -141,8 +141,8 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
     most = ensure_positive("most_acceleration", most)
     reach = np.inf if longest is None else ensure_positive("longest", longest)
     fit = motions(rec) if rec.bound is None else None
-    name, stated = ("bound", rec.bound) if fit is None else ("sd", rec.sd if rec.sd is not None else fit.noise)
-    error: FloatArray = np.broadcast_to(np.asarray(stated, dtype=np.float64), rec.present.shape).copy()
+    name, stated_value = ("bound", rec.bound) if fit is None else ("sd", rec.sd if rec.sd is not None else fit.noise)
+    error: FloatArray = np.broadcast_to(np.asarray(stated_value, dtype=np.float64), rec.present.shape).copy()
     p, speed = rec.p, rec.p_bound if fit is None else rec.p_sd
     if p is None:  # those of the smoothing splines, or none that a bound holds of
         p = np.full(rec.q.shape, np.nan) if fit is None else fit.p
@@ -151,9 +151,9 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
     q, p = rec.q.copy(), p.copy()
     for i, gap, duration in _gaps(rec):
         if duration <= reach:
-            at, here = [gap.start - 1, gap.stop], (rec.t[gap] - rec.t[gap.start - 1]) / duration
-            ends = _Ends(rec.q[at, i], p[at, i], error[at, i], slip[at, i])
-            q[gap, i], error[gap, i], p[gap, i], slip[gap, i] = _bridge(here, duration, ends, most)
+            gap_ends, fractions = [gap.start - 1, gap.stop], (rec.t[gap] - rec.t[gap.start - 1]) / duration
+            ends = _Ends(rec.q[gap_ends, i], p[gap_ends, i], error[gap_ends, i], slip[gap_ends, i])
+            q[gap, i], error[gap, i], p[gap, i], slip[gap, i] = _bridge(fractions, duration, ends, most)
     change: dict[str, Any] = {"q": q, "u": None, name: error}
     if rec.p is not None:
         change |= {"p": p, f"p_{name}": slip}
@@ -168,27 +168,27 @@ def _bridge(
     The cubic through both ends, or the chord where velocities are not known or say less. A motion whose acceleration is
     ``most`` at most is off by ``most`` times the integral of the absolute value of Peano's kernel; errors of ends add.
     """
-    one, none = np.ones(len(s)), np.zeros((2, len(s)))
-    rise, fall = s**2 * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / duration
+    ones, zeros = np.ones(len(s)), np.zeros((2, len(s)))
+    rise, fall_weights = s**2 * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / duration
     forms = [
-        [(np.stack([1.0 - s, s]), none), (np.stack([-one, one]) / duration, none)],
+        [(np.stack([1.0 - s, s]), zeros), (np.stack([-ones, ones]) / duration, zeros)],
         [
             (np.stack([1.0 - rise, rise]), duration * np.stack([s * (1.0 - s) ** 2, -(s**2) * (1.0 - s)])),
-            (np.stack([-fall, fall]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
+            (np.stack([-fall_weights, fall_weights]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
         ],
     ]
     is_told = bool(np.isfinite(ends.off_p).all() and np.isfinite(ends.p).all())
-    p, off_p = (ends.p, ends.off_p) if is_told else (np.zeros(ends.p.shape), np.zeros(2))
+    p, velocity_offset = (ends.p, ends.off_p) if is_told else (np.zeros(ends.p.shape), np.zeros(2))
     pieces = []
     for order in (0, 1):
-        best, error = np.zeros((len(s), ends.q.shape[1])), np.full(len(s), np.inf)
+        best_values, error = np.zeros((len(s), ends.q.shape[1])), np.full(len(s), np.inf)
         for form in forms[: 1 + is_told]:
             by_q, by_p = form[order]
-            off = most * _kernel(s, duration, by_q[1], by_p[1], order)
-            off = off + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ off_p
-            best = np.where((off < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best)
-            error = np.minimum(off, error)
-        pieces += [best, error]
+            deviation = most * _kernel(s, duration, by_q[1], by_p[1], order)
+            deviation = deviation + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ velocity_offset
+            best_values = np.where((deviation < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best_values)
+            error = np.minimum(deviation, error)
+        pieces += [best_values, error]
     return pieces[0], pieces[1], pieces[2], pieces[3]
 
 
@@ -196,8 +196,8 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
     """Return the integral of |Peano kernel| of an interpolation, or of its slope, at shares s of a gap."""
 
     def kernel(x: FloatArray | float) -> tuple[Any, Any]:
-        after = -by_q * (1.0 - x) * duration - by_p
-        return after + ((s - x) * duration if order == 0 else 1.0), after
+        end_part = -by_q * (1.0 - x) * duration - by_p
+        return end_part + ((s - x) * duration if order == 0 else 1.0), end_part
 
     def area(a: FloatArray, b: FloatArray, width: FloatArray) -> FloatArray:  # of |a line| from a to b
         total = np.abs(a) + np.abs(b)
@@ -205,8 +205,8 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
         result: FloatArray = 0.5 * width * np.where(a * b < 0.0, crossing, total)
         return result
 
-    here = kernel(s)
-    return duration * (area(kernel(0.0)[0], here[0], s) + area(here[1], kernel(1.0)[1], 1.0 - s))
+    kernel_value = kernel(s)
+    return duration * (area(kernel(0.0)[0], kernel_value[0], s) + area(kernel_value[1], kernel(1.0)[1], 1.0 - s))
 
 
 def _gaps(rec: Samples) -> Iterator[tuple[int, slice, float]]:

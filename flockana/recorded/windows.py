@@ -55,32 +55,32 @@ class Window:
         `shift` (w,) is a constant error of the samples.
         """
         width = self.y.shape[1]
-        off = np.nan_to_num(self.y - self.solution(law, start, finer)[:, :width] - shift)
-        return (self.root * off).ravel()
+        deviation = np.nan_to_num(self.y - self.solution(law, start, finer)[:, :width] - shift)
+        return (self.root * deviation).ravel()
 
     def slopes(self, law: Any, nearby: list[Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
         """Return the slopes of the law's solution by start and parameters, over deviations, (K w, 2 n m + P)."""
         longest = np.inf if law.scales is None else block * law.scales.time
         parts = [max(1, min(ceil(h / longest), 64)) for h in np.diff(self.t).tolist()]
-        times, at = self.t[:1], np.concatenate([[0], np.cumsum(parts)]).astype(int)
+        times, boundaries = self.t[:1], np.concatenate([[0], np.cumsum(parts)]).astype(int)
         if len(parts):
             pieces = [np.linspace(a, b, m + 1)[1:] for a, b, m in zip(self.t[:-1], self.t[1:], parts, strict=True)]
             times = np.concatenate([times, *pieces])
         states = self._solution(law, times, start, finer)
-        size, width = start.size // 2, self.y.shape[1]
-        now = np.concatenate([np.eye(2 * size), np.zeros((2 * size, len(nearby)))], axis=1)
-        every = np.empty((len(times), width, now.shape[1]))
-        every[0] = now[:width]
+        dimension, width = start.size // 2, self.y.shape[1]
+        now = np.concatenate([np.eye(2 * dimension), np.zeros((2 * dimension, len(nearby)))], axis=1)
+        all_slopes = np.empty((len(times), width, now.shape[1]))
+        all_slopes[0] = now[:width]
         step = _within(times, longest)
         for a in range(0, len(times) - 1, step):
             b = min(a + step, len(times) - 1)
             t, middle = 0.5 * float(times[a] + times[b]), (a + b) // 2
             q, p = (x.reshape(-1, self.m) for x in np.split(0.5 * (states[middle] + states[a + b - middle]), 2))
-            propagate = _propagator(law, nearby, t, q, p)
+            propagator = _propagator(law, nearby, t, q, p)
             for k in range(a, b):
-                now = propagate(now, float(times[k + 1] - times[k]))
-                every[k + 1] = now[:width]
-        rows = every[at] * self.root[:, :, None]
+                now = propagator(now, float(times[k + 1] - times[k]))
+                all_slopes[k + 1] = now[:width]
+        rows = all_slopes[boundaries] * self.root[:, :, None]
         return rows.reshape(len(self.t) * width, -1)
 
 
@@ -91,8 +91,8 @@ def _propagator(
     size = q.size
     by_q, by_p = _derivatives(law, t, q, p)
     forced = np.zeros((size, 2 * size + len(nearby)))
-    for k, (more, less, by) in enumerate(nearby):
-        forced[:, 2 * size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
+    for k, (raised_values, less, nudge_size) in enumerate(nearby):
+        forced[:, 2 * size + k] = (raised_values.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / nudge_size
 
     def rate(x: FloatArray) -> FloatArray:
         return np.concatenate([x[size:], by_q @ x[:size] + by_p @ x[size:]])
@@ -127,10 +127,10 @@ def deviations(rec: Recording, *, velocities: bool) -> FloatArray:
         speed = rec.p_sd if rec.p_sd is not None else None if rec.p_bound is None else rec.p_bound / np.sqrt(3.0)
         speed = each[0] / rec.interval if speed is None else speed
         each.append(np.broadcast_to(np.asarray(speed, dtype=np.float64), rec.present.shape))
-    wide = np.concatenate([np.repeat(x, rec.m, axis=1) for x in each], axis=1)
+    noise_columns = np.concatenate([np.repeat(x, rec.m, axis=1) for x in each], axis=1)
     size = float(np.nanmax(np.abs(rec.q - np.nanmean(rec.q, axis=(0, 1))))) or 1.0
-    finest = np.repeat([1e-12 * size, 1e-12 * size / rec.interval][: len(each)], rec.n * rec.m)
-    return np.maximum(wide, finest)
+    finest_errors = np.repeat([1e-12 * size, 1e-12 * size / rec.interval][: len(each)], rec.n * rec.m)
+    return np.maximum(noise_columns, finest_errors)
 
 
 def windows(rec: Recording, duration: float, sd: FloatArray | None = None) -> list[Window]:
@@ -171,7 +171,7 @@ def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
 
 def rescaled(parts: list[Window], factors: FloatArray) -> list[Window]:
     """Return the windows with the deviations of each column multiplied by a factor, shape (w,)."""
-    return [replace(part, root=part.root / factors) for part in parts]
+    return [replace(segment, root=segment.root / factors) for segment in parts]
 
 
 def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -190,8 +190,8 @@ def neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatArr
     """Return for each parameter the laws with increased and decreased value, and the difference."""
     laws = []
     for k, value in enumerate(values.tolist()):
-        more, less = values.copy(), values.copy()
-        by = _NUDGE * (abs(value) or 1.0)
-        more[k], less[k] = value + by, value - by if value != 0.0 else 0.0
-        laws.append((with_values(more), with_values(less), float(more[k] - less[k])))
+        raised_values, less = values.copy(), values.copy()
+        nudge_size = _NUDGE * (abs(value) or 1.0)
+        raised_values[k], less[k] = value + nudge_size, value - nudge_size if value != 0.0 else 0.0
+        laws.append((with_values(raised_values), with_values(less), float(raised_values[k] - less[k])))
     return laws

@@ -63,20 +63,20 @@ def report_folder(name: str | None) -> Path:
 
 def _covers_catalogue(folder: Path) -> bool:
     """Return whether a folder holds a full catalogue report, or an unreadable one."""
-    there = _facts(folder)
-    return there is not None and there.get("of") is None
+    stored_facts = _facts(folder)
+    return stored_facts is not None and stored_facts.get("of") is None
 
 
 def _facts(folder: Path) -> dict[str, Any] | None:
     """Return the facts stored with a report; None without one, damaged verdicts count as a full report."""
     if not (folder / HTML).exists() and not (folder / JSON).exists():
         return None
-    whole = {"complete": True, "of": None}
+    facts = {"complete": True, "of": None}
     try:
         data = json.loads((folder / JSON).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
-        return whole
-    return data if isinstance(data, dict) and isinstance(data.get("complete"), bool) else whole
+        return facts
+    return data if isinstance(data, dict) and isinstance(data.get("complete"), bool) else facts
 
 
 def write_report(
@@ -103,8 +103,8 @@ def write_report(
     run = _run_facts(seed, seconds, complete) | {"of": of}
     html = _html(pages, run, flocks, statistics=statistics, comparison=comparison)
     texts = {JSON: _json(pages, run, statistics), HTML: html}
-    with ExitStack() as both:  # neither takes its place before both are whole
-        partials = {name: both.enter_context(atomic_write(folder / name, remedy=_REMEDY)) for name in texts}
+    with ExitStack() as exit_stack:  # neither takes its place before both are whole
+        partials = {name: exit_stack.enter_context(atomic_write(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
             partials[name].write_text(text, encoding="utf-8")
     return folder / HTML
@@ -143,10 +143,10 @@ def _run_facts(seed: int, seconds: float | None, complete: bool) -> dict[str, An
 
 def page_environment() -> Environment:
     """Return the template environment of one page; it numbers the page's figures."""
-    environment, numbers = templates(), count(1)
+    environment, counter = templates(), count(1)
 
     def figure(picture: Picture) -> Markup:
-        return Markup(named(picture.source, picture.caption, next(numbers)))
+        return Markup(named(picture.source, picture.caption, next(counter)))
 
     environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
     environment.filters |= {"source_name": source_name, "erratum": erratum_of}
@@ -157,14 +157,14 @@ def page_environment() -> Environment:
 def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
     entries = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in entries)
-    verdicts, whole = [finding.verdict for _, finding, _ in entries], run["of"] is None
+    verdicts, run_text = [finding.verdict for _, finding, _ in entries], run["of"] is None
     return (
         page_environment()
         .get_template("report/template.html.j2")
         .render(
             run=run,
             opening=opening_sentence([finding for _, finding, _ in entries]),
-            folded=whole,
+            folded=run_text,
             telling=most_telling(pages),
             scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
             fixed=[page for page in pages if isinstance(page, FixedPage)],
@@ -174,8 +174,8 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
             sorts=SORTS,
             foreword=FOREWORD,
             checked={finding.verdict.theorem: anchor for _, finding, anchor in reversed(entries)},  # where it is first
-            coverage={"sources": coverage(), "anchors": anchors(pages)} if whole else None,
-            front=front_findings(pages) if whole else (),
+            coverage={"sources": coverage(), "anchors": anchors(pages)} if run_text else None,
+            front=front_findings(pages) if run_text else (),
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_unexpected(pages),
             sources=sorted({source_name(f.references[0]) for _, f, _ in entries if f.references}),
@@ -193,10 +193,10 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
 def _unexpected(pages: Sequence[Page]) -> list[tuple[str, str]]:
     """Return (anchor in the page, text) of each difference from the expected statuses."""
     unexpected = []
-    for each in pages:
-        if isinstance(each, ScenarioPage) and each.early_end:
-            unexpected.append((scenario_id(each.name), each.early_end))
-        for finding in each.findings:
-            anchor = verdict_id(each.subject, finding.verdict.theorem)
+    for page in pages:
+        if isinstance(page, ScenarioPage) and page.early_end:
+            unexpected.append((scenario_id(page.name), page.early_end))
+        for finding in page.findings:
+            anchor = verdict_id(page.subject, finding.verdict.theorem)
             unexpected += [(anchor, text) for text in finding.surprises]
     return unexpected

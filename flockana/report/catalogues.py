@@ -56,10 +56,10 @@ def _theorem_entries() -> list[dict[str, Any]]:
             if key in expected:
                 expected[key].add(status)
     entries = []
-    for name, each in ((name, theorem(name)) for name in theorems()):
-        statuses = expected[name] | {status for key, status in each.expected.items() if key == name}
-        entry = {"name": name, "title": each.title, "source": _first(each.references), "printed": each.source}
-        entries.append(entry | {"checked on": _KINDS[each.kind], "statuses": sorted(statuses)})
+    for name, element in ((name, theorem(name)) for name in theorems()):
+        statuses = expected[name] | {status for key, status in element.expected.items() if key == name}
+        entry = {"name": name, "title": element.title, "source": _first(element.references), "printed": element.source}
+        entries.append(entry | {"checked on": _KINDS[element.kind], "statuses": sorted(statuses)})
     return entries
 
 
@@ -90,9 +90,9 @@ def select(
 def short_list(entries: Sequence[dict[str, Any]]) -> str:
     """Return one line per entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
-    for source in dict.fromkeys(entry["source"] for entry in entries):
-        entries_of_source = (entry for entry in entries if entry["source"] == source)
-        lines += [source, *(f"  {entry['name']:{width}}  {entry['title']}" for entry in entries_of_source)]
+    for source_name in dict.fromkeys(entry["source"] for entry in entries):
+        entries_of_source = (entry for entry in entries if entry["source"] == source_name)
+        lines += [source_name, *(f"  {entry['name']:{width}}  {entry['title']}" for entry in entries_of_source)]
     return "\n".join(lines)
 
 
@@ -115,8 +115,8 @@ def theorem_table(names: Iterable[str]) -> Table:
     """Return theorems with title, checked runs, and source."""
     from flockana.theorems import theorem
 
-    what = Column("what, and where it is printed", ratio=1, overflow="fold")
-    table = headed_table(Column("theorem", no_wrap=True, style="bold"), what, column("checked on"))
+    text_column = Column("what, and where it is printed", ratio=1, overflow="fold")
+    table = headed_table(Column("theorem", no_wrap=True, style="bold"), text_column, column("checked on"))
     for name in names:
         item = theorem(name)
         table.add_row(name, Text.assemble(item.title, "\n", (item.source, "bright_black")), _KINDS[item.kind])

@@ -62,15 +62,15 @@ class Chart:
                 parts.append(f'<path class="level" d="M{_LEFT} {at:.0f}H{_WIDTH - _RIGHT}"/>')
                 parts.append(f'<text x="{_WIDTH - _RIGHT}" y="{at - 6:.0f}">{escape(name)}</text>')
         for k, values in enumerate(curves):
-            keep = _kept(values)
+            kept_samples = _kept(values)
             with np.errstate(divide="ignore", invalid="ignore"):
-                heights = np.log10(values[keep]) if logarithmic else values[keep]
-            path = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
+                heights = np.log10(values[kept_samples]) if logarithmic else values[kept_samples]
+            path = _path(np.asarray(x(self.t[kept_samples])), np.asarray(y(heights)))
             parts.append(f'<path class="curve c{k}" d="{path}"/>')
         words = escape(self.words, quote=True)
         head = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">'
-        named = [(k, curve.label) for k, curve in enumerate(self.curves) if curve.label]
-        keys = "".join(f'<span><i class="key c{k}"></i>{escape(label)}</span>' for k, label in named)
+        label_rows = [(k, curve.label) for k, curve in enumerate(self.curves) if curve.label]
+        keys = "".join(f'<span><i class="key c{k}"></i>{escape(label)}</span>' for k, label in label_rows)
         legend = f'<p class="legend">{keys}</p>' if keys else ""
         return f'<div class="chart"><p class="axis">{words}</p>{head}{"".join(parts)}</svg>{legend}</div>'
 
@@ -86,22 +86,22 @@ def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
     if samples <= 2 * _SPANS:
         return np.arange(samples)
     edges = np.linspace(0, samples, _SPANS + 1).astype(int)
-    corners, numbers = {0, samples - 1}, np.nan_to_num(values)
-    for first, last in pairwise(edges.tolist()):
-        part = numbers[first:last]
-        corners |= {int(first + part.argmin()), int(first + part.argmax())}
+    corners, value_list = {0, samples - 1}, np.nan_to_num(values)
+    for first_index, chunk_stop in pairwise(edges.tolist()):
+        chunk_values = value_list[first_index:chunk_stop]
+        corners |= {int(first_index + chunk_values.argmin()), int(first_index + chunk_values.argmax())}
     return np.array(sorted(corners))
 
 
 def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, float]:
-    every = np.concatenate(values)
-    every = every[np.isfinite(every) & ((every > 0.0) | (not logarithmic))]
-    if not every.size:
+    all_values = np.concatenate(values)
+    all_values = all_values[np.isfinite(all_values) & ((all_values > 0.0) | (not logarithmic))]
+    if not all_values.size:
         return 0.0, 1.0
     if logarithmic:
-        low, high = floor(log10(every.min()) * 2.0) / 2.0, ceil(log10(every.max()) * 2.0) / 2.0
+        low, high = floor(log10(all_values.min()) * 2.0) / 2.0, ceil(log10(all_values.max()) * 2.0) / 2.0
         return low, high if high > low else low + 1.0
-    low, high = float(every.min()), float(every.max())
+    low, high = float(all_values.min()), float(all_values.max())
     if 0.0 < low < 0.5 * high:
         low = 0.0
     margin = 0.04 * (high - low) or 0.5 * abs(high) or 0.5
@@ -112,21 +112,21 @@ def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
     """Return round tick values in an interval, with their texts."""
     if not high > low:
         return [(low, f"{low:.4g}")]
-    raw = (high - low) / most
-    power = 10.0 ** floor(log10(raw))
-    step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * (1.0 - 1e-9))
+    rough_step = (high - low) / most
+    power = 10.0 ** floor(log10(rough_step))
+    step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= rough_step * (1.0 - 1e-9))
     ticks = [k * step + 0.0 for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
     largest = max(map(abs, ticks), default=0.0)
     if largest and not 1e-3 <= largest < 1e5:
         digits = floor(log10(largest / step) + 1e-9) + 2
-        return [(at, f"{at:.{digits}g}") for at in ticks]
+        return [(position, f"{position:.{digits}g}") for position in ticks]
     decimals = max(0, -floor(log10(step) + 1e-9))
-    return [(at, f"{at:.{decimals}f}") for at in ticks]
+    return [(position, f"{position:.{decimals}f}") for position in ticks]
 
 
 def _decades(low: float, high: float) -> list[tuple[float, str]]:
-    every = 1 + int((high - low) // _DECADES)
-    return [(float(k), f"1e{k}") for k in range(ceil(low), floor(high) + 1) if k % every == 0]
+    stride = 1 + int((high - low) // _DECADES)
+    return [(float(k), f"1e{k}") for k in range(ceil(low), floor(high) + 1) if k % stride == 0]
 
 
 def _path(x: FloatArray, y: FloatArray) -> str:

@@ -52,8 +52,8 @@ def _reason(verdict: Verdict) -> str:
     claims = [claim for claim in verdict.main_claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
         return f"{', '.join(claim.name for claim in claims)}: {claims[0].detail}"
-    missed = unmet(verdict.hypotheses)
-    return "" if missed is None else f"{missed.name}: {missed.detail}"
+    unmet_hypothesis = unmet(verdict.hypotheses)
+    return "" if unmet_hypothesis is None else f"{unmet_hypothesis.name}: {unmet_hypothesis.detail}"
 
 
 def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
@@ -62,8 +62,8 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
 
     def paths(figure: Any) -> None:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
-        for unused in axes[len(outcomes) :]:
-            unused.remove()
+        for unused_axes in axes[len(outcomes) :]:
+            unused_axes.remove()
         plots().side_by_side(outcomes, ax=axes[: len(outcomes)])
 
     names = ", ".join(outcome.entry.name for outcome in outcomes)

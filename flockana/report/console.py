@@ -60,11 +60,11 @@ def _share(verdict: Verdict) -> str:
 
 def errata_table(pages: Iterable[Page]) -> Table:
     """Return a table of checked errata by sort: printed form and correct form."""
-    checked = {finding.verdict.theorem for page in pages for finding in page.findings}
+    checked_errata = {finding.verdict.theorem for page in pages for finding in page.findings}
     table = headed_table(column("erratum"), column("printed, and right", wraps=True))
     for sort, meaning in SORTS.items():
         table.add_row(Text(sort, style="bold"), Text(meaning, style="bright_black"))
-        for item in (item for item in errata() if item.sort == sort and item.id in checked):
+        for item in (item for item in errata() if item.sort == sort and item.id in checked_errata):
             table.add_row(Text(f"  {item.id}"), f"{item.mark} {item.printer}: {item.printed}")
             table.add_row("", f"{item.right_mark} right: {item.right}")
     return table
@@ -74,8 +74,8 @@ def statistics_table(section: StatisticsSection) -> Table:
     """Return a table of the shares of seeds in which each claim is verified and refuted, with intervals."""
     table = headed_table(column("claim"), column("verified", right=True), column("refuted", right=True))
     for entry in section.entries:
-        left_out = f", {entry.incomplete} incomplete" if entry.incomplete else ""
-        table.add_row(Text.assemble((entry.scenario, "bold"), f", {entry.runs} seeds{left_out}"))
+        incomplete_text = f", {entry.incomplete} incomplete" if entry.incomplete else ""
+        table.add_row(Text.assemble((entry.scenario, "bold"), f", {entry.runs} seeds{incomplete_text}"))
         for row in entry.rows:
             table.add_row(Text(f"  {row.claim}"), str(row.verified), str(row.refuted))
     return table
@@ -83,18 +83,18 @@ def statistics_table(section: StatisticsSection) -> Table:
 
 def details(verdict: Verdict) -> Group:
     """Return the hypotheses and claims of a verdict, each with its finding in words."""
-    on = f" on {verdict.subject}" if verdict.subject else ""
-    title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
+    subject_text = f" on {verdict.subject}" if verdict.subject else ""
+    title = Text.assemble((verdict.theorem, "bold"), subject_text, ": ", _status(verdict.status))
     pair = erratum_of(verdict.theorem)
     lines = [*([] if pair is None else [str(pair)]), verdict.summary]
     columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
     table = FoldingTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
-    whose = verdict.author
+    author_text = verdict.author
     for name, c in merged(sorted(verdict.claims, key=lambda claim: (claim.by != verdict.author, claim.by))):
-        if c.by != whose:
-            table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
+        if c.by != author_text:
+            table.add_row(Text(f"{BYLINES[author_text := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
         table.add_row(Text(name), _status(c.status), Text(c.explanation + margin))
     return Group(title, *(Padding(Text(line), (0, 0, 0, 2)) for line in lines), Padding(table, (0, 0, 1, 2)))
@@ -106,11 +106,11 @@ def summary(pages: Sequence[Page], seconds: float) -> str:
     kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
     counts = ", ".join(f"{count} {status}" for status, count in kinds if count)
     surprises = sum(len(page.surprises) for page in pages)
-    judged = "all as expected" if not surprises else f"{surprises} different from the expected"
+    outcome_text = "all as expected" if not surprises else f"{surprises} different from the expected"
     if not any(f.expected for f in findings):
-        judged = "nothing was expected"
+        outcome_text = "nothing was expected"
     plural = "" if len(findings) == 1 else "s"
-    return f"{len(findings)} verdict{plural} in {seconds:.1f} s: {counts or 'none'}; {judged}"
+    return f"{len(findings)} verdict{plural} in {seconds:.1f} s: {counts or 'none'}; {outcome_text}"
 
 
 def run_table(run: Trajectory) -> Table:

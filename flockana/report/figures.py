@@ -53,10 +53,10 @@ _WORDS = "Links shorter than desired by more than a tenth are blue, longer ones 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the flock at its start, middle and end; its measures; energy, distances, speeds and control effort."""
     run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
-    blocked = bool((run.law.continuous or run.law).obstacles)
-    middle = "middle (of a flock that splits: where it is most split)" if blocked else "middle"
+    is_blocked = bool((run.law.continuous or run.law).obstacles)
+    caption = "middle (of a flock that splits: where it is most split)" if is_blocked else "middle"
     pictures_made = [
-        Picture(f"Start, {middle} and end. {_WORDS}", stills(run, times)),
+        Picture(f"Start, {caption} and end. {_WORDS}", stills(run, times)),
         Picture(
             "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
             "when every link has length d; K̃ is zero when all velocities agree.",
@@ -69,7 +69,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             panels([*_energy(run), _distances(run), speeds(run), effort(run)]),
         ),
     ]
-    if blocked:
+    if is_blocked:
         words = (
             "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
             "where the flock splits."
@@ -80,8 +80,8 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 def measured(run: Trajectory, name: str) -> Chart:
     """Return the chart of one metric of a run."""
-    it = run.measure(name)
-    return Chart(it.label, run.t, (Curve(run.metric(name)),), bool(it.logarithmic))
+    measurement = run.measure(name)
+    return Chart(measurement.label, run.t, (Curve(run.metric(name)),), bool(measurement.logarithmic))
 
 
 def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
@@ -96,17 +96,17 @@ def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
 
 def spread(values: FloatArray) -> tuple[Curve, ...]:
     """Return the curves of greatest, mean and least value over the agents."""
-    of = {"greatest": values.max(axis=1), "mean": values.mean(axis=1), "least": values.min(axis=1)}
-    return tuple(Curve(series, name) for name, series in of.items())
+    statistics = {"greatest": values.max(axis=1), "mean": values.mean(axis=1), "least": values.min(axis=1)}
+    return tuple(Curve(series, name) for name, series in statistics.items())
 
 
 def middle_sample(run: Trajectory) -> int:
     """Return the index of the middle sample; among obstacles, the most split sample of a connected flock."""
     if run.law.obstacles:
         counts = component_counts(run)
-        since = int(np.argmax(counts == 1))
-        if counts[since] == 1 and counts[since:].max() > 1:
-            return since + int(np.argmax(counts[since:]))
+        first_sample = int(np.argmax(counts == 1))
+        if counts[first_sample] == 1 and counts[first_sample:].max() > 1:
+            return first_sample + int(np.argmax(counts[first_sample:]))
     return int(np.searchsorted(run.t, 0.5 * (run.t[0] + run.t[-1])))
 
 
@@ -127,10 +127,10 @@ def _distances(run: Trajectory) -> Chart:
 
 def _clearances(run: Trajectory) -> list[Chart]:
     law = run.law.continuous or run.law
-    flat = run.q.reshape(-1, run.m)
-    apart = [solid.clearance(flat).reshape(run.q.shape[:2]).min(axis=1) for solid in law.obstacles]
+    flat_positions = run.q.reshape(-1, run.m)
+    apart = [obstacle.clearance(flat_positions).reshape(run.q.shape[:2]).min(axis=1) for obstacle in law.obstacles]
     levels = [(run.clearance().lower, "lower bound for all times")]
     if law.obstacle_field is not None:
         levels.append((float(law.obstacle_field.beta.d), "d'"))
-    clear = Chart("least clearance (length)", run.t, (Curve(np.min(apart, axis=0)),), levels=levels)
-    return [clear, Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),))]
+    clearance_chart = Chart("least clearance (length)", run.t, (Curve(np.min(apart, axis=0)),), levels=levels)
+    return [clearance_chart, Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),))]

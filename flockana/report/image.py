@@ -59,10 +59,10 @@ def placed(draw: Callable[[Any], object], size: tuple[float, float], dpi: float)
     canvas: Any = FigureCanvasAgg(figure)
     draw(figure)
     for ax, scales in plain_scales(figure).items():
-        above = max(scale.room(canvas.get_renderer())[3] for scale in scales)
+        top_margin = max(scale.room(canvas.get_renderer())[3] for scale in scales)
         for side in ("left", "center", "right"):
             if title := ax.get_title(side):  # above what else is there
-                ax.set_title(title, loc=side, pad=rcParams["axes.titlepad"] + above * 72.0 / dpi)
+                ax.set_title(title, loc=side, pad=rcParams["axes.titlepad"] + top_margin * 72.0 / dpi)
     figure.get_layout_engine().execute(figure)
     figure.set_layout_engine("none")
     return canvas

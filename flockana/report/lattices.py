@@ -44,18 +44,18 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
     verdicts = [(name, verdict) for name, verdict in verdicts if verdict.theorem in _TOPICS]
     if not verdicts:
         return None
-    ends = (end for name, v in verdicts if v.theorem == "os-5-terminal" for end in _end(name, v))
+    end_verdicts = (end for name, v in verdicts if v.theorem == "os-5-terminal" for end in _end(name, v))
     spirals = tuple((n, int((pdist(hexagonal_spiral(n, 7.0)) < 8.4).sum()), harborth(n)) for n in _SIZES)
-    every = [verdict for _, verdict in verdicts]
-    return LatticeSection(tuple(ends), spirals, (*_collapse(every), *_barrier(every)))
+    all_verdicts = [verdict for _, verdict in verdicts]
+    return LatticeSection(tuple(end_verdicts), spirals, (*_collapse(all_verdicts), *_barrier(all_verdicts)))
 
 
 def _end(name: str, verdict: Verdict) -> Iterator[EndState]:
     claims = {claim.name: claim for claim in verdict.claims}
     for kind in (h.detail for h in verdict.hypotheses if h.name == "q is an α-lattice"):
         if "ii-sharp" in claims:
-            printed, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
-            yield EndState(name, kind, str(count), str(printed.computed), printed.status, extension.status)
+            printed_value, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
+            yield EndState(name, kind, str(count), str(printed_value.computed), printed_value.status, extension.status)
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
@@ -75,13 +75,13 @@ def _collapse(verdicts: Sequence[Verdict]) -> Iterator[Picture]:
 
 
 def _barrier(verdicts: Sequence[Verdict]) -> Iterator[Picture]:
-    computed = _computed(verdicts, "E4", "barrier")
+    computed_value = _computed(verdicts, "E4", "barrier")
     witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
     text = (
         "The barrier against collisions (E4), found numerically. V < c* excludes collisions, but the least V of all "
         "states rises with n until none is below c*. The barrier is the least V with two agents coincident minus the "
         "least V of all states; it stays near c*."
     )
-    if computed is not None and witness is not None:
-        energies = ({n: energy_of[key] for n, energy_of in computed.items()} for key in ("together", "ground"))
+    if computed_value is not None and witness is not None:
+        energies = ({n: energy_of[key] for n, energy_of in computed_value.items()} for key in ("together", "ground"))
         yield drawn(text, (6.5, 3.4), plots().barrier, *energies, witness["c*"])

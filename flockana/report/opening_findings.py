@@ -43,18 +43,18 @@ def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
 def opening_sentence(findings: Iterable[Finding]) -> str:
     """Return a sentence with the numbers of refuted printed claims and verified theorems; empty without any."""
     expected = [f.verdict for f in findings if f.as_expected]
-    false = sum(each.status == "refuted" and each.author == "source" for each in expected)
-    count_verified = sum(each.status == "verified" for each in expected)
+    false = sum(item.status == "refuted" and item.author == "source" for item in expected)
+    count_verified = sum(item.status == "verified" for item in expected)
     claims = "1 printed claim was" if false == 1 else f"{false} printed claims were"
     return f"{claims} found false on these cases, as expected; verified as expected: {count_verified}." if false else ""
 
 
 def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Finding]]]:
     """Return scenarios with their findings: surprises first, then opening findings, then refuted claims."""
-    front = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
+    shown_pairs = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
 
     def rank(page: ScenarioPage, finding: Finding) -> tuple[bool, bool, int]:
-        is_front = (page.name, finding.verdict.theorem) in front
+        is_front = (page.name, finding.verdict.theorem) in shown_pairs
         return not finding.surprises, not is_front, _TELLING.index(finding.verdict.status)
 
     ranked = []

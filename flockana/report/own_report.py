@@ -69,13 +69,13 @@ def write_report(
     >>> write_report(flock, tempfile.mkdtemp(), theorems=["energy"]).name
     'index.html'
     """
-    started, seed = time.perf_counter(), ensure_seed(seed)
+    start_time, seed = time.perf_counter(), ensure_seed(seed)
     if isinstance(subject, xarray.Dataset):
         _ensure_unused("runs of an ensemble have", law=law, theorems=theorems)
         section = section_of(subject)
         return build.write_report([], directory, seed=seed, statistics=section, of=section.entries[0].scenario)
     pages = own_pages(subject, law=law, theorems=theorems, seed=seed)
-    return build.write_report(pages, directory, seed=seed, seconds=time.perf_counter() - started, of=pages[0].name)
+    return build.write_report(pages, directory, seed=seed, seconds=time.perf_counter() - start_time, of=pages[0].name)
 
 
 def own_pages(
@@ -83,9 +83,9 @@ def own_pages(
 ) -> list[ScenarioPage]:
     """Return the page of a flock, scenario, run or recording, or the pages of verdicts by subject."""
     verdicts: tuple[Verdict, ...] = (subject,) if isinstance(subject, Verdict) else subject
-    if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(each, Verdict) for each in verdicts):
+    if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(theorem, Verdict) for theorem in verdicts):
         _ensure_unused("verdicts have", law=law, theorems=theorems)
-        return [verdicts_page(name, each) for name, each in _by_subject(verdicts).items()]
+        return [verdicts_page(name, theorem) for name, theorem in _by_subject(verdicts).items()]
     theorems = _ensure_theorems(theorems)
     if isinstance(subject, Recording):
         if law is None:
@@ -109,18 +109,18 @@ def own_pages(
         )
     catalogued = isinstance(subject, Scenario) and not theorems
     verdicts = item.verify(run) if catalogued else _judge(item.name, evidence, law, theorems)
-    own_theorems = {each.id: each for each in theorems if isinstance(each, Theorem)}
+    own_theorems = {theorem.id: theorem for theorem in theorems if isinstance(theorem, Theorem)}
     return [scenario_page(item, run, verdicts, figures=figures, own=own_theorems)]
 
 
 def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
     """Return verdicts by subject; a repeated theorem on a subject gets a page of its own."""
     pages: dict[str, dict[str, Verdict]] = {}
-    for each in verdicts:
-        name = each.subject or "verdicts"
+    for verdict in verdicts:
+        name = verdict.subject or "verdicts"
         names = chain([name], (f"{name} ({k})" for k in count(2)))
-        free = next(key for key in names if each.theorem not in pages.get(key, {}))
-        pages.setdefault(free, {})[each.theorem] = each
+        free_key = next(key for key in names if verdict.theorem not in pages.get(key, {}))
+        pages.setdefault(free_key, {})[verdict.theorem] = verdict
     return {name: tuple(page.values()) for name, page in pages.items()}
 
 
@@ -133,15 +133,15 @@ def _ensure_unused(what: str, **given: Any) -> None:
 def _ensure_theorems(theorems: Any) -> tuple[str | Theorem, ...]:
     """Return theorems as a tuple; raise unless they are names or theorems."""
     names = (theorems,) if isinstance(theorems, (str, Theorem)) else theorems
-    if not isinstance(names, Sequence) or not all(isinstance(each, (str, Theorem)) for each in names):
-        got = format_value(theorems)
+    if not isinstance(names, Sequence) or not all(isinstance(name, (str, Theorem)) for name in names):
+        value_text = format_value(theorems)
         raise ArgumentError(
-            f"theorems = {got}: expected a list of names or own claims, such as ['os-1', fl.claim(...)]"
+            f"theorems = {value_text}: expected a list of names or own claims, such as ['os-1', fl.claim(...)]"
         )
     return tuple(names)
 
 
 def _judge(name: str, seen: Any, law: Any, theorems: Sequence[str | Theorem]) -> tuple[Verdict, ...]:
     if theorems:
-        return tuple(verify(each, seen, law=law, subject=name) for each in theorems)
+        return tuple(verify(theorem, seen, law=law, subject=name) for theorem in theorems)
     return tuple(verify(None, seen, law=law, subject=name))

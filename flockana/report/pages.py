@@ -43,8 +43,8 @@ class Finding:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        judged = {"as_expected": self.as_expected, "surprises": list(self.surprises)}
-        return self.verdict.to_dict() | {"title": self.title, "expected": dict(self.expected)} | judged
+        outcome = {"as_expected": self.as_expected, "surprises": list(self.surprises)}
+        return self.verdict.to_dict() | {"title": self.title, "expected": dict(self.expected)} | outcome
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def scenario_page(
 
     `own` has the theorems that are no catalogue's, by their ids.
     """
-    early_end = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
+    early_end_text = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
     return ScenarioPage(
         scenario.name,
         scenario.title,
@@ -131,7 +131,7 @@ def scenario_page(
         _facts(scenario, run),
         tuple(_scenario_finding(scenario, verdict, own) for verdict in verdicts),
         pictures(run, scenario.instants) if figures else (),
-        early_end,
+        early_end_text,
         tuple(scenario.references),
         _play(scenario, run, verdicts) if figures else "",
         still(run, float(run.t[-1])) if figures else "",
@@ -142,23 +142,23 @@ def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
     """Return verdicts of the user's own as plain data, without a run."""
     entries = catalogue()
     findings = (
-        _finding(each, entries[each.theorem], {})
-        if each.theorem in entries
-        else Finding(each, each.theorem, "", "own claim")
-        for each in verdicts
+        _finding(verdict, entries[verdict.theorem], {})
+        if verdict.theorem in entries
+        else Finding(verdict, verdict.theorem, "", "own claim")
+        for verdict in verdicts
     )
     return ScenarioPage(name, "Verdicts", "Verdicts of the user's own.", (), tuple(findings))
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """Return the player's data of a run, with marked instants of source and claims."""
-    marks, title, played = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
+    marks, title, player_html = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
     if 1 < len(run.t) < _FEW_SAMPLES and not run.law.is_map:
         from flockana.plots.animation import equal_times
 
-        played = equal_times(run, _ENOUGH)  # cubics that match places and velocities
+        player_html = equal_times(run, _ENOUGH)  # cubics that match places and velocities
     try:
-        return text_of(scene(played, values=_VALUES, exact=False, title=title, marks=marks))
+        return text_of(scene(player_html, values=_VALUES, exact=False, title=title, marks=marks))
     except ArgumentError:  # places or velocities are so large that the player's numbers have no room for them
         return ""
 

@@ -39,8 +39,8 @@ class SurveyResult:
 def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
     """Return the surveys of the section on many seeds."""
     if name is None:
-        usual = {subject: scenario(subject, seed).seeds for subject in scenarios()}
-        counts = {subject: most if count is None else count for subject, most in usual.items() if most}
+        default_seeds = {subject: scenario(subject, seed).seeds for subject in scenarios()}
+        counts = {subject: most if count is None else count for subject, most in default_seeds.items() if most}
     elif not count:
         return ()
     elif name not in scenarios() or not scenario(name, seed).reports:
@@ -49,9 +49,9 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     else:
         counts = {name: count}
     return tuple(
-        Survey(subject, tuple(range(first, min(first + _AT_ONCE, seed + most))))
+        Survey(subject, tuple(range(start_index, min(start_index + _AT_ONCE, seed + most))))
         for subject, most in counts.items()
-        for first in range(seed, seed + most, _AT_ONCE)
+        for start_index in range(seed, seed + most, _AT_ONCE)
     )
 
 

@@ -63,15 +63,15 @@ class StabilitySection:
 def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks = NO_FLOCKS) -> StabilitySection | None:
     """Return the section on linearised stability from the verdicts; None without any."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
-    decays = [(name, v) for name, v in verdicts if v.theorem in DECAYS]
+    decay_verdicts = [(name, v) for name, v in verdicts if v.theorem in DECAYS]
     margins = [v for _, v in verdicts if v.theorem in MARGINS]
-    if not decays and not margins:
+    if not decay_verdicts and not margins:
         return None
-    pictures = (_range([v for _, v in decays]), bode_picture(verdicts), _steps(margins))
+    pictures = (_range([v for _, v in decay_verdicts]), bode_picture(verdicts), _steps(margins))
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
-    rows = tuple(row for name, v in decays for row in _rows(name, v))
+    rows = tuple(row for name, v in decay_verdicts for row in _rows(name, v))
     return StabilitySection(flocks, rows, tuple(filter(None, pictures)), tuple(margin_texts))
 
 
@@ -92,7 +92,7 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
         Row._make(
             (
                 f"{name}, last state" if terminal else label,
-                *(f"{decay[key]:{how}}" for key, how in _FORMATS.items()),
+                *(f"{decay[key]:{number_format}}" for key, number_format in _FORMATS.items()),
                 f"{abs(decay['measured'] / decay['predicted'] - 1.0):.0e}",
                 *(f"{decay[f'random, {kind}']:.5f}" for kind in ("linear", "measured")),
                 claim.status,
@@ -137,15 +137,15 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
     keys = "amplitudes", "deviations", "net changes"
     curves = {name: tuple(curve[key] for key in keys) for name, curve in claim.computed.items()}
-    bend = claim.witness["σ₁ bends at"]
+    bend_ratio = claim.witness["σ₁ bends at"]
     exponents = ", ".join(f"{curve['exponent']:.3f}" for curve in claim.computed.values())
     text = (
         "How far the linearisation holds: largest distance ever between a run and the linear motion of its slowest "
         f"mode, over the initial displacement. It grows with the displacement, the distance itself as its square "
-        f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend:.2g} d no longer pulls in "
+        f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend_ratio:.2g} d no longer pulls in "
         "proportion. White marks: a link formed or broke on the way."
     )
-    return drawn(text, (6.5, 4.0), plots().linear_range, curves, marks={"σ₁ bends": bend})
+    return drawn(text, (6.5, 4.0), plots().linear_range, curves, marks={"σ₁ bends": bend_ratio})
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -173,8 +173,8 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
         for kind, label, f in (("predicted", "as handed over", factor), ("consistent", "true", 1.0)):
             points[f"{name}, p_r {label}"] = (omega, float(claims[kind].computed))
             centres[f"p_r = {f:.3g} dq_r/dt"] = CentreOfMass(law.gains, f)
-            measured, predicted = claims[kind].computed, claims[kind].stated
-            words.append(f"{name}, p_r {label}: {measured:.4f} measured, {predicted:.4f} predicted")
+            measured_value, predicted_value = claims[kind].computed, claims[kind].stated
+            words.append(f"{name}, p_r {label}: {measured_value:.4f} measured, {predicted_value:.4f} predicted")
     if not points:
         return None
     omegas = np.geomspace(0.3, 30.0, 200)  # drawn by the formula, without python-control

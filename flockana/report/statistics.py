@@ -127,10 +127,10 @@ def section_of(dataset: Any) -> StatisticsSection:
         statuses = {
             label: Counter({of: int(counts[of].sel(claim=label)) for of in STATUSES}) for label in runs.claim.values
         }
-        rows = tuple(_row(label, each, _LEVEL) for label, each in statuses.items() if each.total())
+        rows = tuple(_row(label, statuse, _LEVEL) for label, statuse in statuses.items() if statuse.total())
         seconds = float(runs.seconds.mean()) if "seconds" in runs else 0.0
-        numbers = runs.run.size, int(counts.incomplete), seconds, rows
-        entries.append(ScenarioShares(name, "Runs of an ensemble", "", _in_words(point), *numbers))
+        agent_counts = runs.run.size, int(counts.incomplete), seconds, rows
+        entries.append(ScenarioShares(name, "Runs of an ensemble", "", _in_words(point), *agent_counts))
     return StatisticsSection(_LEVEL, tuple(entries), _picture(entries) if len(entries) <= _DRAWN else None)
 
 
@@ -143,7 +143,7 @@ def _row(label: str, statuses: Counter[str], level: float, item: Scenario | None
     name, _, claim = label.partition(":")
     runs = statuses.total()
     ends = {of: clopper_pearson(statuses[of], runs, level=level) for of in ("verified", "refuted")}
-    verified, refuted = (Share(statuses[of], runs, *map(float, both)) for of, both in ends.items())
+    verified, refuted = (Share(statuses[of], runs, *map(float, interval)) for of, interval in ends.items())
     others = statuses["vacuous"], statuses["inconclusive"]
     reported = {} if item is None else {report.name: report.text for report in item.reports}
     entry = catalogue().get(name)
@@ -158,11 +158,11 @@ def _picture(entries: Sequence[ScenarioShares]) -> Picture | None:
     if not rows:
         return None
     both = {of: [getattr(row, of) for row in rows.values()] for of in ("verified", "refuted")}
-    shares = {of: np.array([(each.share, each.low, each.high) for each in share]).T for of, share in both.items()}
-    runs = [each.runs for each in both["verified"]]
+    shares = {of: np.array([(item.share, item.low, item.high) for item in share]).T for of, share in both.items()}
+    runs = [item.runs for item in both["verified"]]
     text = (
         "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; the "
         "rest is vacuous or inconclusive. The tables below say what each claim is."
     )
-    size = 7.5, 1.1 + 0.19 * len(rows)
-    return Picture(text, svg(lambda figure: draw_bars(figure.subplots(), [*rows], shares, runs, _LEVEL), size))
+    figure_size = 7.5, 1.1 + 0.19 * len(rows)
+    return Picture(text, svg(lambda figure: draw_bars(figure.subplots(), [*rows], shares, runs, _LEVEL), figure_size))

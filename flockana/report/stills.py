@@ -23,8 +23,8 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     around = world(run.law.continuous or run.law, run, samples)
     places = [_project(run.q[k]) for k in samples]
     others = [_project(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
-    spheres = [solid for solid in around.solids if isinstance(solid, Sphere)]
-    balls = [_project(np.array([each.centre])) + d * each.radius for each in spheres for d in (-1, 1)]
+    spheres = [obstacle for obstacle in around.solids if isinstance(obstacle, Sphere)]
+    balls = [_project(np.array([sphere.centre])) + d * sphere.radius for sphere in spheres for d in (-1, 1)]
     wires = around.outlines + outlines(around.solids)
     lines = [_project(line) for line in wires]
     every = np.concatenate([*places, *others, *balls, *lines])
@@ -65,8 +65,8 @@ def _project(points: FloatArray) -> FloatArray:
         return np.column_stack([points, np.zeros(len(points))])
     if points.shape[1] == 3:
         x, y, z = points.T
-        across, deep = np.cos(_TURN) * x - np.sin(_TURN) * y, np.sin(_TURN) * x + np.cos(_TURN) * y
-        return np.column_stack([across, np.sin(_TILT) * deep + np.cos(_TILT) * z])
+        view_axis, deep = np.cos(_TURN) * x - np.sin(_TURN) * y, np.sin(_TURN) * x + np.cos(_TURN) * y
+        return np.column_stack([view_axis, np.sin(_TILT) * deep + np.cos(_TILT) * z])
     return points
 
 
@@ -89,9 +89,9 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
         return ""
     if not 0 < len(pairs) <= _MOST:
         return ""
-    ends, text = put(_project(q)), ""
+    line_ends, text = put(_project(q)), ""
     for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
-        a, b = (ends[pairs[kinds == kind, c]] for c in (0, 1))
+        a, b = (line_ends[pairs[kinds == kind, c]] for c in (0, 1))
         path = "".join(f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for x, y, u, v in np.hstack([a, b]).tolist())
         text += f'<path class="link {name}" d="{path}"/>' if path else ""
     return text
@@ -99,16 +99,16 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
 
 def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, scale: float, height: float) -> str:
     text = ""
-    for solid in solids:
-        if isinstance(solid, Sphere):
-            x, y = put(_project(np.array([solid.centre])))[0]
-            text += f'<circle class="solid" cx="{x:.0f}" cy="{y:.0f}" r="{scale * solid.radius:.1f}"/>'
-        elif isinstance(solid, Wall) and solid.dimension == 2:
-            x, y = put(np.array([solid.par[:2]]))[0]
-            a, b = solid.par[2:]
-            far = 4.0 * (_SIZE + height)
-            corners = [(x - b * far, y - a * far), (x + b * far, y + a * far)]
-            corners += [(u - a * far, v + b * far) for u, v in reversed(corners)]
+    for obstacle in solids:
+        if isinstance(obstacle, Sphere):
+            x, y = put(_project(np.array([obstacle.centre])))[0]
+            text += f'<circle class="solid" cx="{x:.0f}" cy="{y:.0f}" r="{scale * obstacle.radius:.1f}"/>'
+        elif isinstance(obstacle, Wall) and obstacle.dimension == 2:
+            x, y = put(np.array([obstacle.par[:2]]))[0]
+            a, b = obstacle.par[2:]
+            far_distance = 4.0 * (_SIZE + height)
+            corners = [(x - b * far_distance, y - a * far_distance), (x + b * far_distance, y + a * far_distance)]
+            corners += [(u - a * far_distance, v + b * far_distance) for u, v in reversed(corners)]
             text += f'<polygon class="solid" points="{_points(corners)}"/>'
     for line in wires:
         kind = "solid" if len(line) != 4 and line.shape[1] == 2 else "box"
@@ -118,7 +118,7 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
 
 def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
     """Return a grid for each wall in space, about the foot of the run's centre."""
-    walls = [solid for solid in solids if isinstance(solid, Wall) and solid.dimension == 3]
+    walls = [obstacle for obstacle in solids if isinstance(obstacle, Wall) and obstacle.dimension == 3]
     if not walls:
         return ""
     path, low, high = "", q.min(axis=(0, 1)), q.max(axis=(0, 1))
@@ -128,8 +128,8 @@ def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
         u = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
         axes = 0.6 * float((high - low).max()) * np.array([u / np.linalg.norm(u), np.cross(a, u) / np.linalg.norm(u)])
         for k in np.linspace(-1.0, 1.0, 5):
-            for ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
-                (x0, y0), (x1, y1) = put(_project(foot + np.array(ends) @ axes)).tolist()
+            for line_ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
+                (x0, y0), (x1, y1) = put(_project(foot + np.array(line_ends) @ axes)).tolist()
                 path += f"M{x0:.0f} {y0:.0f}L{x1:.0f} {y1:.0f}"
     return f'<path class="box" d="{path}"/>'
 

@@ -25,28 +25,28 @@ class FoldingTable(Table):
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the table, or its rows as blocks."""
-        full = Measurement.get(console, options.update(max_width=_WIDE), self).maximum
+        full_width = Measurement.get(console, options.update(max_width=_WIDE), self).maximum
         rows = [[_text(console, cell) for cell in row] for row in zip(*(c.cells for c in self.columns), strict=True)]
-        heads = [_text(console, each.header) for each in self.columns]
-        spare, rooms = options.max_width - full, {}
-        for k, each in enumerate(self.columns):
-            if spare >= 0 or each.no_wrap:
+        column_heads = [_text(console, column.header) for column in self.columns]
+        spare_width, rooms = options.max_width - full_width, {}
+        for k, column in enumerate(self.columns):
+            if spare_width >= 0 or column.no_wrap:
                 continue
-            cells = [heads[k], *(row[k] for row in rows)]
+            cells = [column_heads[k], *(row[k] for row in rows)]
             widest = max(max((line.cell_len for line in cell.split()), default=0) for cell in cells)
-            widest = min(max(widest, each.min_width or 0), each.max_width or _WIDE)
+            widest = min(max(widest, column.min_width or 0), column.max_width or _WIDE)
             narrowest = max(min(widest, _LEAST), *map(_longest_piece, cells))
-            rooms[k] = max(narrowest, widest + spare)
-            spare += widest - rooms[k]
-        if spare < 0 and full > options.max_width:
-            yield from self._blocks(heads, rows)
+            rooms[k] = max(narrowest, widest + spare_width)
+            spare_width += widest - rooms[k]
+        if spare_width < 0 and full_width > options.max_width:
+            yield from self._blocks(column_heads, rows)
             return
-        broken = copy(self)
-        broken.columns, broken.rows = [each.copy() for each in self.columns], []
-        for row, old in zip(rows, self.rows, strict=True):
+        broken_table = copy(self)
+        broken_table.columns, broken_table.rows = [column.copy() for column in self.columns], []
+        for row, old_row in zip(rows, self.rows, strict=True):
             cells = [_broken(cell, rooms[k]) if k in rooms else cell for k, cell in enumerate(row)]
-            broken.add_row(*cells, style=old.style, end_section=old.end_section)
-        yield from super(FoldingTable, broken).__rich_console__(console, options)
+            broken_table.add_row(*cells, style=old_row.style, end_section=old_row.end_section)
+        yield from super(FoldingTable, broken_table).__rich_console__(console, options)
 
     def _blocks(self, heads: list[Text], rows: list[list[Text]]) -> Iterable[RenderableType]:
         """Yield each row as a block: its name, with its values below."""
@@ -84,17 +84,17 @@ def _longest_piece(text: Text) -> int:
 
 def _broken(text: Text, room: int) -> Text:
     """Return the text with line breaks after hyphens in words longer than a line."""
-    ends = []
+    break_points = []
     for word in re.finditer(r"\S+", text.plain):
         if len(word[0]) + _indent(text) <= room:
             continue
         begin, indent = word.start(), _indent(text)
         for piece in _PIECE.finditer(text.plain, word.start(), word.end()):
             if piece.end() - begin + indent > room and piece.start() > begin:
-                ends.append(piece.start())
+                break_points.append(piece.start())
                 begin, indent = piece.start(), _hanging_indent(text)
-    lines = text.divide(ends)
-    return Text("\n" + " " * _hanging_indent(text)).join(lines) if ends else text
+    lines = text.divide(break_points)
+    return Text("\n" + " " * _hanging_indent(text)).join(lines) if break_points else text
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:

@@ -52,18 +52,18 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
         names = (name,)
     else:
         raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems(), ERRATA))
-    fixed = [Task(t, fixed=True) for t in names if theorem(t).kind == "fixed"]
+    fixed_tasks = [Task(t, fixed=True) for t in names if theorem(t).kind == "fixed"]
     runs = []
-    for subject in scenarios() if len(fixed) < len(names) else ():  # to build them all takes a second
-        shared = () if name is None else tuple(t for t in scenario(subject, seed).theorems if t in names)
-        if name is None or shared:
-            runs.append(Task(subject, seed=seed, only=shared, figures=figures))
-    if not runs and not fixed:
+    for subject in scenarios() if len(fixed_tasks) < len(names) else ():  # to build them all takes a second
+        shared_theorems = () if name is None else tuple(t for t in scenario(subject, seed).theorems if t in names)
+        if name is None or shared_theorems:
+            runs.append(Task(subject, seed=seed, only=shared_theorems, figures=figures))
+    if not runs and not fixed_tasks:
         raise ArgumentError(
             f"{name} is checked on a {theorem(names[0]).kind}, and no scenario names it: "
             "use flockana.verify from Python, or --on with a saved run"
         )
-    return (*runs, *fixed)
+    return (*runs, *fixed_tasks)
 
 
 def check(task: Work) -> Done:
@@ -99,13 +99,13 @@ def check_all(
     # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     if not tasks:
         return
-    lost: list[str] = []
+    lost_claims: list[str] = []
     with worker_pool(jobs=min(jobs, len(tasks))) as workers:
         for batch in map_in_batches(_execution_order(tasks), _check_batch, workers, watch=watch):
             yield from (result for _, result in batch if result is not None)
-            lost += [task.name for task, result in batch if result is None]
-    if lost:
-        raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
+            lost_claims += [task.name for task, result in batch if result is None]
+    if lost_claims:
+        raise SolverError(f"{', '.join(lost_claims)}: the worker process ended; if memory is short, try --jobs 1")
 
 
 def _execution_order(tasks: Sequence[Work]) -> list[Work]:
@@ -115,8 +115,8 @@ def _execution_order(tasks: Sequence[Work]) -> list[Work]:
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())
     of_maps = {subject for subject in subjects if scenario(subject).law.is_map}
     maps = [task for task in tasks if _subject(task) in of_maps]
-    others = [task for task in tasks if _subject(task) not in of_maps]
-    return [*others[:1], *maps, *others[1:]]
+    other_tasks = [task for task in tasks if _subject(task) not in of_maps]
+    return [*other_tasks[:1], *maps, *other_tasks[1:]]
 
 
 def _subject(task: Work) -> str:

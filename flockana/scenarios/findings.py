@@ -40,10 +40,10 @@ def finding(margin: float, detail: str, *, error: float | None = None, **fields:
     """Return the claim of a report, judged by its margin alone."""
     # A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
     if error is None:
-        counted = margin != 0.0 and float(2.0 * margin).is_integer()
-        computed = fields.get("computed")
-        size = abs(computed) if isinstance(computed, float | int) else 0.0
-        error = 0.0 if counted else ROUNDING * max(abs(margin), size)
+        is_count = margin != 0.0 and float(2.0 * margin).is_integer()
+        computed_value = fields.get("computed")
+        magnitude = abs(computed_value) if isinstance(computed_value, float | int) else 0.0
+        error = 0.0 if is_count else ROUNDING * max(abs(margin), magnitude)
     return judged("", Enclosure.around(margin, error), detail=detail, **fields)
 
 
@@ -58,9 +58,9 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
     def converted(check: Check) -> Check:
         def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:
             units = scales()
-            length, time = units.length / run.scales.length, units.time / run.scales.time
-            same = abs(length - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
-            return check(run if same else rescale(run, length=length, time=time), tolerances)
+            length_unit, time = units.length / run.scales.length, units.time / run.scales.time
+            is_same = abs(length_unit - 1.0) < ROUNDING and abs(time - 1.0) < ROUNDING
+            return check(run if is_same else rescale(run, length=length_unit, time=time), tolerances)
 
         return check_in_source_units
 

@@ -81,8 +81,8 @@ def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
 
 def follower_of(q: FloatArray, p: FloatArray) -> LinearTarget:
     """Return a γ-agent that starts at the flock's centre with its velocity."""
-    place, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
-    return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
+    position, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
+    return LinearTarget((position[0], position[1]), (velocity[0], velocity[1]))
 
 
 def net_of(q: FloatArray) -> tuple[tuple[int, int], ...]:
@@ -122,6 +122,6 @@ def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outco
 
 def _outcome(entry: LawEntry, q: FloatArray, p: FloatArray) -> Outcome:
     law = entry.law(q, p)
-    how: dict[str, Any] = {"t_eval": np.linspace(0.0, UNTIL, _INSTANTS), "rtol": _RTOL}
-    run = simulate(law, q, p, (0.0, UNTIL), **({} if law.is_map else how))
+    run_options: dict[str, Any] = {"t_eval": np.linspace(0.0, UNTIL, _INSTANTS), "rtol": _RTOL}
+    run = simulate(law, q, p, (0.0, UNTIL), **({} if law.is_map else run_options))
     return Outcome(entry, run, verify(entry.theorem, run, subject=f"{entry.name}, one start"))

@@ -37,12 +37,12 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
 
 
 def _ensure_statuses(name: str, statuses: Any) -> None:
-    allowed = get_args(Status)
+    known_statuses = get_args(Status)
     if not isinstance(statuses, Mapping):
         raise ArgumentError(f"{name} = {statuses!r}: expected a mapping of theorem ids to statuses")
-    wrong = {key: status for key, status in statuses.items() if status not in allowed}
-    if wrong:
-        raise ArgumentError(f"{name} = {wrong!r}: expected statuses {', '.join(allowed)}")
+    wrong_statuses = {key: status for key, status in statuses.items() if status not in known_statuses}
+    if wrong_statuses:
+        raise ArgumentError(f"{name} = {wrong_statuses!r}: expected statuses {', '.join(known_statuses)}")
     unnamed = [key for key in statuses if not isinstance(key, str)]
     if unnamed:
         raise ArgumentError(f"{name} has a key {unnamed[0]!r}: expected the id of a theorem")

@@ -113,8 +113,8 @@ class Scenario(WithStart):
     @property
     def theorems(self) -> tuple[str, ...]:
         """Ids of the theorems that are checked on the scenario."""
-        named = (key.split(":")[0] for key in {**self.expected, **self.shipped})
-        return tuple(name for name in dict.fromkeys(named) if name != SOURCE)
+        theorem_names = (key.split(":")[0] for key in {**self.expected, **self.shipped})
+        return tuple(name for name in dict.fromkeys(theorem_names) if name != SOURCE)
 
     def law_and_start(self, seed: int) -> tuple[Any, Any, Any, tuple[float, float]]:  # noqa: D102
         return self.law, self.q0, self.p0, self.t_span
@@ -175,13 +175,13 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
     """Return differences of a verdict from expected statuses or proofs, one line each."""
     # Statuses are keyed by theorem id and by ``"id:claim"``.
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
-    differ = (
+    difference_texts = (
         f"{key} is {statuses.get(key, 'missing')}, expected {status}"
         for key, status in expected.items()
         if key.split(":")[0] == verdict.theorem and statuses.get(key) != status
     )
     faults = (f"{verdict.theorem}:{c.name} contradicts the proof {c.contradicts}" for c in verdict.contradictions)
-    return (*differ, *faults)
+    return (*difference_texts, *faults)
 
 
 @cache
@@ -225,6 +225,6 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
     'collapse'
     """
     ensure_known("scenario", name, scenarios())
-    build = catalogue()[name]
-    ensure_options(name, build, options)
-    return build(seed=ensure_seed(seed), **options)
+    builder = catalogue()[name]
+    ensure_options(name, builder, options)
+    return builder(seed=ensure_seed(seed), **options)

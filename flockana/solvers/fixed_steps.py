@@ -73,11 +73,11 @@ class FixedStep(_Stepwise):
 
     def __new__(cls, *given: Any, **named: Any) -> Any:
         """Return the solver, or with a law the map of its steps."""
-        law, *rest = (named.pop("law"), *given) if "law" in named else given or (None,)
-        stepped: Any = law
+        law, *residuals = (named.pop("law"), *given) if "law" in named else given or (None,)
+        stepped_law: Any = law
         if not isinstance(law, LawOfMotion):
             return super().__new__(cls)
-        return FixedSteps(stepped, cls(*rest, **named) if rest or named else cls(0.01))
+        return FixedSteps(stepped_law, cls(*residuals, **named) if residuals or named else cls(0.01))
 
     @cached_property
     def tableau(self) -> Tableau:
@@ -138,7 +138,7 @@ class FixedSteps(DiscreteLaw):
         ensure_kind("law", self.law, Law, "a continuous law of second order such as DeadZoneFlocking()")
         ensure_kind("solver", self.solver, FixedStep, "a solver with a fixed step, such as RK4(0.01)")
         dt = self.dt
-        for clock in (clock for one in self._wrappers for clock in one.clocks):
+        for clock in (clock for wrapper in self._wrappers for clock in wrapper.clocks):
             if clock / dt < 1.0 - _WHOLE or not isclose(clock / dt, round(clock / dt), rel_tol=_WHOLE):
                 raise ArgumentError(
                     f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
@@ -154,8 +154,8 @@ class FixedSteps(DiscreteLaw):
                 f"{core.title}: steps of exactly dt would lead over its switches; expected simulate(law, ..., "
                 "method=RK4(dt)), whose steps end there, and no delay or clock around it"
             )
-        for late in self._late:
-            late._ensure_remembered(self._memory)
+        for delayed_wrapper in self._late:
+            delayed_wrapper._ensure_remembered(self._memory)
         if self.noisy and not self.solver.takes_noise:
             raise ArgumentError(
                 f"{self.solver.name}: {type(self.law).__name__} draws random numbers; expected a solver that takes "
@@ -195,7 +195,7 @@ class FixedSteps(DiscreteLaw):
     @property
     def noisy(self) -> bool:
         """Whether the law draws random numbers."""
-        return any(one.noisy for one in self._wrappers)
+        return any(wrapper.noisy for wrapper in self._wrappers)
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
@@ -219,12 +219,12 @@ class FixedSteps(DiscreteLaw):
 
     @cached_property
     def _late(self) -> tuple[Delayed, ...]:
-        return tuple(one for one in self._wrappers if isinstance(one, Delayed))
+        return tuple(wrapper for wrapper in self._wrappers if isinstance(wrapper, Delayed))
 
     @cached_property
     def _memory(self) -> float:
         """Return the longest memory of the law; nested delays add up."""
-        return sum(one.memory for one in self._wrappers)
+        return sum(wrapper.memory for wrapper in self._wrappers)
 
     @cached_property
     def past_steps(self) -> int:
@@ -237,21 +237,21 @@ class FixedSteps(DiscreteLaw):
             return {}
         rows = (self.past_steps, *q.shape)
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
-        past = np.empty((0, 4, *q.shape))
+        past_states = np.empty((0, 4, *q.shape))
         if self.past_steps:
-            with_history = next((one for one in self._late if one.history_t is not None), self._late[0])
-            back = self.dt * np.arange(1.0 - self.past_steps, 1.0)
+            with_history = next((item for item in self._late if item.history_t is not None), self._late[0])
+            past_times = self.dt * np.arange(1.0 - self.past_steps, 1.0)
             if self._first_order and with_history.history_t is None:
                 q, p = np.zeros_like(q), q
-            before, speeds, push = with_history._past(back, q, p)
+            past_positions, speeds, push = with_history._past(past_times, q, p)
             if self._first_order and with_history.history_t is not None:
-                speeds, push = before, speeds
-            past = np.stack([before, speeds, push, push], axis=1)
-        return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
+                speeds, push = past_positions, speeds
+            past_states = np.stack([past_positions, speeds, push, push], axis=1)
+        return {"step": np.array(0.0), "past": past_states, "held": np.empty((0, *q.shape))}
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
-        q, p, u, after = self._made(np.array([t]), q, p, memory, np.array([1]))
-        return q[0], p[0], u[0], {name: values[-1] for name, values in after.items()}
+        q, p, u, next_memory = self._made(np.array([t]), q, p, memory, np.array([1]))
+        return q[0], p[0], u[0], {name: values[-1] for name, values in next_memory.items()}
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         if overrides_consistently(type(self), "iterate", ("step", "start")):
@@ -261,14 +261,14 @@ class FixedSteps(DiscreteLaw):
     def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:  # noqa: D102
         if overrides_consistently(type(self), "visit", ("iterate", "step", "start")):
             return self._made(times, q, p, memory, wanted)
-        road = super().visit if type(self).iterate is not FixedSteps.iterate else self._step_by_step
-        return road(times, q, p, memory, wanted)
+        visit_method = super().visit if type(self).iterate is not FixedSteps.iterate else self._step_by_step
+        return visit_method(times, q, p, memory, wanted)
 
     def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
         """Return (q, p, u, memory) after the requested steps: from the law's block, compiled code, or Python."""
         if self._first_order:  # positions are stepped as velocities of other laws are, by the rate that these give
-            rate, q, p, after = self._interpreted(times, np.zeros_like(q), q, memory, wanted)
-            return q, p, rate, after
+            rate, q, p, next_memory = self._interpreted(times, np.zeros_like(q), q, memory, wanted)
+            return q, p, rate, next_memory
         block = self.law.block(self.solver)
         if block is not None and (states := block(times, q, p, wanted)) is not None:
             return *states, {}
@@ -289,30 +289,30 @@ class FixedSteps(DiscreteLaw):
             first = int(memory["step"])
             pushes = (one._kicks(first, steps, self.dt, (n, m)) for one in self._wrappers if one.noisy)  # type: ignore[attr-defined]
             kicks = sum(pushes, np.zeros((steps, n, m))).reshape(steps, n * m)
-            after = {"step": np.array([float(first + steps)]), "past": np.empty((1, 0, 4, n, m))}
-            memory = after | {"held": np.full((1, len(self._wrappers), n, m), np.nan)}
+            next_memory = {"step": np.array([float(first + steps)]), "past": np.empty((1, 0, 4, n, m))}
+            memory = next_memory | {"held": np.full((1, len(self._wrappers), n, m), np.nan)}
         method = Coefficients(
             table.a, table.c, table.stages, self.solver.position_factor is not None, table.lead, self.dt, reach
         )
-        y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
+        y, output = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
         wanted = np.asarray(wanted)
         pairs: Pairs | None = no_pairs(n, m)
-        while not fixed_steps(times, y.copy(), kicks, wanted, method, system, pairs, out):
+        while not fixed_steps(times, y.copy(), kicks, wanted, method, system, pairs, output):
             if (pairs := with_room(pairs)) is None:  # type: ignore[arg-type]
                 return None
-        return out[0], out[1], out[2], memory
+        return output[0], output[1], output[2], memory
 
     def _interpreted(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States:
         """Return the steps made one by one in Python."""
-        shape, first = q.shape, int(memory["step"]) if memory else 0
+        shape, first_step = q.shape, int(memory["step"]) if memory else 0
         past = Past(deque([tuple(row) for row in memory["past"]] if memory else [], self.past_steps or 1), self.dt)
-        held_inputs = {k: one for k, one in enumerate(memory["held"], 1) if np.isfinite(one).all()} if memory else {}
-        now = Step(first, self.dt, lambda _: (q, p), held_inputs)
+        held_inputs = {k: item for k, item in enumerate(memory["held"], 1) if np.isfinite(item).all()} if memory else {}
+        now = Step(first_step, self.dt, lambda _: (q, p), held_inputs)
         samples, row = np.empty((3, len(wanted), *shape)), 0
         for k, t in enumerate(times[: wanted[-1]].tolist()):
-            now.number, now.begins = first + k, True
+            now.number, now.begins = first_step + k, True
             if self.past_steps:
                 now.past = past.seen_at(t)
             q, p, u, departs = self._advance(now, t, q, p, past)
@@ -323,12 +323,12 @@ class FixedSteps(DiscreteLaw):
                 row += 1
         if not memory:
             return samples[0], samples[1], samples[2], {}
-        stored = np.full((len(self._wrappers), *shape), np.nan)
+        stored_inputs = np.full((len(self._wrappers), *shape), np.nan)
         for key, value in now.held.items():
-            stored[key - 1] = value
-        after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
-        after["past"] = np.array(past.rows) if self.past_steps else np.empty((0, 4, *shape))
-        return samples[0], samples[1], samples[2], {name: value[None] for name, value in after.items()}
+            stored_inputs[key - 1] = value
+        next_memory = {"step": np.array(float(first_step + int(wanted[-1]))), "held": stored_inputs}
+        next_memory["past"] = np.array(past.rows) if self.past_steps else np.empty((0, 4, *shape))
+        return samples[0], samples[1], samples[2], {name: value[None] for name, value in next_memory.items()}
 
     def _advance(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: Past) -> Row:
         """Return (q, p, input of the step, input at its end) after one step."""
@@ -337,27 +337,27 @@ class FixedSteps(DiscreteLaw):
         now.begins = False
         if self.past_steps:
             past.begin(u, first=now.number == 0)
-        kicks = (one.kick(now, p.shape) for one in self._wrappers)
-        kick = sum((each for each in kicks if each is not None), 0.0)
+        kicks = (wrapper.kick(now, p.shape) for wrapper in self._wrappers)
+        kick = sum((item for item in kicks if item is not None), 0.0)
         speeds, inputs = [p], [u]
         for s in range(1, table.stages):
-            place = q + h * _combination(table.a[s], speeds)
+            stage_position = q + h * _combination(table.a[s], speeds)
             speeds.append(p + h * _combination(table.a[s], inputs) + kick)
-            inputs.append(input_of(self.law, now, View(t + table.c[s] * h, place, speeds[-1])))
-        u, after = _combination(table.a[-1], inputs), p + h * _combination(table.a[-1], inputs)
+            inputs.append(input_of(self.law, now, View(t + table.c[s] * h, stage_position, speeds[-1])))
+        u, next_positions = _combination(table.a[-1], inputs), p + h * _combination(table.a[-1], inputs)
         if factor is None:
             q = q + h * _combination(table.a[-1], speeds)
         else:  # velocities first, where positions follow them
-            q = q + h * after if factor == 1.0 else q + h * p + (factor * h * h) * u
+            q = q + h * next_positions if factor == 1.0 else q + h * p + (factor * h * h) * u
         if self._first_order:  # the rate of the velocity is in the place that is free
-            return (inputs[-1] - inputs[0]) / h, after, inputs[-1], inputs[-1]
-        return q, after + kick, u, inputs[-1]
+            return (inputs[-1] - inputs[0]) / h, next_positions, inputs[-1], inputs[-1]
+        return q, next_positions + kick, u, inputs[-1]
 
 
 def _combination(weights: FloatArray, parts: Sequence[FloatArray]) -> FloatArray:
     """Return Σ weights_j parts_j over the nonzero weights."""
     total: Any = 0.0
-    for weight, part in zip(weights.tolist(), parts, strict=False):
+    for weight, component in zip(weights.tolist(), parts, strict=False):
         if weight:
-            total = total + weight * part
+            total = total + weight * component
     return total

@@ -24,21 +24,21 @@ class Past:
 
     def begin(self, u: FloatArray, *, first: bool) -> None:
         """Store the input after the present state; the input jumps at the first step."""
-        q, p, arrives, _ = self.rows.pop()
-        self.rows.append((q, p, arrives if first else u, u))
+        q, p, arrival_input, _ = self.rows.pop()
+        self.rows.append((q, p, arrival_input if first else u, u))
 
     def seen_at(self, t: float) -> Callable[[float], tuple[FloatArray, FloatArray]]:
         """Return the function that gives (q, p) at an earlier time, with present time t."""
         return partial(self._state, t)
 
     def _state(self, t: float, s: float) -> tuple[FloatArray, FloatArray]:
-        back, last = (t - s) / self.h, len(self.rows) - 1
-        k = min(last, max(0, ceil(back - _WHOLE)))
-        share = k - back  # of the interval that begins k steps ago
-        q0, p0, _, u0 = self.rows[last - k]
+        steps_back, last_index = (t - s) / self.h, len(self.rows) - 1
+        k = min(last_index, max(0, ceil(steps_back - _WHOLE)))
+        share = k - steps_back  # of the interval that begins k steps ago
+        q0, p0, _, u0 = self.rows[last_index - k]
         if abs(share) <= _WHOLE or k == 0:
             return q0, p0
-        q1, p1, u1, _ = self.rows[last - k + 1]
+        q1, p1, u1, _ = self.rows[last_index - k + 1]
         return _hermite(q0, p0, q1, p1, share, self.h), _hermite(p0, u0, p1, u1, share, self.h)
 
 

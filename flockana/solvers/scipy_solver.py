@@ -60,10 +60,10 @@ class ScipyPair(AdaptivePair):
     @cached_property
     def tableau(self) -> Tableau:
         """Coefficients for compiled steps."""
-        theirs = self.scipy_class
-        stages = theirs.n_stages
+        scipy_class = self.scipy_class
+        stages = scipy_class.n_stages
         a = np.zeros((stages + 1, stages + 1))
-        a[:stages, : theirs.A.shape[1]], a[stages, :stages] = theirs.A, theirs.B
-        estimates, interpolant = theirs.E[None].copy(), theirs.P.copy()
-        rows, exponent = shared_rows(a, estimates, interpolant), -1.0 / (theirs.error_estimator_order + 1)
-        return Tableau(a, np.append(theirs.C, 1.0), estimates, interpolant, rows, stages, exponent)
+        a[:stages, : scipy_class.A.shape[1]], a[stages, :stages] = scipy_class.A, scipy_class.B
+        estimates, interpolant = scipy_class.E[None].copy(), scipy_class.P.copy()
+        rows, exponent = shared_rows(a, estimates, interpolant), -1.0 / (scipy_class.error_estimator_order + 1)
+        return Tableau(a, np.append(scipy_class.C, 1.0), estimates, interpolant, rows, stages, exponent)

@@ -27,7 +27,7 @@ class FixedStepper:
             if s < stages:
                 rates.append(self.rate(t + tableau.c[s] * h, end))
         if tableau.lead:
-            size = y.size // 2
-            end[:size] += tableau.lead * h * h * self.f[size : 2 * size]
+            dimension = y.size // 2
+            end[:dimension] += tableau.lead * h * h * self.f[dimension : 2 * dimension]
         self.t, self.h_abs = (self.t_bound, np.inf) if h == left else (t + h, GROWTH * h)
         self.status, self.y, self.f = "finished" if h == left else "running", end, self.rate(self.t, end)

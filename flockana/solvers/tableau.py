@@ -38,10 +38,10 @@ def tableau_of_pair(
     interpolant: Sequence[Sequence[float]] | None,
 ) -> Tableau:
     """Return the tableau of an adaptive pair."""
-    whole, (stages, estimates) = _square(a, b), (len(b), np.array([error], dtype=np.float64))
-    powers = _hermite(whole[stages]) if interpolant is None else np.array(interpolant, dtype=np.float64)
-    rows, exponent = shared_rows(whole, estimates, powers), -1.0 / (error_order + 1)
-    return Tableau(whole, _times(whole), estimates, powers, rows, stages, exponent)
+    full_tableau, (stages, estimates) = _square(a, b), (len(b), np.array([error], dtype=np.float64))
+    powers = _hermite(full_tableau[stages]) if interpolant is None else np.array(interpolant, dtype=np.float64)
+    rows, exponent = shared_rows(full_tableau, estimates, powers), -1.0 / (error_order + 1)
+    return Tableau(full_tableau, _times(full_tableau), estimates, powers, rows, stages, exponent)
 
 
 def tableau_of_steps(a: Sequence[Sequence[float]], b: Sequence[float], lead: float) -> Tableau:
@@ -52,18 +52,18 @@ def tableau_of_steps(a: Sequence[Sequence[float]], b: Sequence[float], lead: flo
     >>> tableau_of_steps(((), (0.5,)), (0.0, 1.0), 0.0).c.tolist()
     [0.0, 0.5, 1.0]
     """
-    whole, count = _square(a, b), len(b) + 1
+    full_tableau, count = _square(a, b), len(b) + 1
     estimates, interpolant = np.zeros((1, count)), np.zeros((count, 1))
-    rows = shared_rows(whole, estimates, interpolant)
-    return Tableau(whole, _times(whole), estimates, interpolant, rows, len(b), 0.0, lead)
+    rows = shared_rows(full_tableau, estimates, interpolant)
+    return Tableau(full_tableau, _times(full_tableau), estimates, interpolant, rows, len(b), 0.0, lead)
 
 
 def _square(a: Sequence[Sequence[float]], b: Sequence[float]) -> FloatArray:
     """Return the weights of all stages and of the step as one square matrix."""
-    whole = np.zeros((len(b) + 1, len(b) + 1))
+    full_tableau = np.zeros((len(b) + 1, len(b) + 1))
     for s, row in enumerate([*a, b]):
-        whole[s, : len(row)] = row
-    return whole
+        full_tableau[s, : len(row)] = row
+    return full_tableau
 
 
 def _times(whole: FloatArray) -> FloatArray:
@@ -82,14 +82,14 @@ def _hermite(weights: FloatArray) -> FloatArray:
 def shared_rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:
     """Return a storage row for each stage's rate, reusing rows of rates no longer needed."""
     count, stages = len(a), estimates.shape[1] - 1
-    last = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
+    last_rows = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
     for s in range(stages + 1):
         if estimates[:, s].any():
-            last[s] = max(last[s], stages + 1)  # the error is estimated before the interpolant's own stages
+            last_rows[s] = max(last_rows[s], stages + 1)  # the error is estimated before the interpolant's own stages
     for s in (0, stages, *np.flatnonzero(interpolant.any(axis=1))):
-        last[s] = count
+        last_rows[s] = count
     rows = list[int]()
     for s in range(count):
-        rows_used = {rows[k] for k in range(s) if last[k] > s}
+        rows_used = {rows[k] for k in range(s) if last_rows[k] > s}
         rows.append(min(set(range(count)) - rows_used))
     return np.array(rows)

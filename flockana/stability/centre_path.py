@@ -86,8 +86,8 @@ def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
     lag, swing = steady_motion(gains, moving)
     off = swing - moving.swing
     # the longest semi-axis of the ellipse Re(off e^jωt)
-    square = 0.5 * (float(np.vdot(off, off).real) + abs(complex(off @ off)))
-    return float(np.linalg.norm(lag)), float(np.sqrt(square))
+    squared_value = 0.5 * (float(np.vdot(off, off).real) + abs(complex(off @ off)))
+    return float(np.linalg.norm(lag)), float(np.sqrt(squared_value))
 
 
 def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
@@ -95,9 +95,9 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     moving, times = motion(target), np.atleast_1d(np.asarray(t, dtype=np.float64))
     start, speed = ensure_vector("q_c", q_c, moving.start.size), ensure_vector("p_c", p_c, moving.start.size)
     lag, swing = steady_motion(gains, moving)
-    turn = np.exp(1j * moving.omega * times)[:, None]
-    steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
-    return steady + transient(gains, moving, times, float(times[0]), start, speed)
+    phase_factors = np.exp(1j * moving.omega * times)[:, None]
+    steady_state = moving.start + moving.velocity * times[:, None] - lag + (swing * phase_factors).real
+    return steady_state + transient(gains, moving, times, float(times[0]), start, speed)
 
 
 def transient(
@@ -105,21 +105,21 @@ def transient(
 ) -> FloatArray:
     """Return the transient at times t from the initial offset and velocity error of the centre, shape (T, m)."""
     lag, swing = steady_motion(gains, moving)
-    turn = np.exp(1j * moving.omega * start)
-    steady = moving.start + moving.velocity * start - lag + (swing * turn).real
-    rate = moving.velocity + (1j * moving.omega * swing * turn).real
-    return _decayed(gains, t - start, q_c - steady, p_c - rate)
+    phase_factors = np.exp(1j * moving.omega * start)
+    steady_state = moving.start + moving.velocity * start - lag + (swing * phase_factors).real
+    rate = moving.velocity + (1j * moving.omega * swing * phase_factors).real
+    return _decayed(gains, t - start, q_c - steady_state, p_c - rate)
 
 
 def _decayed(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
     """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
     since = since[:, None]
-    decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
-    root = np.sqrt(complex(square))
+    decay, squared_value = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
+    root = np.sqrt(complex(squared_value))
     # e^At of the companion matrix: cosh and sinh(√Δ t)/√Δ, real whatever the sign of Δ; decay ≥ Re √Δ, so no overflow
-    rise, fall = np.exp((root - decay) * since), np.exp((-root - decay) * since)
-    level = 0.5 * (rise + fall).real
-    short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
-    series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
-    slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
+    rise, fast_decay = np.exp((root - decay) * since), np.exp((-root - decay) * since)
+    level = 0.5 * (rise + fast_decay).real
+    short = np.abs(squared_value) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
+    series = since * np.exp(-decay * since) * (1.0 + squared_value * since**2 / 6.0)
+    slope = np.where(short, series, ((rise - fast_decay) / (2.0 * (root or 1.0))).real)
     return left * level + (velocity + decay * left) * slope

@@ -132,11 +132,11 @@ class StringStability:
         """Reason for the decision, in a sentence with its numbers."""
         gains = ", ".join(f"{gain:.4g}" for gain in self.gains.tolist())
         if self.stable is None:
-            trend = "grow" if (np.diff(self.gains) > _TOLERANCE).all() else "do not all grow"
-            why = "measured only, as agents do not all hear the one before alone and alike"
-            return f"{why}: gains {gains} of n = {self.sizes} {trend}"
-        follows = "so no chain amplifies" if self.stable else f"so n agents by its power n − 1: {gains}"
-        return f"each agent answers the one before with at most {self.link:.4g} times its motion, {follows}"
+            trend_text = "grow" if (np.diff(self.gains) > _TOLERANCE).all() else "do not all grow"
+            reason_text = "measured only, as agents do not all hear the one before alone and alike"
+            return f"{reason_text}: gains {gains} of n = {self.sizes} {trend_text}"
+        follow_text = "so no chain amplifies" if self.stable else f"so n agents by its power n − 1: {gains}"
+        return f"each agent answers the one before with at most {self.link:.4g} times its motion, {follow_text}"
 
 
 @check_kinds
@@ -182,7 +182,7 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Numbers = (3, 5
     gains = [string_gains(flock) for flock in flocks]
     link = _link_gain(flocks[-1], float(gains[-1].gains[1]))
     return StringStability(
-        counts, np.array([one.gains[-1] for one in gains]), np.array([one.peaks[-1] for one in gains]), link
+        counts, np.array([gain.gains[-1] for gain in gains]), np.array([gain.peaks[-1] for gain in gains]), link
     )
 
 
@@ -202,8 +202,8 @@ def _link_gain(flock: LinearFlock, gain: float) -> float:
     if gain <= 1.0 + 10.0 * _TOLERANCE:
         return gain  # no product of such answers is larger
     # in one common eigenbasis the largest gain is that of one direction, and of its powers too
-    apart = max(float(np.abs(a @ b.T - b.T @ a).max()) for a in parts for b in parts)
-    return gain if apart <= _ALIKE * max(float(np.abs(a).max()) for a in parts) ** 2 else nan
+    commutator_norm = max(float(np.abs(a @ b.T - b.T @ a).max()) for a in parts for b in parts)
+    return gain if commutator_norm <= _ALIKE * max(float(np.abs(a).max()) for a in parts) ** 2 else nan
 
 
 @dataclass(frozen=True)
@@ -266,11 +266,11 @@ def transient_growth(flock: LinearFlock, *, limit: float = LIMIT) -> TransientGr
     grid = np.linspace(
         log(0.01 / flock.second_order.fastest_rate), log((_SETTLED + 2.0 * len(a)) / flock.decay_rate), _TIMES
     )
-    sizes = [size(x) for x in grid.tolist()]
-    best = int(np.argmax(sizes))
-    bounds = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, _TIMES - 1)])
+    magnitudes = [size(x) for x in grid.tolist()]
+    best_index = int(np.argmax(magnitudes))
+    bounds = float(grid[max(best_index - 1, 0)]), float(grid[min(best_index + 1, _TIMES - 1)])
     finer = minimize_scalar(lambda x: -size(x), bounds=bounds, method="bounded", options={"xatol": 1e-9})
-    growth, exponent = max((sizes[best], float(grid[best])), (-float(finer.fun), float(finer.x)))
+    growth, exponent = max((magnitudes[best_index], float(grid[best_index])), (-float(finer.fun), float(finer.x)))
     return TransientGrowth(growth, float(np.exp(exponent))) if growth > 1.0 else TransientGrowth(1.0, 0.0)
 
 
@@ -317,5 +317,5 @@ def passivity(flock: LinearFlock) -> Passivity:
     stiffness, damping = (
         float(np.linalg.eigvalsh(0.5 * (x + x.T))[0]) / row for x, row in zip((k, d), rows, strict=True)
     )
-    passive = asymmetry <= zero and stiffness >= -zero and damping >= -zero
-    return Passivity(passive, asymmetry, stiffness, damping)
+    is_passive = asymmetry <= zero and stiffness >= -zero and damping >= -zero
+    return Passivity(is_passive, asymmetry, stiffness, damping)

@@ -34,8 +34,8 @@ class StrongComponents:
     @cached_property
     def _all_heard(self) -> tuple[frozenset[int], ...]:
         subsets: list[frozenset[int]] = []
-        for direct in self.heard:
-            subsets.append(direct.union(*(subsets[j] for j in direct)))
+        for heard_group in self.heard:
+            subsets.append(heard_group.union(*(subsets[j] for j in heard_group)))
         return tuple(subsets)
 
 
@@ -50,14 +50,14 @@ def strong_components(*matrices: Any) -> StrongComponents:
     links = sum((abs(csr_array(matrix)) for matrix in matrices[1:]), abs(csr_array(matrices[0]))).tocoo()
     links.eliminate_zeros()
     count, label = connected_components(links, directed=True, connection="strong")
-    heard: dict[int, set[int]] = {k: set() for k in range(count)}
-    for k, source in np.unique(np.stack([label[index] for index in links.coords]), axis=1).T.tolist():
-        if k != source:
-            heard[k].add(source)
-    order = list(TopologicalSorter(heard).static_order())
-    place = {k: number for number, k in enumerate(order)}
-    rows, ends = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label, minlength=count))[:-1]
-    members = np.split(rows, ends)
+    heard_groups: dict[int, set[int]] = {k: set() for k in range(count)}
+    for k, edge_source in np.unique(np.stack([label[index] for index in links.coords]), axis=1).T.tolist():
+        if k != edge_source:
+            heard_groups[k].add(edge_source)
+    order = list(TopologicalSorter(heard_groups).static_order())
+    group_number = {k: number for number, k in enumerate(order)}
+    rows, group_ends = np.argsort(label, kind="stable"), np.cumsum(np.bincount(label, minlength=count))[:-1]
+    members = np.split(rows, group_ends)
     return StrongComponents(
-        tuple(members[k] for k in order), tuple(frozenset(place[j] for j in heard[k]) for k in order)
+        tuple(members[k] for k in order), tuple(frozenset(group_number[j] for j in heard_groups[k]) for k in order)
     )

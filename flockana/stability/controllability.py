@@ -83,12 +83,12 @@ class Controllability:
     @property
     def controllable(self) -> bool:
         """Return whether every motion of the flock can be steered."""
-        return all(one.controllable for one in self.poles)
+        return all(pole.controllable for pole in self.poles)
 
     @property
     def lost(self) -> tuple[PoleReach, ...]:
         """Poles that the informed agents do not fully reach."""
-        return tuple(one for one in self.poles if not one.controllable)
+        return tuple(pole for pole in self.poles if not pole.controllable)
 
     @property
     def table(self) -> DataFrame:
@@ -145,13 +145,13 @@ def scaled_model(flock: LinearFlock) -> ScaledModel:
     """Return the model of a linearised flock, its neutral motions as a basis of states."""
     ensure_fits("A", flock.A_sparse.shape, "ask of fewer agents")
     k, d, pace = flock.stiffness.toarray(), flock.damping.toarray(), flock.second_order.fastest_rate
-    zero, one = np.zeros_like(k), np.eye(len(k))
-    a = np.block([[zero, one], [-k / pace**2, -d / pace]])
+    zero, identity = np.zeros_like(k), np.eye(len(k))
+    a = np.block([[zero, identity], [-k / pace**2, -d / pace]])
     kernel = flock.second_order.invariant.kernel
-    _, sizes, rows = np.linalg.svd(d @ kernel, full_matrices=False)
-    drift = kernel @ rows[sizes <= flock.zero * (float(np.abs(d).max()) or 1.0)].T
-    still, moving = np.vstack([kernel, 0.0 * kernel]), np.vstack([0.0 * drift, drift])
-    return ScaledModel(a, pace, flock.q.shape, np.hstack([still, moving]))
+    _, singular_values, rows = np.linalg.svd(d @ kernel, full_matrices=False)
+    drift = kernel @ rows[singular_values <= flock.zero * (float(np.abs(d).max()) or 1.0)].T
+    zero_rows, moving = np.vstack([kernel, 0.0 * kernel]), np.vstack([0.0 * drift, drift])
+    return ScaledModel(a, pace, flock.q.shape, np.hstack([zero_rows, moving]))
 
 
 @check_kinds
@@ -219,13 +219,13 @@ def pole_groups(model: ScaledModel) -> list[PoleGroup]:
 
     values, errors = eigenvalues(model.A)
     slack = np.maximum(errors, _ROUNDINGS * EPS * len(values) * float(np.linalg.norm(model.A, 2)))
-    near = np.abs(values[:, None] - values) <= slack[:, None] + slack
-    count, label = connected_components(near, directed=False)
+    is_close = np.abs(values[:, None] - values) <= slack[:, None] + slack
+    count, label = connected_components(is_close, directed=False)
     groups = []
     for k in range(count):
-        in_group = label == k
-        value, error = complex(values[in_group].mean()), float(slack[in_group].max())
-        groups.append(PoleGroup(0j if abs(value) <= error else value, int(in_group.sum()), error))
+        is_in_group = label == k
+        value, error = complex(values[is_in_group].mean()), float(slack[is_in_group].max())
+        groups.append(PoleGroup(0j if abs(value) <= error else value, int(is_in_group.sum()), error))
     return groups
 
 
@@ -241,10 +241,10 @@ def _reach(model: ScaledModel, group: PoleGroup, b: FloatArray) -> PoleReach:
 
 def left_eigenvectors(a: FloatArray, group: PoleGroup) -> ComplexArray:
     """Return an orthonormal basis of the left eigenspace of a pole, as columns."""
-    left, sizes, _ = np.linalg.svd(a - group.value * np.eye(len(a)))
-    flat = sizes <= kernel_edge(group, a)
-    flat[-1] = True  # it is an eigenvalue
-    return left[:, flat]
+    left, singular_values, _ = np.linalg.svd(a - group.value * np.eye(len(a)))
+    is_null = singular_values <= kernel_edge(group, a)
+    is_null[-1] = True  # it is an eigenvalue
+    return left[:, is_null]
 
 
 def kernel_edge(group: PoleGroup, a: FloatArray) -> float:
@@ -256,18 +256,18 @@ def distance_to_loss(model: ScaledModel, agents: Sequence[int], poles: Sequence[
     """Return the least singular value of (A − s, B) found by searches from some poles, and s."""
     from scipy.optimize import minimize
 
-    whole = np.hstack([model.A, model.inputs(agents)])
-    one = np.eye(*whole.shape)
+    full_matrix = np.hstack([model.A, model.inputs(agents)])
+    identity = np.eye(*full_matrix.shape)
 
     def least(x: FloatArray) -> float:
-        return float(np.linalg.svd(whole - complex(*x) * one, compute_uv=False)[-1])
+        return float(np.linalg.svd(full_matrix - complex(*x) * identity, compute_uv=False)[-1])
 
-    best = (inf, 0j)
+    least_loss = (inf, 0j)
     for pole in list(poles)[:_SEARCHES]:
         start = np.array([pole.real, pole.imag]) / model.pace
         result = minimize(least, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-14, "maxiter": 200})
-        best = min(best, (float(result.fun), complex(*result.x) * model.pace), key=lambda pair: pair[0])
-    return best
+        least_loss = min(least_loss, (float(result.fun), complex(*result.x) * model.pace), key=lambda pair: pair[0])
+    return least_loss
 
 
 def gramians(model: ScaledModel, horizon: float | None, sets: Sequence[Sequence[int]]) -> list[FloatArray]:
@@ -276,15 +276,15 @@ def gramians(model: ScaledModel, horizon: float | None, sets: Sequence[Sequence[
 
     if horizon is not None:
         return _over_horizon(model, model.pace * horizon, sets)
-    keep = complement(model.neutral)
-    a = keep.T @ model.A @ keep  # the neutral motions are invariant: dividing them out is exact
+    kept_basis = complement(model.neutral)
+    a = kept_basis.T @ model.A @ kept_basis  # the neutral motions are invariant: dividing them out is exact
     values, errors = eigenvalues(a)
     if np.any(values.real >= -errors):
         raise ArgumentError(
             f"a motion does not decay (Re s = {float(values.real.max()) * model.pace:.3g}): expected a stable flock "
             "off its zero modes, or horizon=..., the time in which forces act"
         )
-    pushes = (keep.T @ model.inputs(agents) for agents in sets)
+    pushes = (kept_basis.T @ model.inputs(agents) for agents in sets)
     return [_symmetric(solve_continuous_lyapunov(a, -b @ b.T)) for b in pushes]
 
 
@@ -292,14 +292,14 @@ def _over_horizon(model: ScaledModel, horizon: float, sets: Sequence[Sequence[in
     """Return ∫ e^(At) B Bᵀ e^(Aᵀt) dt by Van Loan's exponential of a short time, doubled."""
     from scipy.linalg import expm
 
-    a, size = model.A, len(model.A)
+    a, dimension = model.A, len(model.A)
     halvings = max(0, int(np.ceil(np.log2(max(1.0, horizon * float(np.linalg.norm(a, 2)))))))
     short, result = horizon / 2.0**halvings, []
     for agents in sets:
         b = model.inputs(agents)
         block = expm(short * np.block([[-a, b @ b.T], [np.zeros_like(a), a.T]]))
-        step = block[size:, size:].T
-        gramian = step @ block[:size, size:]
+        step = block[dimension:, dimension:].T
+        gramian = step @ block[:dimension, dimension:]
         for _ in range(halvings):
             gramian, step = gramian + step @ gramian @ step.T, step @ step
         result.append(_symmetric(gramian))

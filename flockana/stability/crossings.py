@@ -48,22 +48,22 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     crossing = common_diagonals(four)
     if crossing is None:
         return None
-    best = Crossing(inf, nan, inf)
+    best_pair = Crossing(inf, nan, inf)
     for k0, d0, k1, d1 in crossing.values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
             continue
         if crossing.real:
-            whole = k0 + k1 if abs(k0 + k1) > neutral else 0.0
-            size = 2.0 * abs(k0) + d1 * d1 + d0 * d0
-            frequencies = _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, whole * (k0 - k1), size)
+            total_stiffness = k0 + k1 if abs(k0 + k1) > neutral else 0.0
+            magnitude = 2.0 * abs(k0) + d1 * d1 + d0 * d0
+            frequencies = _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, total_stiffness * (k0 - k1), magnitude)
         else:
-            prompt, late = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
-            frequencies = _moduli_meet(prompt, late, max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1))))
+            prompt, late_coefficients = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
+            frequencies = _moduli_meet(prompt, late_coefficients, max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1))))
         for omega in frequencies:
-            late_part, prompt_part = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
-            delay = phase(-late_part * prompt_part.conjugate()) / omega
-            best = min(best, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))
-    return best
+            late_coefficient, prompt_coefficient = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
+            delay = phase(-late_coefficient * prompt_coefficient.conjugate()) / omega
+            best_pair = min(best_pair, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))
+    return best_pair
 
 
 def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
@@ -71,8 +71,8 @@ def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
     balance = np.poly1d((np.convolve(a, a.conj()).real - np.convolve(b, b.conj()).real)[::-1])
     slope, roots, meetings = balance.deriv(), balance.roots, []
     for omega in roots.real[(np.abs(roots.imag) <= _DOUBLE * np.abs(roots)) & (roots.real > _LOW * size)].tolist():
-        better = omega - float(balance(omega)) / (float(slope(omega)) or inf)
-        meetings.append(better if abs(better - omega) <= _DOUBLE * omega else omega)
+        better_frequency = omega - float(balance(omega)) / (float(slope(omega)) or inf)
+        meetings.append(better_frequency if abs(better_frequency - omega) <= _DOUBLE * omega else omega)
     return meetings
 
 
@@ -87,19 +87,19 @@ def common_diagonals(four: Four) -> _Diagonals | None:
     """Return the diagonals of four jointly diagonalised or triangularised matrices; None if impossible."""
     from scipy.linalg import schur
 
-    sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
-    used_parts = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
+    counts, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
+    used_parts = [(x, size) for x, size in zip(four, counts, strict=True) if size > 0.0]
     symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used_parts)
-    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used_parts)), np.zeros_like(four[0]))
-    if not symmetric and eigen(mixed)[2].max(initial=0.0) > CLOSE:
+    mixed_matrix = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used_parts)), np.zeros_like(four[0]))
+    if not symmetric and eigen(mixed_matrix)[2].max(initial=0.0) > CLOSE:
         return None
-    turn: Any = np.linalg.eigh(mixed)[1] if symmetric else schur(mixed, output="complex")[1]
+    rotation: Any = np.linalg.eigh(mixed_matrix)[1] if symmetric else schur(mixed_matrix, output="complex")[1]
     values = []
-    for x, size in zip(four, sizes, strict=True):
-        there = turn.conj().T @ x @ turn
-        own_rates = np.diag(there)
-        off = there - np.diag(own_rates) if symmetric else np.tril(there, -1)
-        if np.abs(off).max(initial=0.0) > rounding * size:
+    for x, size in zip(four, counts, strict=True):
+        rotated_matrix = rotation.conj().T @ x @ rotation
+        own_rates = np.diag(rotated_matrix)
+        deviation = rotated_matrix - np.diag(own_rates) if symmetric else np.tril(rotated_matrix, -1)
+        if np.abs(deviation).max(initial=0.0) > rounding * size:
             return None
         values.append(np.where(np.abs(own_rates) > rounding * size, own_rates, 0.0))
     return _Diagonals(np.array(values), symmetric)
@@ -107,11 +107,11 @@ def common_diagonals(four: Four) -> _Diagonals | None:
 
 def _frequencies(total: float, product: float, size: float) -> list[float]:
     """Return the ω > 0 with ω⁴ − total ω² + product = 0; double roots are recognised within rounding."""
-    square = total * total - 4.0 * product
-    if square < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
+    squared_value = total * total - 4.0 * product
+    if squared_value < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
         return []
-    far = 0.5 * (total + (sqrt(max(square, 0.0)) if total >= 0.0 else -sqrt(max(square, 0.0))))
-    return [sqrt(x) for x in (far, product / far if far else 0.0) if x > 0.0]
+    far_root = 0.5 * (total + (sqrt(max(squared_value, 0.0)) if total >= 0.0 else -sqrt(max(squared_value, 0.0))))
+    return [sqrt(x) for x in (far_root, product / far_root if far_root else 0.0) if x > 0.0]
 
 
 def phase(z: complex) -> float:
@@ -135,36 +135,36 @@ class _Spectrum(NamedTuple):
         """Return frequencies at which eigenvalues become real, to first order, and their delays."""
         with np.errstate(divide="ignore", invalid="ignore"):
             move = -self.values.imag / self.slopes.imag
-            there = self.values.real + self.slopes.real * move
-            delays = 2.0 * (0.5 * pi - np.arctan(there)) / (omega + move)
+            moved_values = self.values.real + self.slopes.real * move
+            delays = 2.0 * (0.5 * pi - np.arctan(moved_values)) / (omega + move)
         return omega + move, np.where(np.isfinite(delays) & (omega + move > 0.0), delays, inf)
 
 
 def _spectrum(four: Four, omega: float) -> _Spectrum:
     """Return the spectrum of W at a frequency, with its derivatives."""
     k0, d0, k1, d1 = four
-    one = np.eye(len(k0))
-    inverse = np.linalg.inv(k0 + k1 - omega**2 * one + 1j * omega * (d0 + d1))
-    values, vectors = np.linalg.eig(-1j * inverse @ (k0 - k1 - omega**2 * one + 1j * omega * (d0 - d1)))
+    identity = np.eye(len(k0))
+    inverse = np.linalg.inv(k0 + k1 - omega**2 * identity + 1j * omega * (d0 + d1))
+    values, vectors = np.linalg.eig(-1j * inverse @ (k0 - k1 - omega**2 * identity + 1j * omega * (d0 - d1)))
     left = np.linalg.solve(vectors, inverse)
     mass = left @ vectors
     of_mu = 1j * (left @ (d0 + d1) @ vectors) - 2.0 * omega * mass
     alone = -(left @ (d0 - d1) @ vectors) - 2j * omega * mass
     slopes = -(values * np.diag(of_mu) + np.diag(alone))
-    sizes = np.hypot(1.0, np.abs(values))
-    first = np.hypot(np.abs(of_mu), np.abs(alone) / sizes[:, None])
-    return _Spectrum(values, slopes, sizes, first, np.abs(mass) * np.hypot(1.0, 1.0 / sizes)[:, None])
+    magnitudes = np.hypot(1.0, np.abs(values))
+    first = np.hypot(np.abs(of_mu), np.abs(alone) / magnitudes[:, None])
+    return _Spectrum(values, slopes, magnitudes, first, np.abs(mass) * np.hypot(1.0, 1.0 / magnitudes)[:, None])
 
 
 def _distances(at: _Spectrum, lowest: float) -> FloatArray:
     """Return the least |μ − μ_i|/√(μ² + size_i²) over all real μ >= `lowest`."""
     a, b, lower = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
     total = 1.0 + a * a + b * b
-    square = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
+    squared_value = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
     with np.errstate(divide="ignore", invalid="ignore"):
-        nearest = np.where(square < 1.0, a / (1.0 - square), inf)
-        ends = np.minimum(np.hypot(lower - a, b) / np.hypot(1.0, lower), 1.0)
-    return np.where(nearest >= lower, np.sqrt(square), ends)
+        nearest = np.where(squared_value < 1.0, a / (1.0 - squared_value), inf)
+        capped_ratios = np.minimum(np.hypot(lower - a, b) / np.hypot(1.0, lower), 1.0)
+    return np.where(nearest >= lower, np.sqrt(squared_value), capped_ratios)
 
 
 def _crossing_free(at: _Spectrum, angle: float) -> float:
@@ -178,8 +178,8 @@ def _crossing_free(at: _Spectrum, angle: float) -> float:
     for _ in range(_POWERS):
         scale = rows @ scale
         scale = np.maximum(scale / scale.max(), EPS)
-    linear, square = (float(np.max((x @ scale) / (gaps * scale))) for x in (at.first, at.second))
-    return _SAFE * 2.0 / (linear + sqrt(linear * linear + 4.0 * square))
+    linear, quadratic_ratio = (float(np.max((x @ scale) / (gaps * scale))) for x in (at.first, at.second))
+    return _SAFE * 2.0 / (linear + sqrt(linear * linear + 4.0 * quadratic_ratio))
 
 
 def least_crossing(
@@ -188,43 +188,43 @@ def least_crossing(
     """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
     # needed. `advance` is called with the share of the frequencies that is done.
-    best, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
+    best_pair, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
     while todo:
         a, b = todo.pop()
         if b > _WIDE * a > 0.0:
-            middle = max(sqrt(a * b), b / _WIDE)
-            todo += [(a, middle), (middle, b)]  # from the top: the least delays belong to the highest frequencies
+            midpoint = max(sqrt(a * b), b / _WIDE)
+            todo += [(a, midpoint), (midpoint, b)]  # from the top: the least delays belong to the highest frequencies
             continue
-        middle = 0.5 * (a + b) if a > 0.0 else 0.0
-        at, left = _spectrum(four, middle), left - 1
-        places, delays = at.crossings(middle)
-        delays = np.where((places >= a) & (places <= b), delays, inf)
-        if middle > 0.0 and delays.min() < best.least:
-            crossing, tried = _refined(four, middle, at, int(delays.argmin()), best.delay)
-            best, left = min(best, crossing), left - tried
-        reach = _crossing_free(at, min(b * best.least, 2.0 * pi))
-        if left <= 0 or middle + reach == middle:
-            return best._replace(least=0.0)
-        if a < middle - reach:
-            todo.append((a, middle - reach))
-        if b > middle + reach:
-            todo.append((middle + reach, b))
-        advance(1.0 - sum(top - bottom for bottom, top in todo) / (high - low))
-    return best
+        midpoint = 0.5 * (a + b) if a > 0.0 else 0.0
+        spectrum_at, left = _spectrum(four, midpoint), left - 1
+        crossing_frequencies, delays = spectrum_at.crossings(midpoint)
+        delays = np.where((crossing_frequencies >= a) & (crossing_frequencies <= b), delays, inf)
+        if midpoint > 0.0 and delays.min() < best_pair.least:
+            crossing, step_count = _refined(four, midpoint, spectrum_at, int(delays.argmin()), best_pair.delay)
+            best_pair, left = min(best_pair, crossing), left - step_count
+        reach = _crossing_free(spectrum_at, min(b * best_pair.least, 2.0 * pi))
+        if left <= 0 or midpoint + reach == midpoint:
+            return best_pair._replace(least=0.0)
+        if a < midpoint - reach:
+            todo.append((a, midpoint - reach))
+        if b > midpoint + reach:
+            todo.append((midpoint + reach, b))
+        advance(1.0 - sum(top - bottom_end for bottom_end, top in todo) / (high - low))
+    return best_pair
 
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
     """Return a crossing by Newton's method on Im μ(ω) = 0 (infinite if none), and the number of spectra."""
-    nothing = Crossing(inf, nan, inf)
-    for tried in range(_STEPS):
+    no_crossing = Crossing(inf, nan, inf)
+    for step_number in range(_STEPS):
         value, slope = complex(at.values[index]), complex(at.slopes[index])
-        move = -value.imag / slope.imag if slope.imag else inf
-        if not 0.0 < omega + move < inf:
-            return nothing, tried
-        omega += move
-        if abs(move) <= _TINY * omega:
+        frequency_step = -value.imag / slope.imag if slope.imag else inf
+        if not 0.0 < omega + frequency_step < inf:
+            return no_crossing, step_number
+        omega += frequency_step
+        if abs(frequency_step) <= _TINY * omega:
             delay = phase(complex(value.real, 1.0) / complex(value.real, -1.0)) / omega
-            return (Crossing(delay, omega, (1.0 - CLOSE) * delay) if delay < worst else nothing), tried
+            return (Crossing(delay, omega, (1.0 - CLOSE) * delay) if delay < worst else no_crossing), step_number
         at = _spectrum(four, omega)
-        index = int(np.argmin(np.abs(at.values - (value + move * slope))))
-    return nothing, _STEPS
+        index = int(np.argmin(np.abs(at.values - (value + frequency_step * slope))))
+    return no_crossing, _STEPS

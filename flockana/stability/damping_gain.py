@@ -92,22 +92,22 @@ def gain_for_damping(
     count = ensure_count("steps", steps)
     crossings, ratios = [], [start.mode.damping_ratio]
     for end in (low, high):
-        gain, here = own_gain, start
+        gain, crossing = own_gain, start
         share = np.log(end / own_gain) / np.log(high / low)
         for level in np.geomspace(own_gain, end, 1 + int(np.ceil(count * abs(share))))[1:].tolist():
-            after = _follow(_with(law, name, level), here)
-            ratios.append(after.mode.damping_ratio)
-            if (here.mode.damping_ratio - wanted_ratio) * (after.mode.damping_ratio - wanted_ratio) <= 0.0:
-                crossings.append((gain, level, here))
+            next_modes = _follow(_with(law, name, level), crossing)
+            ratios.append(next_modes.mode.damping_ratio)
+            if (crossing.mode.damping_ratio - wanted_ratio) * (next_modes.mode.damping_ratio - wanted_ratio) <= 0.0:
+                crossings.append((gain, level, crossing))
                 break
-            gain, here = level, after
+            gain, crossing = level, next_modes
     if not crossings:
         raise SolverError(
             f"mode {start.mode.name} has ζ = {min(ratios):.4g} to {max(ratios):.4g} at {name} = {low:g} to {high:g}: "
             f"expected {wanted_ratio:g} among them; ask for another mode, gain or range"
         )
-    first, second, here = min(crossings, key=lambda each: abs(np.log(each[0] / own_gain)))
-    return _refine(law, name, wanted_ratio, (first, second), here)
+    first_gain, second_gain, crossing = min(crossings, key=lambda each: abs(np.log(each[0] / own_gain)))
+    return _refine(law, name, wanted_ratio, (first_gain, second_gain), crossing)
 
 
 def _with(law: Any, name: str, gain: float) -> Any:
@@ -116,8 +116,8 @@ def _with(law: Any, name: str, gain: float) -> Any:
 
 def _linearised(law: Any, q: FloatArray) -> Linearisation:
     """Return the linearisation about the equilibrium near some positions."""
-    rest = find_equilibrium(law, q) if len(q) > 1 else q
-    linear: Linearisation = linearise(law, rest)
+    equilibrium = find_equilibrium(law, q) if len(q) > 1 else q
+    linear: Linearisation = linearise(law, equilibrium)
     return linear
 
 
@@ -126,10 +126,10 @@ def _begin(law: Any, q: FloatArray, name: str | None) -> _Here:
     if name is not None:
         ensure_known("mode", name, tuple(mode.name for mode in linear.modes))
         return _Here(linear, next(mode for mode in linear.modes if mode.name == name))
-    swinging = [mode for mode in linear.modes if mode.frequency > mode.error]
-    if not swinging:
+    swinging_modes = [mode for mode in linear.modes if mode.frequency > mode.error]
+    if not swinging_modes:
         raise SolverError("no mode swings with the law's own gains: expected mode=, the name of one that creeps")
-    return _Here(linear, swinging[0])
+    return _Here(linear, swinging_modes[0])
 
 
 def _follow(law: Any, here: _Here) -> _Here:

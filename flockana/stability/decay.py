@@ -111,18 +111,18 @@ def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     rng = np.random.default_rng(seed)
     dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
-    both = [velocity_mismatch(each(flock, dq, 0.0 * dq, t)[1]) for each in (linear_motion, _run)]
-    above = _count_above_floor(both[0])
-    late = slice(int(_LATE * above), above)
-    if not slopes.size or late.start == late.stop:
+    mismatches = [velocity_mismatch(item(flock, dq, 0.0 * dq, t)[1]) for item in (linear_motion, _run)]
+    floor_count = _count_above_floor(mismatches[0])
+    late_slice = slice(int(_LATE * floor_count), floor_count)
+    if not slopes.size or late_slice.start == late_slice.stop:
         raise ArgumentError(
             f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a "
             "run within half a swing: expected less damping"
         )
-    late_linear, late_measured = (float(-0.5 * logarithmic_slopes(x, half)[late].mean()) for x in both)
-    measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
+    late_linear, late_measured = (float(-0.5 * logarithmic_slopes(x, half)[late_slice].mean()) for x in mismatches)
+    measured_value, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
     law, rate, (n, m) = type(flock.law).__name__, mode.decay_rate, flock.q.shape
-    return Decay(name or law, law, n, m, mode, rate, measured, error, late_linear, late_measured, t, mismatch)
+    return Decay(name or law, law, n, m, mode, rate, measured_value, error, late_linear, late_measured, t, mismatch)
 
 
 @check_kinds
@@ -141,7 +141,7 @@ def decay_table(flocks: Mapping[str, Linearisation]) -> tuple[Decay, ...]:
     >>> [row.name for row in decay_table({"pair": linearise(Algorithm1(), [[0.0], [7.0]])})]
     ['pair']
     """
-    return tuple(decay(one, name=name) for name, one in flocks.items())
+    return tuple(decay(flock, name=name) for name, flock in flocks.items())
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,10 +197,10 @@ class LinearRange:
         deviation : float
             Share of the initial displacement, such as 0.1.
         """
-        above = np.flatnonzero(self.deviations > ensure_positive("deviation", deviation))
-        if not above.size:
+        exceeding_levels = np.flatnonzero(self.deviations > ensure_positive("deviation", deviation))
+        if not exceeding_levels.size:
             return float(self.amplitudes[-1])
-        k = int(above[0])
+        k = int(exceeding_levels[0])
         if k == 0:
             return 0.0
         pair = slice(k - 1, k + 1)
@@ -239,13 +239,13 @@ def linear_range(
     mode, pair = slowest_seen(flock), flock.law.pair
     reach = inf if pair is None else pair.range
     deviations, changes = [], []
-    for size in (levels * _length(flock)).tolist():
-        line = mode_motion(flock, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
+    for start_amplitude in (levels * _length(flock)).tolist():
+        line = mode_motion(flock, mode, amplitude=start_amplitude, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
         q, _ = _run(flock, line.q[0] - flock.q, line.p[0], line.t)
         drift = q - line.q
         if flock.law.centre_decouples and flock.second_order.split.exact:  # the centre of mass moves by itself
             drift = drift - drift.mean(axis=1, keepdims=True)
-        deviations.append(float(lengths(drift).max()) / size)
+        deviations.append(float(lengths(drift).max()) / start_amplitude)
         changes.append(len({links(x, reach).tobytes() for x in q}) > 1 if np.isfinite(reach) else False)
     name = name or type(flock.law).__name__
     return LinearRange(name, levels, np.array(deviations), np.array(changes), _margin(flock, mode, reach))
@@ -274,8 +274,8 @@ def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: Float
     states = np.empty((t.size, state.size))
     for k in range(t.size):
         states[k], state = state, step @ state
-    split = states.reshape(t.size, 2, *dq.shape)
-    return split[:, 0], split[:, 1]
+    split_states = states.reshape(t.size, 2, *dq.shape)
+    return split_states[:, 0], split_states[:, 1]
 
 
 def velocity_mismatch(p: FloatArray) -> FloatArray:
@@ -304,8 +304,8 @@ def _margin(flock: Linearisation, mode: Mode, reach: float) -> float:
         return inf
     i, j = np.triu_indices(len(flock.q), 1)
     delta = flock.q[j] - flock.q[i]
-    length = np.linalg.norm(delta, axis=1)
+    distance = np.linalg.norm(delta, axis=1)
     shape = mode.shape / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
-    rate = np.abs(np.einsum("kc,kc->k", delta / length[:, None], shape[j] - shape[i]))
+    rate = np.abs(np.einsum("kc,kc->k", delta / distance[:, None], shape[j] - shape[i]))
     moving = rate > 1e-9
-    return float((np.abs(length - reach)[moving] / rate[moving]).min(initial=inf)) / _length(flock)
+    return float((np.abs(distance - reach)[moving] / rate[moving]).min(initial=inf)) / _length(flock)

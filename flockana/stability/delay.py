@@ -68,17 +68,17 @@ class DelaySystem(ShortRepr):
 
     def __post_init__(self) -> None:
         shape = "(K₀, D₀) and (K₁, D₁), square matrices of one size"
-        four = [ensure_numbers(name, each, shape) for name in ("prompt", "late") for each in getattr(self, name)]
-        sizes = {each.shape for each in four}
-        if len(four) != 4 or len(sizes) > 1 or four[0].ndim != 2 or len(set(four[0].shape)) > 1:
-            raise ArgumentError(f"matrices of shapes {', '.join(str(each.shape) for each in four)}: expected {shape}")
-        if not all(np.isfinite(each).all() for each in four):
+        four = [ensure_numbers(name, item, shape) for name in ("prompt", "late") for item in getattr(self, name)]
+        shapes = {item.shape for item in four}
+        if len(four) != 4 or len(shapes) > 1 or four[0].ndim != 2 or len(set(four[0].shape)) > 1:
+            raise ArgumentError(f"matrices of shapes {', '.join(str(item.shape) for item in four)}: expected {shape}")
+        if not all(np.isfinite(item).all() for item in four):
             raise ArgumentError(f"a matrix has a number that is not finite: expected {shape}")
 
     @property
     def highest(self) -> float:
         """Return a frequency above which no root crosses the imaginary axis, as s² dominates there."""
-        k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
+        k, d = (sum(float(np.linalg.norm(component[i], 2)) for component in (self.prompt, self.late)) for i in (0, 1))
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
@@ -98,13 +98,13 @@ class DelaySystem(ShortRepr):
         """Return the strongly connected parts; their roots together are all roots."""
         matrices, parts = (*self.prompt, *self.late), []
         for rows in strong_components(*matrices).indices:
-            k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)
+            k0, d0, k1, d1 = (component[np.ix_(rows, rows)] for component in matrices)
             kernel, cokernel = kernels(k0 + k1) if self.neutral else (np.zeros((len(rows), 0)),) * 2
             parts.append(DelaySystem((k0, d0), (k1, d1), neutral_roots(kernel, cokernel, d0 + d1, k1)))
-        if sum(part.neutral for part in parts) == self.neutral:
+        if sum(component.neutral for component in parts) == self.neutral:
             return iter(parts)
         return (
-            replace(part, neutral=self.neutral) for part in parts
+            replace(component, neutral=self.neutral) for component in parts
         )  # softer than rounding tells: any part may have them
 
 
@@ -142,11 +142,11 @@ def delayed_flock(flock: LinearFlock, delayed: str, carries: str, links: Any = N
     ensure_known("quantity that is late", carries, CARRIES)
     ensure_fits("K", flock.stiffness.shape, "ask of fewer agents")
     k, d = flock.stiffness.toarray(), flock.damping.toarray()
-    late_k, late_d = (late_part(part, flock.q.shape[1], delayed, links) for part in (k, d))
+    late_k, late_d = (late_part(component, flock.q.shape[1], delayed, links) for component in (k, d))
     late_k, late_d = late_k * (carries != "velocities"), late_d * (carries != "positions")
     zero = flock.second_order.invariant
-    neutral = neutral_roots(zero.kernel, zero.cokernel, d, late_k)
-    return DelaySystem((k - late_k, d - late_d), (late_k, late_d), neutral)
+    neutral_basis = neutral_roots(zero.kernel, zero.cokernel, d, late_k)
+    return DelaySystem((k - late_k, d - late_d), (late_k, late_d), neutral_basis)
 
 
 def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> FloatArray:
@@ -154,21 +154,21 @@ def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> Fl
     n = len(matrix) // m
     if links is None and delayed == "all":
         return matrix
-    heard = ~np.eye(n, dtype=bool)
+    is_neighbour = ~np.eye(n, dtype=bool)
     if links is not None:
         if delayed == "all":
             raise ArgumentError('links: expected delayed="pairs" or "neighbours", of which single links may be late')
         i, j = ensure_directed_links(links, n).T
-        heard = np.zeros((n, n), dtype=bool)
-        heard[i, j] = True
-    others = np.where(np.kron(heard, np.ones((m, m), dtype=bool)), matrix, 0.0)
+        is_neighbour = np.zeros((n, n), dtype=bool)
+        is_neighbour[i, j] = True
+    neighbour_matrix = np.where(np.kron(is_neighbour, np.ones((m, m), dtype=bool)), matrix, 0.0)
     if delayed == "neighbours":
-        return others
+        return neighbour_matrix
     # what depends on differences alone gives the rows of blocks that sum to 0
-    own_part = -others.reshape(n, m, n, m).sum(axis=2)
+    own_part = -neighbour_matrix.reshape(n, m, n, m).sum(axis=2)
     for i in range(n):
-        others[i * m : (i + 1) * m, i * m : (i + 1) * m] = own_part[i]
-    return others
+        neighbour_matrix[i * m : (i + 1) * m, i * m : (i + 1) * m] = own_part[i]
+    return neighbour_matrix
 
 
 def ensure_directed_links(links: Any, n: int) -> Any:
@@ -262,17 +262,17 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
             _margin_of_part(part, lambda share, k=k: advance(k + share, f"part {k + 1} of {len(parts)}"))  # type: ignore[misc]
             for k, part in enumerate(parts)
         ]
-    first = min(margins, key=lambda margin: margin.delay)
-    return DelayMargin(first.delay, first.frequency, min(margin.least for margin in margins))
+    first_margin = min(margins, key=lambda margin: margin.delay)
+    return DelayMargin(first_margin.delay, first_margin.frequency, min(margin.least for margin in margins))
 
 
 def _ensure_affordable(part: DelaySystem, limit: float) -> None:
     """Raise before the margin of a part whose modes or search would take longer than a limit."""
-    size = len(part.late[0])
-    modes, spectra = _SECONDS * (2 * size) ** 3, _SPECTRA * _SECONDS_OF_SPECTRUM * size**3
-    searched = spectra > limit and common_diagonals((*part.prompt, *part.late)) is None
-    seconds = modes + spectra if searched else modes
-    ensure_affordable(f"the delay margin of {size} coordinates", size, seconds, 2e-4 * size**2, limit)
+    dimension = len(part.late[0])
+    modes, spectra = _SECONDS * (2 * dimension) ** 3, _SPECTRA * _SECONDS_OF_SPECTRUM * dimension**3
+    is_searched = spectra > limit and common_diagonals((*part.prompt, *part.late)) is None
+    seconds = modes + spectra if is_searched else modes
+    ensure_affordable(f"the delay margin of {dimension} coordinates", dimension, seconds, 2e-4 * dimension**2, limit)
 
 
 def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> DelayMargin:
@@ -287,9 +287,9 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
     if crossing is None:
         top = 1.01 * system.highest / unit
         crossing = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
-    delay = min(crossing.least, still := _still_crossing(system) * unit)
-    if still < crossing.delay:
-        return DelayMargin(still / unit, 0.0, delay / unit)
+    delay = min(crossing.least, still_margin := _still_crossing(system) * unit)
+    if still_margin < crossing.delay:
+        return DelayMargin(still_margin / unit, 0.0, delay / unit)
     return DelayMargin(crossing.delay / unit, crossing.frequency * unit, delay / unit)
 
 
@@ -302,18 +302,18 @@ def _still_crossing(system: DelaySystem) -> float:
         return inf
     (k0, d0), (k1, d1) = system.prompt, system.late
     kernel, cokernel = kernels(k0 + k1)
-    sizes = [float(np.abs(x).max()) or 1.0 for x in (d0 + d1, k1)]
-    drag, pull = (cokernel.T @ x @ kernel / size for x, size in zip((d0 + d1, k1), sizes, strict=True))
+    magnitudes = [float(np.abs(x).max()) or 1.0 for x in (d0 + d1, k1)]
+    drag, pull = (cokernel.T @ x @ kernel / magnitude for x, magnitude in zip((d0 + d1, k1), magnitudes, strict=True))
     rows, columns = _range(np.hstack([drag, pull])), _range(np.vstack([drag, pull]).T)  # the rest drifts
     drag, pull, unit = (rows.T @ x @ columns for x in (drag, pull, cokernel.T @ kernel))
     if rows.shape != columns.shape or np.abs(pull).max(initial=0.0) <= ZERO:
         return inf
-    early: Any = eigvals(drag - _BRIEF * pull, unit)
-    if np.any(early.real < -ZERO):  # with any delay what drifted grows
+    early_roots: Any = eigvals(drag - _BRIEF * pull, unit)
+    if np.any(early_roots.real < -ZERO):  # with any delay what drifted grows
         return 0.0
     delays: Any = eigvals(drag, pull)
     real = delays.real[np.isfinite(delays) & (np.abs(delays.imag) <= CLOSE * np.abs(delays)) & (delays.real > ZERO)]
-    return float(real.min(initial=inf)) * sizes[0] / sizes[1]
+    return float(real.min(initial=inf)) * magnitudes[0] / magnitudes[1]
 
 
 def kernels(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -325,18 +325,18 @@ def kernels(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _range(matrix: FloatArray) -> FloatArray:
     """Return an orthonormal basis of the columns' span."""
-    left, sizes, _ = np.linalg.svd(matrix)
-    return left[:, : int(np.sum(sizes > ZERO))]
+    left, singular_values, _ = np.linalg.svd(matrix)
+    return left[:, : int(np.sum(singular_values > ZERO))]
 
 
 def _stable(system: DelaySystem) -> bool:
     """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
     # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     is_stable = []
-    for part in system.strong_parts():
-        (k0, d0), (k1, d1) = part.prompt, part.late
+    for component in system.strong_parts():
+        (k0, d0), (k1, d1) = component.prompt, component.late
         is_stable.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
     roots, errors = (np.concatenate(x) for x in zip(*is_stable, strict=True))
-    neutral = np.abs(roots) <= errors
-    neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
-    return bool(np.all(roots.real[~neutral] < -errors[~neutral]))
+    neutral_basis = np.abs(roots) <= errors
+    neutral_basis[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
+    return bool(np.all(roots.real[~neutral_basis] < -errors[~neutral_basis]))

@@ -68,14 +68,14 @@ class DelayLinearisation(ShortRepr):
     @property
     def delays(self) -> tuple[float, ...]:
         """Positive delays of the flock."""
-        return tuple(part.delay for part in self.parts if part.delay > 0.0)
+        return tuple(delay_term.delay for delay_term in self.parts if delay_term.delay > 0.0)
 
     @cached_property
     def neutral(self) -> int:
         """Number of roots at 0, of motions without a restoring force."""
         zero = self.instant.second_order.invariant
-        late = sum((part.delay * part.stiffness for part in self.parts), np.zeros_like(self.parts[0].stiffness))
-        return neutral_roots(zero.kernel, zero.cokernel, self.instant.damping.toarray(), late)
+        delayed_sum = sum((part.delay * part.stiffness for part in self.parts), np.zeros_like(self.parts[0].stiffness))
+        return neutral_roots(zero.kernel, zero.cokernel, self.instant.damping.toarray(), delayed_sum)
 
     def rightmost(self, count: int = 6, *, nodes: int = 16) -> ComplexArray:
         """Return the rightmost characteristic roots off the neutral ones, largest real part first.
@@ -115,8 +115,8 @@ class DelayLinearisation(ShortRepr):
             next((part for part in self.parts if (part.delay > 0.0) == is_late), blank) for is_late in (False, True)
         )
         zero = self.instant.second_order.invariant
-        neutral = neutral_roots(zero.kernel, zero.cokernel, prompt.damping + late.damping, late.stiffness)
-        return DelaySystem(prompt[1:], late[1:], neutral)
+        neutral_basis = neutral_roots(zero.kernel, zero.cokernel, prompt.damping + late.damping, late.stiffness)
+        return DelaySystem(prompt[1:], late[1:], neutral_basis)
 
     def delay_margin(self, *, progress: bool = False) -> DelayMargin:
         """Return the longest stable delay of the delayed part; for several delays see `scaled_margin`."""
@@ -134,8 +134,8 @@ class DelayLinearisation(ShortRepr):
         from scipy.optimize import brentq
 
         def abscissa(factor: float) -> float:
-            scaled = [part._replace(delay=factor * part.delay) for part in self.parts]
-            return float(rightmost(scaled, self.neutral, count=1).real.max(initial=-inf))
+            scaled_terms = [delay_term._replace(delay=factor * delay_term.delay) for delay_term in self.parts]
+            return float(rightmost(scaled_terms, self.neutral, count=1).real.max(initial=-inf))
 
         if not self.instant.stable:
             return 0.0

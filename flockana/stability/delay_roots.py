@@ -30,18 +30,18 @@ Parts = Sequence[LatePart]
 
 def characteristic(parts: Parts, s: complex) -> ComplexArray:
     """Return s² + Σ (K_k + s D_k) e^(−sτ_k), singular at the roots."""
-    whole = s * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
+    full_matrix = s * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
     for delay, k, d in parts:
-        whole += (k + s * d) * np.exp(-s * delay)
-    return whole
+        full_matrix += (k + s * d) * np.exp(-s * delay)
+    return full_matrix
 
 
 def _slope(parts: Parts, s: complex) -> ComplexArray:
     """Return the derivative of `characteristic` by s."""
-    whole = 2.0 * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
+    full_matrix = 2.0 * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
     for delay, k, d in parts:
-        whole += (d - delay * (k + s * d)) * np.exp(-s * delay)
-    return whole
+        full_matrix += (d - delay * (k + s * d)) * np.exp(-s * delay)
+    return full_matrix
 
 
 def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count: int = 6) -> ComplexArray:
@@ -83,11 +83,11 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) -> ComplexArray:
     """Return `rightmost_roots` for any number of delays; `neutral` roots at 0 are left out."""
     nodes, count = ensure_count("nodes", nodes), ensure_count("count", count)
-    groups = strong_components(*(part for each in parts for part in each[1:])).indices
+    groups = strong_components(*(delay_term for item in parts for delay_term in item[1:])).indices
     sub = [[LatePart(tau, k[np.ix_(rows, rows)], d[np.ix_(rows, rows)]) for tau, k, d in parts] for rows in groups]
-    zeros = [_neutral(part) if neutral else 0 for part in sub]
+    zeros = [_neutral(delay_term) if neutral else 0 for delay_term in sub]
     if sum(zeros) == neutral:
-        upper = [_of_group(part, zero, nodes, count) for part, zero in zip(sub, zeros, strict=True)]
+        upper = [_of_group(delay_term, zero, nodes, count) for delay_term, zero in zip(sub, zeros, strict=True)]
     else:  # motions softer than rounding tells: the smallest roots of the whole
         upper = [_of_group(list(parts), neutral, nodes, count)]
     roots = np.concatenate(upper)
@@ -99,9 +99,9 @@ def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) ->
 def _neutral(parts: Parts) -> int:
     """Return the number of roots at 0 of a group."""
     blank = np.zeros_like(parts[0].stiffness)
-    stiffness, damping = sum((one.stiffness for one in parts), blank), sum((one.damping for one in parts), blank)
-    late = sum((one.delay * one.stiffness for one in parts), blank)
-    return neutral_roots(*kernels(stiffness), damping, late)
+    stiffness, damping = sum((part.stiffness for part in parts), blank), sum((part.damping for part in parts), blank)
+    delayed_sum = sum((part.delay * part.stiffness for part in parts), blank)
+    return neutral_roots(*kernels(stiffness), damping, delayed_sum)
 
 
 def _of_group(parts: Parts, neutral: int, nodes: int, count: int) -> ComplexArray:
@@ -142,11 +142,11 @@ def root_error(system: DelaySystem, s: complex, delay: float) -> float:
 
 def error_of_root(parts: Parts, s: complex) -> float:
     """Return `root_error` for any number of delays."""
-    u, sizes, vh = np.linalg.svd(characteristic(parts, s))
-    turn = abs(complex(u[:, -1].conj() @ _slope(parts, s) @ vh[-1].conj()))
+    u, singular_values, vh = np.linalg.svd(characteristic(parts, s))
+    slope_size = abs(complex(u[:, -1].conj() @ _slope(parts, s) @ vh[-1].conj()))
     terms = (abs(np.exp(-s * tau)) * (np.linalg.norm(k) + abs(s) * np.linalg.norm(d)) for tau, k, d in parts)
-    push = float(sizes[-1]) + _ROUNDINGS * EPS * (float(sum(terms)) + abs(s) ** 2)
-    return float(min(push / turn if turn > 0.0 else inf, np.sqrt(push)))
+    push = float(singular_values[-1]) + _ROUNDINGS * EPS * (float(sum(terms)) + abs(s) ** 2)
+    return float(min(push / slope_size if slope_size > 0.0 else inf, np.sqrt(push)))
 
 
 def _points(nodes: int) -> tuple[FloatArray, FloatArray]:
@@ -165,29 +165,29 @@ def _chebyshev(nodes: int) -> FloatArray:
 def _interpolation(nodes: int, at: float) -> FloatArray:
     """Return the weights of the values at the Chebyshev points for interpolation at a point."""
     x, weight = _points(nodes)
-    away = at - x
-    if (near := np.abs(away) <= 4.0 * EPS).any():
-        return near.astype(np.float64)
-    return weight / away / np.sum(weight / away)
+    node_differences = at - x
+    if (is_near := np.abs(node_differences) <= 4.0 * EPS).any():
+        return is_near.astype(np.float64)
+    return weight / node_differences / np.sum(weight / node_differences)
 
 
 def _refine(parts: Parts, s: complex, longest: float) -> complex | None:
     """Refine (v, s) with M(s) v = 0 by Newton's method from the singular vector at s; None without convergence."""
     start = s
     v = np.linalg.svd(characteristic(parts, s))[2][-1].conj()
-    fixed = v.conj()
+    left_vector = v.conj()
     for _ in range(_STEPS):
         matrix, slope = characteristic(parts, s), _slope(parts, s) @ v
-        bordered = np.block([[matrix, slope[:, None]], [fixed[None, :], np.zeros((1, 1))]])
+        bordered_matrix = np.block([[matrix, slope[:, None]], [left_vector[None, :], np.zeros((1, 1))]])
         try:
-            step = np.linalg.solve(bordered, np.append(-matrix @ v, 1.0 - fixed @ v))
+            step = np.linalg.solve(bordered_matrix, np.append(-matrix @ v, 1.0 - left_vector @ v))
         except np.linalg.LinAlgError:  # a defective root: as near as it comes
             break
         v, s = v + step[:-1], s + complex(step[-1])
         if abs(step[-1]) <= 1e-14 * max(abs(start), 1.0 / longest):
             break
-    near = abs(s - start) <= 0.1 * max(abs(start), 1.0 / longest)
-    s = s if near and np.isfinite(s) else start
+    is_near = abs(s - start) <= 0.1 * max(abs(start), 1.0 / longest)
+    s = s if is_near and np.isfinite(s) else start
     s = complex(s.real, 0.0) if start.imag == 0.0 else s
-    sizes = np.linalg.svd(characteristic(parts, s), compute_uv=False)
-    return s if sizes[-1] <= _LEFT * max(sizes[0], abs(s) ** 2) else None
+    singular_values = np.linalg.svd(characteristic(parts, s), compute_uv=False)
+    return s if singular_values[-1] <= _LEFT * max(singular_values[0], abs(s) ** 2) else None

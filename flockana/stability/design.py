@@ -161,16 +161,16 @@ def design_gains(
         raise ArgumentError(f"least = {least!r}: expected with Specifications(...), which it is to meet")
     low, high = _bounds(bounds or (0.0, 5.0), ensure_nonnegative)
     n, rng = problem.agents, np.random.default_rng(seed)
-    alike = np.repeat(_minimise2(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
-    trials = [alike]
+    equal_gains = np.repeat(_minimise2(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
+    trials = [equal_gains]
     for k in range(ensure_count("starts", starts)):
-        near = alike + 0.1 * (high - low) * rng.standard_normal(2 * n)
-        trials.append(np.clip(near, low, high) if k % 2 == 0 else rng.uniform(low, high, 2 * n))
+        nearby_gains = equal_gains + 0.1 * (high - low) * rng.standard_normal(2 * n)
+        trials.append(np.clip(nearby_gains, low, high) if k % 2 == 0 else rng.uniform(low, high, 2 * n))
     designs = [_descend(problem, start, low, high) for start in trials]
-    best = min([alike, *designs], key=problem.abscissa)
-    spectra = problem.eigenvalues(alike), problem.eigenvalues(best)
+    best_gains = min([equal_gains, *designs], key=problem.abscissa)
+    spectra = problem.eigenvalues(equal_gains), problem.eigenvalues(best_gains)
     rates = [-float(values[0].real) for values in spectra]
-    return GainDesign(problem, alike, best, rates[0], rates[1], spectra[0], spectra[1], starts)
+    return GainDesign(problem, equal_gains, best_gains, rates[0], rates[1], spectra[0], spectra[1], starts)
 
 
 def _specified(problem: GainProblem, asked: Specifications, bounds: Any, least: str | None) -> SpecifiedGains:
@@ -191,9 +191,9 @@ def _specified(problem: GainProblem, asked: Specifications, bounds: Any, least: 
 
     def cost(logs: FloatArray) -> float:
         trial = flock(logs)
-        room = min(trial.room.values())
-        if least is None or room < 0.0:
-            return -room
+        margins = min(trial.room.values())
+        if least is None or margins < 0.0:
+            return -margins
         return -1.0 / (1.0 + trial.reached[least])  # below 0, where all is met, and rising with what it costs
 
     return flock(_minimise2(cost, low, high, count=6, tries=1, most=60, finest=2e-4))
@@ -222,17 +222,17 @@ def _minimise2(
     """Return the pair of numbers between bounds that minimises a function, by a grid and a simplex search."""
     from scipy.optimize import minimize
 
-    axis, wide = np.linspace(low, high, count), (high - low) / count
+    axis, grid_step = np.linspace(low, high, count), (high - low) / count
     grid = sorted((worth(np.array(pair)), *pair) for pair in product(axis.tolist(), axis.tolist()))[:tries]
-    best = grid[0]
+    best_gains = grid[0]
     for value, a, b in grid:
-        simplex = np.clip([[a, b], [a - 0.2 * wide, b], [a, b + 0.4 * wide]], low, high)
-        fine: Any = {"xatol": finest * (high - low), "fatol": _GAINED * abs(value)}
-        options: Any = {"initial_simplex": simplex, "maxfev": most, **fine}
+        simplex = np.clip([[a, b], [a - 0.2 * grid_step, b], [a, b + 0.4 * grid_step]], low, high)
+        search_options: Any = {"xatol": finest * (high - low), "fatol": _GAINED * abs(value)}
+        options: Any = {"initial_simplex": simplex, "maxfev": most, **search_options}
         box = [(low, high)] * 2
-        polished = minimize(worth, np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
-        best = min(best, (float(polished.fun), *np.clip(polished.x, low, high).tolist()))
-    return np.array(best[1:])
+        polished_state = minimize(worth, np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
+        best_gains = min(best_gains, (float(polished_state.fun), *np.clip(polished_state.x, low, high).tolist()))
+    return np.array(best_gains[1:])
 
 
 def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:
@@ -248,12 +248,12 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
         rows = np.column_stack([slopes[active], -np.ones(active.size)])
         box = np.column_stack([np.maximum(low, gains - radius), np.minimum(high, gains + radius)])
         plan = linprog(cost, rows, slopes[active] @ gains - values.real[active], bounds=[*box.tolist(), (None, None)])
-        promised = value - float(plan.x[-1]) if plan.x is not None else 0.0
-        if plan.x is None or promised <= _GAINED * abs(value):
+        expected_gain = value - float(plan.x[-1]) if plan.x is not None else 0.0
+        if plan.x is None or expected_gain <= _GAINED * abs(value):
             break
         trial = np.clip(plan.x[:-1], low, high)
         abscissa = problem.abscissa(trial)
-        if abscissa < value - 0.1 * promised:
+        if abscissa < value - 0.1 * expected_gain:
             gains, value, radius = trial, abscissa, 1.5 * radius
             values, slopes = problem.slopes(gains)
         else:

@@ -107,8 +107,8 @@ class VelocityLinearisation:
     @property
     def stable(self) -> bool:
         """Return whether every mode off the zero modes decays, beyond rounding and difference errors."""
-        off = _OFF * self._velocities.second_order.damping_scale
-        return all(mode.decay_rate > mode.error + off for mode in self.modes)
+        rate_error = _OFF * self._velocities.second_order.damping_scale
+        return all(mode.decay_rate > mode.error + rate_error for mode in self.modes)
 
     def damp(self, *, settled: float = 0.02) -> DampTable:
         """Return a table of all poles: see `Linearisation.damp`.
@@ -190,8 +190,8 @@ class VelocityLinearisation:
 
         (n, m), eye = self.q.shape, np.eye(self.q.size)
         names = [f"{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
-        places, pushes = ([f"{letter}{name}" for name in names] for letter in "qv")
-        return control.ss(self.A, eye, eye, 0.0 * eye, states=places, outputs=places, inputs=pushes)
+        state_names, pushes = ([f"{letter}{name}" for name in names] for letter in "qv")
+        return control.ss(self.A, eye, eye, 0.0 * eye, states=state_names, outputs=state_names, inputs=pushes)
 
     def facts(self) -> dict[str, str]:
         """Return the rows of the printed table: sizes, poles, zero modes and stability."""

@@ -52,8 +52,8 @@ class GainProblem:
 
     def matrix(self, gains: FloatArray) -> FloatArray:
         """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without the projected motions."""
-        each = len(self.stiffness) // self.agents
-        pull, drag = np.repeat(gains, each).reshape(2, -1)
+        dimension = len(self.stiffness) // self.agents
+        pull, drag = np.repeat(gains, dimension).reshape(2, -1)
         return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
@@ -113,7 +113,7 @@ def gain_problem(
         return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n, **of)
     rigid = rigid_motions(q)
     translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
-    inside = rigid - translations @ (translations.T @ rigid)
-    basis, sizes, _ = np.linalg.svd(inside, full_matrices=False)
-    turns = basis[:, sizes > 0.5] if rotation != "counted" else np.zeros((q.size, 0))
+    rigid_part = rigid - translations @ (translations.T @ rigid)
+    basis, singular_values, _ = np.linalg.svd(rigid_part, full_matrices=False)
+    turns = basis[:, singular_values > 0.5] if rotation != "counted" else np.zeros((q.size, 0))
     return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n, rotation == "apart", **of)

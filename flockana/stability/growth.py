@@ -37,8 +37,8 @@ class Steps(NamedTuple):
 
     def sides(self, h: float) -> tuple[FloatArray, FloatArray]:
         """Return E and F at a step."""
-        one = np.eye(len(self.f1))
-        return one + h * (self.e1 + h * self.e2), one + h * (self.f1 + h * self.f2)
+        identity = np.eye(len(self.f1))
+        return identity + h * (self.e1 + h * self.e2), identity + h * (self.f1 + h * self.f2)
 
     def multipliers(self, h: float) -> FloatArray:
         """Return the eigenvalues of P(h)."""
@@ -72,23 +72,23 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
     """Return the first growth from the steps at which two multipliers have product 1."""
     e1, f1 = steps.e1 / rate, steps.f1 / rate
     e2, f2 = steps.e2 / rate**2, steps.f2 / rate**2
-    one = np.eye(len(f1))
+    identity = np.eye(len(f1))
     parts = [
-        _on_symmetric(f1 - e1, one),
-        _on_symmetric(f2 - e2, one) + 0.5 * (_on_symmetric(f1, f1) - _on_symmetric(e1, e1)),
+        _on_symmetric(f1 - e1, identity),
+        _on_symmetric(f2 - e2, identity) + 0.5 * (_on_symmetric(f1, f1) - _on_symmetric(e1, e1)),
         _on_symmetric(f1, f2) - _on_symmetric(e1, e2),
         0.5 * (_on_symmetric(f2, f2) - _on_symmetric(e2, e2)),
     ]
     roots = sorted(x / rate for x in _least_roots(parts))
-    before = 0.0
+    previous_level = 0.0
     for low, high in pairwise([0.0, *roots, inf]):
-        middle = 2.0 * low if high == inf else 0.5 * high if low == 0.0 else float(np.sqrt(low * high))
-        middle = middle or 1.0 / rate
-        if steps.growth(middle) > 0.0:
-            period = _refined(steps, before, middle) if before else low
+        midpoint = 2.0 * low if high == inf else 0.5 * high if low == 0.0 else float(np.sqrt(low * high))
+        midpoint = midpoint or 1.0 / rate
+        if steps.growth(midpoint) > 0.0:
+            period = _refined(steps, previous_level, midpoint) if previous_level else low
             widths = [_resolved(steps, period, width) for width in (_NEAR, CLOSE)]
             return Growth(period if widths[0] else nan, period if widths[1] else 0.0)
-        before = middle
+        previous_level = midpoint
     return Growth(inf, inf)
 
 
@@ -99,19 +99,19 @@ def _resolved(steps: Steps, period: float, width: float) -> bool:
 
 def _on_symmetric(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the matrix of X ↦ a X bᵀ + b X aᵀ on symmetric X, in the entries X_ij, i <= j."""
-    size = len(a)
-    i, j = np.triu_indices(size)
-    whole = np.kron(a, b) + np.kron(b, a)
-    columns = whole[:, i * size + j] + np.where(i == j, 0.0, whole[:, j * size + i])
-    return columns[i * size + j]
+    dimension = len(a)
+    i, j = np.triu_indices(dimension)
+    full_matrix = np.kron(a, b) + np.kron(b, a)
+    columns = full_matrix[:, i * dimension + j] + np.where(i == j, 0.0, full_matrix[:, j * dimension + i])
+    return columns[i * dimension + j]
 
 
 def _least_roots(parts: list[FloatArray]) -> list[float]:
     """Return the rising positive roots x of det Σ x^k parts_k, with invertible parts_0."""
-    size, degree = len(parts[0]), len(parts) - 1
-    companion = np.zeros((degree * size, degree * size))
-    companion[size:, :-size] = np.eye((degree - 1) * size)
-    companion[:size] = -np.linalg.solve(parts[0], np.hstack(parts[1:]))
+    dimension, degree = len(parts[0]), len(parts) - 1
+    companion = np.zeros((degree * dimension, degree * dimension))
+    companion[dimension:, :-dimension] = np.eye((degree - 1) * dimension)
+    companion[:dimension] = -np.linalg.solve(parts[0], np.hstack(parts[1:]))
     inverse = np.linalg.eigvals(companion)
     real = (inverse.real > 0.0) & (np.abs(inverse.imag) <= _REAL * np.abs(inverse))
     return sorted((1.0 / inverse.real[real]).tolist())
@@ -147,11 +147,11 @@ def _by_intervals(steps: Steps, rate: float, stable_below: float) -> Growth:
 def _falls(steps: Steps, x: FloatArray, h: float, unit: float) -> list[FloatArray]:
     """Return the coefficients of W(h + unit s) by powers of s, divided by s at h = 0."""
     powers = []
-    for first, second in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
-        at = np.eye(len(x)) + h * (first + h * second)
-        a, b = unit * (first + 2.0 * h * second), unit * unit * second
-        odd, even, last = at.T @ x @ a, at.T @ x @ b, a.T @ x @ b
-        middle = a.T @ x @ a + even + even.T
-        powers.append([at.T @ x @ at, odd + odd.T, middle, last + last.T, b.T @ x @ b])
+    for first_block, second_block in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
+        at = np.eye(len(x)) + h * (first_block + h * second_block)
+        a, b = unit * (first_block + 2.0 * h * second_block), unit * unit * second_block
+        odd_part, even_part, last_value = at.T @ x @ a, at.T @ x @ b, a.T @ x @ b
+        midpoint = a.T @ x @ a + even_part + even_part.T
+        powers.append([at.T @ x @ at, odd_part + odd_part.T, midpoint, last_value + last_value.T, b.T @ x @ b])
     fall = [e - f for e, f in zip(*powers, strict=True)]
     return fall[1:] if h == 0.0 else fall

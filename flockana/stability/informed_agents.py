@@ -100,15 +100,15 @@ def agents_to_inform(
     value = (
         _rank_of(model) if criterion == "rank" else _worth(gramians(model, horizon, [[i] for i in range(n)]), criterion)
     )
-    exhaustive = comb(n, count) <= ensure_count("most", most)
-    if exhaustive:
-        best = max(combinations(range(n), count), key=value)
-        return InformedAgents(best, criterion, value(best), exhaustive, 1.0)
+    is_exhaustive = comb(n, count) <= ensure_count("most", most)
+    if is_exhaustive:
+        best_agents = max(combinations(range(n), count), key=value)
+        return InformedAgents(best_agents, criterion, value(best_agents), is_exhaustive, 1.0)
     informed_agents: tuple[int, ...] = ()
     for _ in range(count):
         informed_agents = max(((*informed_agents, i) for i in range(n) if i not in informed_agents), key=value)
     share = 1.0 if criterion == "trace" else 1.0 - 1.0 / e if criterion in _SUBMODULAR else 0.0
-    return InformedAgents(informed_agents, criterion, value(informed_agents), exhaustive, share)
+    return InformedAgents(informed_agents, criterion, value(informed_agents), is_exhaustive, share)
 
 
 def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int]], float]:
@@ -119,8 +119,8 @@ def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int
         gramian = sum((each[i] for i in agents), np.zeros_like(each[0]))
         if criterion == "trace":
             return float(np.trace(gramian))
-        sizes = np.maximum(np.linalg.eigvalsh(gramian), 0.0)
-        return float(np.log1p(sizes / floor).sum()) if criterion == "log det" else float(sizes[0])
+        magnitudes = np.maximum(np.linalg.eigvalsh(gramian), 0.0)
+        return float(np.log1p(magnitudes / floor).sum()) if criterion == "log det" else float(magnitudes[0])
 
     return value
 
@@ -128,15 +128,15 @@ def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int
 def _rank_of(model: ScaledModel) -> Callable[[Sequence[int]], float]:
     """Return the number of states reached by forces on given agents, pole by pole with Krylov vectors."""
     n, m = model.shape
-    every = model.inputs(range(n))
-    reach_of_group = [_krylov(model.A, group, every) for group in pole_groups(model)]
-    edges = [_RANK * max(float(np.abs(one).max()), EPS) for one in reach_of_group]
+    all_inputs = model.inputs(range(n))
+    reach_matrices = [_krylov(model.A, group, all_inputs) for group in pole_groups(model)]
+    edges = [_RANK * max(float(np.abs(item).max()), EPS) for item in reach_matrices]
 
     def value(agents: Sequence[int]) -> float:
         columns = (np.asarray(agents)[:, None] * m + np.arange(m)).ravel()
         ranks = (
-            np.linalg.matrix_rank(one[:, :, columns].reshape(len(one), -1), tol=edge)
-            for one, edge in zip(reach_of_group, edges, strict=True)
+            np.linalg.matrix_rank(item[:, :, columns].reshape(len(item), -1), tol=edge)
+            for item, edge in zip(reach_matrices, edges, strict=True)
         )
         return float(sum(ranks))
 
@@ -145,18 +145,18 @@ def _rank_of(model: ScaledModel) -> Callable[[Sequence[int]], float]:
 
 def _krylov(a: FloatArray, group: PoleGroup, b: FloatArray) -> Any:
     """Return WᴴB, (A − λ)WᴴB, … of the left invariant subspace W of one pole, shape (dimension, powers, inputs)."""
-    shifted = a - group.value * np.eye(len(a))
+    shifted_matrix = a - group.value * np.eye(len(a))
     basis, rest, left = left_eigenvectors(a, group), np.eye(len(a)), np.zeros((len(a), 0))
     while True:  # a staircase: the left kernel, then that of what is left when it is divided out
         left = np.hstack([left, rest @ basis])
         if left.shape[1] >= group.size:
             break
         rest = rest @ complement(basis)
-        u, sizes, _ = np.linalg.svd(rest.conj().T @ shifted @ rest)
-        basis = u[:, sizes <= kernel_edge(group, a)]
+        u, singular_values, _ = np.linalg.svd(rest.conj().T @ shifted_matrix @ rest)
+        basis = u[:, singular_values <= kernel_edge(group, a)]
         if not basis.shape[1]:
             break
-    own_flow, push = left.conj().T @ shifted @ left, left.conj().T @ b
+    own_flow, push = left.conj().T @ shifted_matrix @ left, left.conj().T @ b
     powers = [push]
     for _ in range(left.shape[1] - 1):
         powers.append(own_flow @ powers[-1])

@@ -161,14 +161,14 @@ def sampling_margin(law: Any, equilibrium: Any, *, limit: float = LIMIT) -> Samp
     >>> sampling_margin(one, [[0.0]]).period, sampling_margin(ExplicitEuler(one, 0.1), [[0.0]]).period
     (0.5, 0.25)
     """
-    name, factor, in_place = "hold", 0.5, False
+    name, factor, is_in_place = "hold", 0.5, False
     if isinstance(law, DiscreteLaw):
         if law.continuous is None or law.position_factor is None:
             raise ArgumentError(f"{type(law).__name__} steps no law: expected a law, or a map that steps one")
-        name, factor, in_place = law.title, law.position_factor, law.in_place
+        name, factor, is_in_place = law.title, law.position_factor, law.in_place
         law = law.continuous
     flow = linearise(law, equilibrium)
-    return margin_of_flow(name, flow, factor, in_place=in_place, limit=limit)
+    return margin_of_flow(name, flow, factor, in_place=is_in_place, limit=limit)
 
 
 @dataclass(frozen=True)

@@ -32,10 +32,10 @@ def period_map(parts: Sequence[LatePart], period: float, clock: FloatArray) -> F
     Its state is (q, p, u, earlier u …) just after the last sample of a period, shape (N (2 + inputs),) twice.
     `clock` has when each coordinate is sampled, after the beginning of the period.
     """
-    longest, events = max(part.delay for part in parts), np.unique(clock)
-    each, behind = len(events), int(np.ceil(longest / period)) + 2
-    times = np.concatenate([events + k * period for k in range(-behind, 1)])
-    now = range(len(times) - each, len(times))
+    longest, events = max(delay_term.delay for delay_term in parts), np.unique(clock)
+    event_count, past_periods = len(events), int(np.ceil(longest / period)) + 2
+    times = np.concatenate([events + k * period for k in range(-past_periods, 1)])
+    now = range(len(times) - event_count, len(times))
     inputs = max(int(np.sum((times < times[j]) & (times > times[j] - longest - 2.0 * period))) for j in now)
     size = len(clock) * (2 + inputs)
     if size > MOST:
@@ -52,36 +52,36 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
 
     The inputs of the state began `ages` before the next sample.
     """
-    size, inputs = len(due), len(ages)
-    one, whole = np.eye(size), np.zeros((size * (2 + inputs),) * 2)
-    since, starts = ages[0], np.concatenate([[0.0], ages])
+    due_count, inputs = len(due), len(ages)
+    identity, full_matrix = np.eye(due_count), np.zeros((due_count * (2 + inputs),) * 2)
+    first_age, starts = ages[0], np.concatenate([[0.0], ages])
 
     def forward(row: FloatArray) -> Any:
         """Return rows of the next sample's q, p and inputs, from weighted inputs."""
-        return np.kron(row, one)
+        return np.kron(row, identity)
 
-    q = forward(np.array([[1.0, since, 0.5 * since**2, *np.zeros(inputs - 1)]]))
-    p = forward(np.array([[0.0, 1.0, since, *np.zeros(inputs - 1)]]))
-    heard = np.zeros((size, len(whole)))
+    q = forward(np.array([[1.0, first_age, 0.5 * first_age**2, *np.zeros(inputs - 1)]]))
+    p = forward(np.array([[0.0, 1.0, first_age, *np.zeros(inputs - 1)]]))
+    heard_states = np.zeros((due_count, len(full_matrix)))
     for delay, k, d in parts:
         edge = np.minimum(starts, delay if delay > _WHOLE * period else 0.0)
-        far = 0.5 * ((delay - edge[:-1]) ** 2 - (delay - edge[1:]) ** 2)  # ∫ (τ − s) ds over each input's time
-        back_q = q - delay * p + forward(np.array([[0.0, 0.0, *far]]))
+        squared_ages = 0.5 * ((delay - edge[:-1]) ** 2 - (delay - edge[1:]) ** 2)  # ∫ (τ − s) ds over each input's time
+        delayed_positions = q - delay * p + forward(np.array([[0.0, 0.0, *squared_ages]]))
         back_p = p - forward(np.array([[0.0, 0.0, *np.diff(edge)]]))
-        heard -= k @ back_q + d @ back_p
-    held_rows = np.eye(size, len(whole), 2 * size)
-    whole[:size], whole[size : 2 * size] = q, p
-    whole[2 * size : 3 * size] = np.where(due[:, None], heard, held_rows)
-    whole[3 * size :, 2 * size : -size] = np.eye(size * (inputs - 1))
-    return whole
+        heard_states -= k @ delayed_positions + d @ back_p
+    held_rows = np.eye(due_count, len(full_matrix), 2 * due_count)
+    full_matrix[:due_count], full_matrix[due_count : 2 * due_count] = q, p
+    full_matrix[2 * due_count : 3 * due_count] = np.where(due[:, None], heard_states, held_rows)
+    full_matrix[3 * due_count :, 2 * due_count : -due_count] = np.eye(due_count * (inputs - 1))
+    return full_matrix
 
 
 def moving_multipliers(parts: Sequence[LatePart], period: float, clock: FloatArray, neutral: int) -> ComplexArray:
     """Return the multipliers of `period_map` off the neutral motions, the largest first."""
-    whole = period_map(parts, period, clock)
-    rest = _motions(parts, len(whole))
-    values: ComplexArray = np.linalg.eigvals(rest.T @ whole @ rest).astype(np.complex128)
-    left = neutral - (len(whole) - rest.shape[1])
+    period_matrix = period_map(parts, period, clock)
+    neutral_motions = _motions(parts, len(period_matrix))
+    values: ComplexArray = np.linalg.eigvals(neutral_motions.T @ period_matrix @ neutral_motions).astype(np.complex128)
+    left = neutral - (len(period_matrix) - neutral_motions.shape[1])
     if left > 0:  # drifts with a deformation: what is left at 1
         values = np.delete(values, np.argsort(np.abs(values - 1.0), kind="stable")[:left])
     return values[np.lexsort((values.imag, -np.abs(values)))]
@@ -89,47 +89,47 @@ def moving_multipliers(parts: Sequence[LatePart], period: float, clock: FloatArr
 
 def _motions(parts: Sequence[LatePart], states: int) -> FloatArray:
     """Return an orthonormal basis of the complement of the neutral motions, resting or drifting."""
-    stiffness, damping = (np.sum(each, axis=0) for each in zip(*(part[1:] for part in parts), strict=True))
-    late = np.sum([part.delay * part.stiffness for part in parts], axis=0)
+    stiffness, damping = (np.sum(item, axis=0) for item in zip(*(delay_term[1:] for delay_term in parts), strict=True))
+    delayed_sum = np.sum([delay_term.delay * delay_term.stiffness for delay_term in parts], axis=0)
     kernel = kernels(stiffness)[0]
     if not kernel.shape[1]:
         return np.eye(states)
-    drag = (damping - late) @ kernel
-    _, sizes, rows = np.linalg.svd(drag, full_matrices=False)
+    drag = (damping - delayed_sum) @ kernel
+    _, singular_values, rows = np.linalg.svd(drag, full_matrices=False)
     scale = float(np.abs(damping).max()) or 1.0
-    drift = kernel @ rows[sizes <= ZERO * scale].T
-    still, moving = np.zeros((states, kernel.shape[1])), np.zeros((states, drift.shape[1]))
-    still[: len(kernel)], moving[len(kernel) : 2 * len(kernel)] = kernel, drift
-    return complement(np.hstack([still, moving]))
+    drift = kernel @ rows[singular_values <= ZERO * scale].T
+    zero_rows, moving = np.zeros((states, kernel.shape[1])), np.zeros((states, drift.shape[1]))
+    zero_rows[: len(kernel)], moving[len(kernel) : 2 * len(kernel)] = kernel, drift
+    return complement(np.hstack([zero_rows, moving]))
 
 
 def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
     """Return the least argument at which a radius exceeds 1, by trials and halving; infinity without one."""
     from scipy.optimize import brentq
 
-    before = None
+    previous_root = None
     for trial in trials.tolist():
         growth = radius(trial) - 1.0
         if growth > 0.0:
-            if before is None:
+            if previous_root is None:
                 return 0.0
-            return float(brentq(lambda x: radius(x) - 1.0, before, trial, xtol=1e-13 * trial, rtol=1e-12))
-        before = trial
+            return float(brentq(lambda x: radius(x) - 1.0, previous_root, trial, xtol=1e-13 * trial, rtol=1e-12))
+        previous_root = trial
     return inf
 
 
 def lifted_map(law: Any, flow: LinearFlock, parts: Sequence[LatePart], hold: Sampled) -> MapLinearisation:
     """Return the one-period linearisation of a sampled law with delays, or with individual clocks."""
-    (n, m), size = flow.q.shape, flow.q.size
+    (n, m), dimension = flow.q.shape, flow.q.size
     clock = np.repeat(np.zeros(n) if hold.offsets is None else np.array(hold.offsets), m)
-    whole = period_map(parts, hold.period, clock)
-    kick = np.zeros((len(whole), size))
-    kick[size : 2 * size] = np.eye(size)
-    past = len(whole) // size - 2
+    period_matrix = period_map(parts, hold.period, clock)
+    kick = np.zeros((len(period_matrix), dimension))
+    kick[dimension : 2 * dimension] = np.eye(dimension)
+    past_count = len(period_matrix) // dimension - 2
     names = [*labels("q", n, m), *labels("p", n, m)]
-    names += [name + (f"@-{k}" if k else "") for k in range(past) for name in labels("u", n, m)]
+    names += [name + (f"@-{k}" if k else "") for k in range(past_count) for name in labels("u", n, m)]
     inputs = tuple(labels("dp", n, m))  # a jump of velocities just after the last sample
-    b = whole @ kick
+    b = period_matrix @ kick
     return MapLinearisation(
-        law, flow.q, flow.p, flow.t, flow.residual, whole, b, tuple(names), inputs, None, step=hold.period
+        law, flow.q, flow.p, flow.t, flow.residual, period_matrix, b, tuple(names), inputs, None, step=hold.period
     )

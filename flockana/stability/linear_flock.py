@@ -102,14 +102,14 @@ class LinearFlock(ShortRepr):
     @property
     def stiffness(self) -> csr_array:
         """Stiffness K = −∂u/∂q, sparse."""
-        size = self.q.size
-        return -self.A_sparse[size:, :size]
+        dimension = self.q.size
+        return -self.A_sparse[dimension:, :dimension]
 
     @property
     def damping(self) -> csr_array:
         """Damping D = −∂u/∂p, sparse."""
-        size = self.q.size
-        return -self.A_sparse[size:, size:]
+        dimension = self.q.size
+        return -self.A_sparse[dimension:, dimension:]
 
     @property
     def coincident_pairs(self) -> int:
@@ -218,10 +218,10 @@ class LinearFlock(ShortRepr):
         ArgumentError
             With the leak from the one to the other.
         """
-        split = self.second_order.split
-        if not split.exact:
+        split_system = self.second_order.split
+        if not split_system.exact:
             raise ArgumentError(
-                f"{self.law.title} does not split into shape and centre of mass here: {split.leak:.2g} of a "
+                f"{self.law.title} does not split into shape and centre of mass here: {split_system.leak:.2g} of a "
                 "translation goes into the shape or back (relative to the largest entry of K and D). Expected forces "
                 "between agents that cancel, and one linear pull on all: no σ₁, no obstacles, no gains that differ; "
                 "use modes and state_space"

@@ -201,16 +201,16 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         """
         import control
 
-        whole = self.state_space
-        ensure_known("input", input, whole.input_labels)
-        ensure_known("output", output, whole.output_labels)
-        one = whole[whole.output_labels.index(output), whole.input_labels.index(input)]
+        state_space = self.state_space
+        ensure_known("input", input, state_space.input_labels)
+        ensure_known("output", output, state_space.output_labels)
+        channel = state_space[state_space.output_labels.index(output), state_space.input_labels.index(input)]
         rates = np.abs(self.eigenvalues)
         rates = rates[rates > 0.0] if rates.any() else np.ones(1)
         grid = np.geomspace(rates.min() / _BESIDE, rates.max() * _BESIDE, _FREQUENCIES)
         omega = grid if omega is None else ensure_series("omega", omega)
         return control.frd(
-            np.ravel(one(1j * omega)), omega, inputs=[input], outputs=[output], name=f"{input} to {output}"
+            np.ravel(channel(1j * omega)), omega, inputs=[input], outputs=[output], name=f"{input} to {output}"
         )
 
     def controllability(self, informed: Any, *, horizon: float | None = None) -> Controllability:
@@ -249,18 +249,18 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         n, m = self.q.shape
         names = labels("u", n, m)
         if isinstance(inputs, str) and inputs == "all":
-            free = list(range(n * m))
-        elif np.size(inputs) and all(isinstance(one, str) for one in np.atleast_1d(inputs).tolist()):
+            input_indices = list(range(n * m))
+        elif np.size(inputs) and all(isinstance(input_name, str) for input_name in np.atleast_1d(inputs).tolist()):
             input_names = np.atleast_1d(inputs).tolist()
-            free = [names.index(ensure_known("input", one, names)) for one in input_names]
+            input_indices = [names.index(ensure_known("input", input_name, names)) for input_name in input_names]
         else:
-            free = [i * m + c for i in ensure_agents("inputs", inputs, n) for c in range(m)]
-        a, b = self.A.copy(), np.zeros((2 * n * m, len(free)))
-        rows = n * m + np.array(free)
-        a[rows], b[rows, np.arange(len(free))] = 0.0, 1.0
-        states, chosen_names = labels("q", n, m) + labels("p", n, m), [names[k] for k in free]
-        readings, blank = np.eye(2 * n * m), np.zeros((2 * n * m, len(free)))
-        return control.ss(a, b, readings, blank, states=states, inputs=chosen_names, outputs=states, name="plant")
+            input_indices = [i * m + c for i in ensure_agents("inputs", inputs, n) for c in range(m)]
+        a, b = self.A.copy(), np.zeros((2 * n * m, len(input_indices)))
+        rows = n * m + np.array(input_indices)
+        a[rows], b[rows, np.arange(len(input_indices))] = 0.0, 1.0
+        states, chosen_names = labels("q", n, m) + labels("p", n, m), [names[k] for k in input_indices]
+        readings, zero_matrix = np.eye(2 * n * m), np.zeros((2 * n * m, len(input_indices)))
+        return control.ss(a, b, readings, zero_matrix, states=states, inputs=chosen_names, outputs=states, name="plant")
 
     def to_mat(self, path: str | os.PathLike[str]) -> None:
         """Write A, B, C, D of `state_space` and the names of its signals to a MATLAB file.

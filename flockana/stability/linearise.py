@@ -146,7 +146,7 @@ def linearise(
     ):
         return equilibrium
     if isinstance(law, VelocityLaw):
-        if any(each is not None for each in (links, zero, side)):
+        if any(item is not None for item in (links, zero, side)):
             raise ArgumentError(f"links, zero, side: {law.title} is of first order; expected None")
         q, t = _positions(law, equilibrium), ensure_finite_scalar("t", t)
         return linearise_velocity(law, (t, q, p), force_tolerance, allow_residual)
@@ -181,10 +181,10 @@ def linearise(
     if links is None:  # pairs within the law's interaction range, if it has one
         links = links_within(q, law.pair.range) if law.pair else ()
         links = getattr(equilibrium, "links", links)
-    between = ensure_links(links, len(q))
+    link_array = ensure_links(links, len(q))
     q, p = q.copy(), p.copy()
     q.flags.writeable = p.flags.writeable = False
-    return Linearisation(law, q, p, t, residual, between, matrix, zero)
+    return Linearisation(law, q, p, t, residual, link_array, matrix, zero)
 
 
 def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
@@ -200,8 +200,8 @@ def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, A
     q = _positions(law, equilibrium)
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
     law.check_start(q, p)
-    by_headings = q.shape[1] == 2 and law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is not None
-    ways = linearise_headings if by_headings else linearise_steps
+    has_headings = q.shape[1] == 2 and law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is not None
+    ways = linearise_headings if has_headings else linearise_steps
     return ways(law, q, p, ensure_finite_scalar("t", how["t"]))
 
 
@@ -215,9 +215,9 @@ def _linearised_loop(
     flow = linearise(acting, equilibrium, p, **how)
     law.check_agents(len(flow.q))
     parts = late_parts(law, (flow.t, _on_side(acting, flow.q, how["side"])[0], flow.p))
-    matrices: Any = [csr_array(-np.sum(each, axis=0)) for each in zip(*(part[1:] for part in parts), strict=True)]
-    whole: Any = block_array([[None, eye_array(flow.q.size)], matrices], format="csr")
-    flow = replace(flow, law=law, A_sparse=csr_array(whole))
+    matrices: Any = [csr_array(-np.sum(item, axis=0)) for item in zip(*(part[1:] for part in parts), strict=True)]
+    full_matrix: Any = block_array([[None, eye_array(flow.q.size)], matrices], format="csr")
+    flow = replace(flow, law=law, A_sparse=csr_array(full_matrix))
     if hold is not None and (is_late(law) or hold.offsets is not None):
         return lifted_map(law, flow, parts, hold)
     if hold is not None:
@@ -236,13 +236,13 @@ def _zero_threshold(law: Law, equilibrium: Any, t: float, q: FloatArray, p: Floa
     half, scales = q.size, law.scales
     stiffness, force = -matrix[half:, :half], law.flow(t, q, p)[0]
     force = moving_frame(force) if law.centre_decouples else force
-    length = scales.length if scales else extent(q)
-    zero = zero_threshold(stiffness, force, length)
-    sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
+    length_scale = scales.length if scales else extent(q)
+    zero = zero_threshold(stiffness, force, length_scale)
+    magnitudes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
     soft, row = getattr(equilibrium, "zero_modes", 0), float(abs(stiffness).sum(axis=1).max())
-    if soft == 0 or row == 0.0 or (soft < sizes.size and 2.0 * sizes[soft - 1] >= sizes[soft]):
+    if soft == 0 or row == 0.0 or (soft < magnitudes.size and 2.0 * magnitudes[soft - 1] >= magnitudes[soft]):
         return zero
-    return max(zero, 2.0 * float(sizes[soft - 1]) / row)
+    return max(zero, 2.0 * float(magnitudes[soft - 1]) / row)
 
 
 def _on_side(law: Law, q: FloatArray, side: Side | None) -> tuple[FloatArray, float]:
@@ -303,14 +303,14 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
     if law.centre_decouples:
         return
     size = q.size
-    stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))
+    stiff, drag = (float(abs(matrix[size:, component]).max()) for component in (slice(0, size), slice(size, None)))
     time_scale = 1.0 / max(sqrt(stiff), drag) if stiff or drag else 1.0
-    for later in (_LATER * time_scale, 10.0 * _LATER * time_scale, 100.0 * _LATER * time_scale):
-        drift = law.jacobian(t + later, q + later * p, p, sparse=True) - matrix
-        changes = (abs(drift[size:, part]).max() for part in (slice(0, size), slice(size, None)))
+    for later_time in (_LATER * time_scale, 10.0 * _LATER * time_scale, 100.0 * _LATER * time_scale):
+        drift = law.jacobian(t + later_time, q + later_time * p, p, sparse=True) - matrix
+        changes = (abs(drift[size:, component]).max() for component in (slice(0, size), slice(size, None)))
         if any(change > _STEADY * scale for change, scale in zip(changes, (stiff, drag), strict=True)):
             raise ArgumentError(
-                f"the Jacobian of {law.title} changes along the motion of this state (within {later:.2g} "
+                f"the Jacobian of {law.title} changes along the motion of this state (within {later_time:.2g} "
                 "time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
                 "allow_residual=True linearises at the instant"
             )

@@ -173,8 +173,8 @@ class MapLinearisation(ShortRepr):
         all_modes: list[tuple[complex, Any, str, float]] = []
         if self.second_order is None:
             values, vectors, errors = self._dense
-            picks = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
-            all_modes = [(complex(values[k]), vectors[:, k], "", float(errors[k])) for k in picks]
+            mode_indices = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
+            all_modes = [(complex(values[k]), vectors[:, k], "", float(errors[k])) for k in mode_indices]
         else:
             h, modes = self.dt, self.second_order.modes
             names = ("" if mode.name.isdigit() else mode.name for mode in modes)
@@ -185,8 +185,8 @@ class MapLinearisation(ShortRepr):
                     (z, mode.shape, name, error) if z.imag >= 0.0 else (z.conjugate(), mode.shape.conj(), name, error)
                 )
         all_modes.sort(key=lambda one: 1.0 - abs(one[0]))
-        numbered = enumerate(all_modes, start=1)
-        return tuple(MapMode(z, shape, name or str(k), self.dt, error) for k, (z, shape, name, error) in numbered)
+        numbered_modes = enumerate(all_modes, start=1)
+        return tuple(MapMode(z, shape, name or str(k), self.dt, error) for k, (z, shape, name, error) in numbered_modes)
 
     @property
     def spectral_radius(self) -> float:
@@ -244,10 +244,10 @@ def stepped_equation(
     from scipy.sparse import csr_array, eye_array
     from scipy.sparse.linalg import spsolve
 
-    before = moved_before(k, m), moved_before(damping, m)
-    mass = eye_array(k.shape[0]) + dt * before[1] + factor * dt * dt * before[0]
-    solved: Any = (spsolve(mass.tocsc(), part.tocsc()) for part in (k, d + dt * before[0]))
-    return tuple(csr_array(part) for part in solved)  # type: ignore[return-value]
+    moved_matrices = moved_before(k, m), moved_before(damping, m)
+    mass = eye_array(k.shape[0]) + dt * moved_matrices[1] + factor * dt * dt * moved_matrices[0]
+    solved_matrices: Any = (spsolve(mass.tocsc(), component.tocsc()) for component in (k, d + dt * moved_matrices[0]))
+    return tuple(csr_array(component) for component in solved_matrices)  # type: ignore[return-value]
 
 
 def moved_before(matrix: Any, m: int) -> Any:
@@ -273,11 +273,11 @@ def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
     h, f = law.dt, float(law.position_factor or 0.0)
     stiffness, damping = flow.stiffness, flow.damping
     one, zero = np.eye(size), np.zeros((size, size))
-    move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
-    a, b = move + push @ flow.A[size:], push
+    motion_matrix, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
+    a, b = motion_matrix + push @ flow.A[size:], push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
-        shift = -np.hstack([moved_before(part, m).toarray() for part in (stiffness, damping)])
-        a, b = (np.linalg.solve(np.eye(2 * size) - push @ shift, part) for part in (a - push @ shift, push))
+        shift = -np.hstack([moved_before(component, m).toarray() for component in (stiffness, damping)])
+        a, b = (np.linalg.solve(np.eye(2 * size) - push @ shift, component) for component in (a - push @ shift, push))
     equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
     return MapLinearisation(*rest, a, b, *names, equation)
 
@@ -312,10 +312,10 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
         """Return the next state in the moving frame, after `steps` steps."""
         parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
-        values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
-        way, inner = steps * law.dt * p, {key: values[key] for key in memory}
-        after = law.step(t + steps * law.dt, values["q"] + way, values["p"], inner)
-        return packed({"q": after[0] - way - law.dt * p, "p": after[1]} | dict(after[3]))
+        values = {key: (component * sizes[key]).reshape(shape) for (key, shape), component in parts}
+        drift, inner = steps * law.dt * p, {key: values[key] for key in memory}
+        after = law.step(t + steps * law.dt, values["q"] + drift, values["p"], inner)
+        return packed({"q": after[0] - drift - law.dt * p, "p": after[1]} | dict(after[3]))
 
     start = packed({"q": q, "p": p} | memory)
     shift = np.abs(stepped(start) - start)
@@ -328,19 +328,19 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
         )
     matrix, kink = central_differences(stepped, start, _WIDTH, ORDER_2)
     wide = central_differences(stepped, start, 2.0 * _WIDTH, ORDER_2)[0]
-    later = central_differences(lambda x: stepped(x, 97), start, _WIDTH, ORDER_2)[0]
+    next_time = central_differences(lambda x: stepped(x, 97), start, _WIDTH, ORDER_2)[0]
     size, kink = float(np.linalg.norm(matrix)), max(kink, float(np.abs(wide - matrix).max()))
     if kink > _KINK * size:
         raise ArgumentError(
             f"{name} has a kink or a jump at this state (slopes to either side differ by {kink:.2g}): expected a "
             "state within its zones and bounds, not at the edge of one"
         )
-    if np.abs(later - matrix).max() > _KINK * size:
+    if np.abs(next_time - matrix).max() > _KINK * size:
         raise ArgumentError(f"{name} changes further along this motion: expected one that meets no obstacle")
     units = np.repeat(list(sizes.values()), np.diff(ends))
     off = (float(np.linalg.norm(wide - matrix)) + len(start) * 4.0 * EPS / _WIDTH) / size
-    beside = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]
-    names = (*labels("q", n, m), *labels("p", n, m), *beside)
+    side_state = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]
+    names = (*labels("q", n, m), *labels("p", n, m), *side_state)
     a = matrix * units[:, None] / units
     return MapLinearisation(
         law, q, p, t, float(shift[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off

@@ -19,8 +19,8 @@ def normalised(vector: Any, *, real: bool) -> Any:
     """Return a mode of unit length in standard phase: real part largest, first large component positive."""
     vector = vector / np.linalg.norm(vector)
     vector = vector * np.exp(-0.5j * np.angle(np.sum(vector**2)))
-    size = np.abs(vector.real)
-    if vector.real[np.argmax(size > (1.0 - _NAMED) * size.max())] < 0.0:
+    magnitude = np.abs(vector.real)
+    if vector.real[np.argmax(magnitude > (1.0 - _NAMED) * magnitude.max())] < 0.0:
         vector = -vector
     return vector.real / np.linalg.norm(vector.real) if real else vector
 
@@ -29,7 +29,7 @@ def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
     """Return infinitesimal rotations about the centre, by axis, not normalised."""
     x, m = q - q.mean(axis=0), q.shape[1]
     names = ("rotation",) if m == 2 else ("rotation z", "rotation y", "rotation x")  # as `generators` has the planes
-    turns = [(name, (x @ turn.T).ravel()) for name, turn in zip(names, generators(m), strict=False)]
+    turns = [(name, (x @ rotation.T).ravel()) for name, rotation in zip(names, generators(m), strict=False)]
     return turns[::-1]
 
 
@@ -48,24 +48,24 @@ def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArra
     for name, flow in pure_fields(q):
         if name == "breathing":  # of a flock without neighbours it costs nothing, but it is no rigid motion
             continue
-        rest = flow - basis @ (basis.T @ flow)
-        inside = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
-        if inside and np.linalg.norm(rest) > _NAMED:
-            names, basis = [*names, name], np.column_stack([basis, rest / np.linalg.norm(rest)])
+        remainder = flow - basis @ (basis.T @ flow)
+        is_in_kernel = np.linalg.norm(flow - kernel @ (kernel.T @ flow)) <= _NAMED
+        if is_in_kernel and np.linalg.norm(remainder) > _NAMED:
+            names, basis = [*names, name], np.column_stack([basis, remainder / np.linalg.norm(remainder)])
     rigid, unit = rigid_motions(q), translations(*q.shape)
     for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
         left = _complement(kernel, basis)
-        u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
-        mixed = _complement(left @ u[:, sizes > 1.0 - _NAMED], basis)
-        names, basis = [*names, *[kind] * mixed.shape[1]], np.column_stack([basis, mixed])
-    soft = _complement(kernel, basis)
-    names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
-    return names, np.column_stack([basis, soft])
+        u, singular_values, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
+        mixed_motions = _complement(left @ u[:, singular_values > 1.0 - _NAMED], basis)
+        names, basis = [*names, *[kind] * mixed_motions.shape[1]], np.column_stack([basis, mixed_motions])
+    soft_modes = _complement(kernel, basis)
+    names += [f"soft {k}" for k in range(1, soft_modes.shape[1] + 1)]
+    return names, np.column_stack([basis, soft_modes])
 
 
 def _complement(kernel: FloatArray, named: FloatArray) -> FloatArray:
     """Return an orthonormal basis of a kernel's complement to `named`."""
     if kernel.shape[1] == 0:
         return kernel
-    basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
-    return basis[:, sizes > 0.5]
+    basis, singular_values, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
+    return basis[:, singular_values > 0.5]

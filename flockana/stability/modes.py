@@ -167,12 +167,12 @@ class SecondOrder:
     @cached_property
     def invariant(self) -> Invariant:
         """Return the separated modes from the whole kernel of K (dense)."""
-        whole = self._zero_subspace(self.kernel.right, self.kernel.left)
+        zero_subspace = self._zero_subspace(self.kernel.right, self.kernel.left)
         if not self.net:
-            return whole
-        zeros = 2 * self.q.size - sum(int(np.count_nonzero(part.eigenvalues)) for part in self.parts)
+            return zero_subspace
+        zeros = 2 * self.q.size - sum(int(np.count_nonzero(component.eigenvalues)) for component in self.parts)
         values = np.zeros(zeros, dtype=np.complex128)
-        return whole._replace(eigenvalues=values, chains=zeros - len(whole.zero))
+        return zero_subspace._replace(eigenvalues=values, chains=zeros - len(zero_subspace.zero))
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
@@ -180,8 +180,8 @@ class SecondOrder:
         rigid = rigid_motions(self.q)
         if self.split.exact:
             unit = translations(*self.q.shape)
-            rest, sizes, _ = np.linalg.svd(rigid - unit @ (unit.T @ rigid), full_matrices=False)
-            rigid = rest[:, sizes > 0.5]
+            remaining_directions, sizes, _ = np.linalg.svd(rigid - unit @ (unit.T @ rigid), full_matrices=False)
+            rigid = remaining_directions[:, sizes > 0.5]
         kernels = []
         for matrix in (self.stiffness, self.stiffness.T):
             image, terms = matrix @ rigid, float((abs(matrix) @ np.abs(rigid)).max(initial=0.0))
@@ -231,11 +231,11 @@ class SecondOrder:
         if down.size:
             heard = self.stiffness.tocsr()[down] + s * self.damping.tocsr()[down]
             try:
-                follow = splu(csc_array(heard[:, down] + eye_array(down.size) * (s * s))).solve(-(heard @ shape))
+                solve_block = splu(csc_array(heard[:, down] + eye_array(down.size) * (s * s))).solve(-(heard @ shape))
             except RuntimeError:  # singular to the last bit
-                follow = np.full(down.size, np.inf)
-            if np.abs(follow).max() < _HUGE:
-                shape[down] = follow
+                solve_block = np.full(down.size, np.inf)
+            if np.abs(solve_block).max() < _HUGE:
+                shape[down] = solve_block
             else:
                 self._follow_one_by_one(shape, s, k)
         return shape
@@ -244,10 +244,10 @@ class SecondOrder:
         """Solve for the responses of all components from number `first` on, if they overflow together."""
         assert self.net is not None
         for rows in self.net.indices[first + 1 :]:
-            heard = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
-            push = heard @ shape
+            coupling_block = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
+            push = coupling_block @ shape
             if push.any():
-                own_matrix = heard[:, rows].toarray() + s * s * np.eye(rows.size)
+                own_matrix = coupling_block[:, rows].toarray() + s * s * np.eye(rows.size)
                 own_matrix += EPS * np.abs(own_matrix).max() * np.eye(rows.size)
                 shape[rows] = -np.linalg.solve(own_matrix, push)
                 shape /= np.abs(shape).max()
@@ -267,12 +267,12 @@ class SecondOrder:
         left[:size] /= pace
         apart, turn = left.shape[1], _orthogonal_factor(left)
         push = np.hstack([self.stiffness.toarray() / -pace, -self.damping.toarray()])
-        whole = np.vstack([np.eye(size, 2 * size, size) * pace, push])
+        full_matrix = np.vstack([np.eye(size, 2 * size, size) * pace, push])
         # A maps what is orthogonal to `left` into itself
-        values, vectors, errors = eigen_of_one(turn("R", "N", turn("L", "T", whole))[apart:, apart:])
-        parts = (np.vstack([np.zeros((apart, len(values))), part]) for part in (vectors.real, vectors.imag))
-        real, imag = (turn("L", "N", part)[:size] for part in parts)
-        return values, real + 1j * imag, errors
+        values, vectors, errors = eigen_of_one(turn("R", "N", turn("L", "T", full_matrix))[apart:, apart:])
+        parts = (np.vstack([np.zeros((apart, len(values))), component]) for component in (vectors.real, vectors.imag))
+        real, imaginary_part = (turn("L", "N", component)[:size] for component in parts)
+        return values, real + 1j * imaginary_part, errors
 
     @cached_property
     def fastest_rate(self) -> float:
@@ -321,13 +321,13 @@ class SecondOrder:
         on, off = (
             x / np.linalg.norm(x, axis=0) for x in (kernel @ (vt[flat] / columns).T, cokernel @ (u[:, flat] / rows))
         )
-        nothing = np.zeros_like
-        right = [np.vstack([kernel, nothing(kernel)]), np.vstack([self._against(on), on])]
+        zero_like = np.zeros_like
+        right = [np.vstack([kernel, zero_like(kernel)]), np.vstack([self._against(on), on])]
         b = self._against(off, transposed=True)
         neutral = list(right)
         left = [np.vstack([self.damping.T @ cokernel, cokernel]), np.vstack([off + self.damping.T @ b, b])]
-        still = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
-        drifting = [name for name, slow in zip(names, still.tolist(), strict=True) if slow]
+        is_undriven = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
+        drifting = [name for name, is_slow in zip(names, is_undriven.tolist(), strict=True) if is_slow]
         zero = [Mode(0j, vector.reshape(self.q.shape), name) for name, vector in zip(names, kernel.T, strict=True)]
         chains = int(flat.sum())
         values: list[complex] = [0j] * (k + chains)
@@ -336,21 +336,21 @@ class SecondOrder:
             unit = translations(*self.q.shape)
             errors = self.split.errors
             free = np.abs(self.split.stiffness) <= errors[0]
-            slow = np.where(free & (np.abs(self.split.damping) <= errors[1]), 0.0, self.split.damping)
+            is_slow = np.where(free & (np.abs(self.split.damping) <= errors[1]), 0.0, self.split.damping)
             fields = [column.reshape(self.q.shape) for column in unit.T]
             labels = [f"translation {axis}" for axis in "xyz"[: len(fields)]]
             for stiff, drag_, name, shape in zip(
-                np.where(free, 0.0, self.split.stiffness).tolist(), slow.tolist(), labels, fields, strict=True
+                np.where(free, 0.0, self.split.stiffness).tolist(), is_slow.tolist(), labels, fields, strict=True
             ):
                 roots = _roots(stiff, drag_, errors)
                 values += roots
                 squares = (root for root in roots if root != 0.0 and root.imag >= 0.0)
                 translational += [Mode(root, shape, name, root_error(root, stiff, drag_, errors)) for root in squares]
-            alone = free & (slow == 0.0)
+            alone = free & (is_slow == 0.0)
             chains += int(alone.sum())
-            drifting += [name for name, one in zip(labels, alone, strict=True) if one]
+            drifting += [name for name, item in zip(labels, alone, strict=True) if item]
             zero = [*(Mode(0j, fields[c], labels[c]) for c in np.flatnonzero(free)), *zero]
-            kernel, cokernel = (np.hstack([unit[:, free], part]) for part in (kernel, cokernel))
+            kernel, cokernel = (np.hstack([unit[:, free], component]) for component in (kernel, cokernel))
             blank = np.zeros_like(unit)
             both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
             right, left = [*right, *both], [*left, *both]
@@ -387,7 +387,7 @@ def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> lis
     """Return both roots of λ² + damping λ + stiffness; zero first, double roots exactly double."""
     if stiffness == 0.0:
         return [0j, complex(0.0 - damping)]
-    square = damping**2 - 4.0 * stiffness
-    spread = sqrt(0.0 if abs(square) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else square)
-    far = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
-    return [far, stiffness / far]
+    squared_value = damping**2 - 4.0 * stiffness
+    spread = sqrt(0.0 if abs(squared_value) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else squared_value)
+    far_root = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
+    return [far_root, stiffness / far_root]

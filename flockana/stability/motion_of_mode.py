@@ -66,16 +66,16 @@ def mode_motion(
     if amplitude is None:
         extent = float(np.ptp(q, axis=0).max())
         scales = linearisation.law.scales
-        alone = scales.length if scales else 1.0  # of one agent, which has no extent
-        amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or alone)
+        default_length = scales.length if scales else 1.0  # of one agent, which has no extent
+        amplitude = _SHARE * (extent / max(1.0, len(q) ** (1.0 / q.shape[1]) - 1.0) or default_length)
     value = mode.eigenvalue or 2j * pi
     swings = value.imag != 0.0
-    length = 2.0 * pi / abs(value.imag) if swings else _CREEP / abs(value)
+    duration = 2.0 * pi / abs(value.imag) if swings else _CREEP / abs(value)
     if swings and not damped:
         value = 1j * value.imag
-    t = np.linspace(0.0, periods * length, samples)
+    t = np.linspace(0.0, periods * duration, samples)
     scale = ensure_positive("amplitude", amplitude) / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
-    wave = scale * np.exp(value * t)[:, None, None] * mode.shape
-    moves = (np.ascontiguousarray(np.real(factor * wave)) for factor in (1.0, value, value**2))
-    dq, dp, du = moves
+    mode_wave = scale * np.exp(value * t)[:, None, None] * mode.shape
+    displacement_series = (np.ascontiguousarray(np.real(factor * mode_wave)) for factor in (1.0, value, value**2))
+    dq, dp, du = displacement_series
     return Trajectory(t, q + dq, dp, du, linearisation.law)

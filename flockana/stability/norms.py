@@ -77,10 +77,10 @@ def h2_norm(system: StateSpace) -> float:
     >>> h2_norm(control.ss([[0.6]], [[1]], [[1]], 0, True))
     1.25
     """
-    balanced = _balanced(system)
-    if not balanced.stable or (balanced.d.any() and not balanced.discrete):
+    balanced_system = _balanced(system)
+    if not balanced_system.stable or (balanced_system.d.any() and not balanced_system.discrete):
         return inf
-    power = float(np.trace(balanced.covariance()))
+    power = float(np.trace(balanced_system.covariance()))
     if power < 0.0:
         raise SolverError(
             f"the power of the outputs comes out as {power:.3g}: a mode decays too slowly for the rounding of A; "
@@ -116,9 +116,9 @@ class Balanced(NamedTuple):
         """Return the system over s = (z − 1)/(z + 1), with the same gains at s = j tan(ω dt/2)."""
         if not self.discrete:
             return self
-        one = np.eye(len(self.a))
-        inverse = np.linalg.inv(self.a + one)
-        a, b, c = inverse @ (self.a - one), sqrt(2.0) * inverse @ self.b, sqrt(2.0) * self.c @ inverse
+        identity = np.eye(len(self.a))
+        inverse = np.linalg.inv(self.a + identity)
+        a, b, c = inverse @ (self.a - identity), sqrt(2.0) * inverse @ self.b, sqrt(2.0) * self.c @ inverse
         return Balanced(a, b, c, self.d - self.c @ inverse @ self.b, discrete=False)
 
     def gain(self, omega: float) -> float:
@@ -131,10 +131,10 @@ class Balanced(NamedTuple):
     def crossings(self, level: float) -> FloatArray:
         """Return the frequencies >= 0 with gain `level`, above that of D, by eigenvalues of a Hamiltonian."""
         a, b, c, d = self.a, self.b, self.c, self.d
-        by_input = np.linalg.solve(level**2 * np.eye(d.shape[1]) - d.T @ d, np.hstack([d.T @ c, level * b.T]))
-        to_output = level * c.T @ np.linalg.solve(level**2 * np.eye(d.shape[0]) - d @ d.T, c)
-        inner = a + b @ by_input[:, : len(a)]
-        values = np.linalg.eigvals(np.block([[inner, b @ by_input[:, len(a) :]], [-to_output, -inner.T]]))
+        input_map = np.linalg.solve(level**2 * np.eye(d.shape[1]) - d.T @ d, np.hstack([d.T @ c, level * b.T]))
+        output_map = level * c.T @ np.linalg.solve(level**2 * np.eye(d.shape[0]) - d @ d.T, c)
+        inner = a + b @ input_map[:, : len(a)]
+        values = np.linalg.eigvals(np.block([[inner, b @ input_map[:, len(a) :]], [-output_map, -inner.T]]))
         return np.sort(values.imag[(np.abs(values.real) <= _IMAGINARY * np.abs(values).max()) & (values.imag >= 0)])
 
 
@@ -144,12 +144,12 @@ def _balanced(system: StateSpace) -> Balanced:
 
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     a, b, c, d = (np.asarray(x, dtype=np.float64) for x in (system.A, system.B, system.C, system.D))
-    discrete = bool(system.isdtime(strict=True))
+    is_discrete = bool(system.isdtime(strict=True))
     if not a.size or not c.size or not b.size:
         zero = np.zeros((0, 0))
-        return Balanced(zero, np.zeros((0, b.shape[1])), np.zeros((c.shape[0], 0)), d, discrete)
+        return Balanced(zero, np.zeros((0, b.shape[1])), np.zeros((c.shape[0], 0)), d, is_discrete)
     a, _, _, units, _ = dgebal(a, scale=1)
-    return Balanced(a, b / units[:, None], c * units, d, discrete)
+    return Balanced(a, b / units[:, None], c * units, d, is_discrete)
 
 
 @check_kinds
@@ -240,8 +240,8 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     tol, balanced = ensure_positive("tol", tol), _balanced(system)
     if not balanced.stable:
         return inf, float("nan")
-    here = balanced.continuous()
-    gain, omega = largest_gain(here, tol)
+    continuous_system = balanced.continuous()
+    gain, omega = largest_gain(continuous_system, tol)
     if gain == 0.0:
         return 0.0, 0.0
     return gain, 2.0 * atan(omega) / (1.0 if system.dt is True else float(system.dt)) if balanced.discrete else omega
@@ -251,15 +251,15 @@ def largest_gain(system: Balanced, tol: float, seen: Iterable[float] = ()) -> tu
     """Return (H∞ norm, frequency) of a stable continuous-time system; `seen` are initial frequencies."""
     poles = np.linalg.eigvals(system.a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
-    best = max((system.gain(w), w) for w in (*seen, *trials.tolist()[:: max(1, trials.size // 24)], inf))
-    if not len(poles) or best[0] == 0.0:
-        return best
+    best_gain = max((system.gain(w), w) for w in (*seen, *trials.tolist()[:: max(1, trials.size // 24)], inf))
+    if not len(poles) or best_gain[0] == 0.0:
+        return best_gain
     for _ in range(_ROUNDS):
-        level = (1.0 + tol) * best[0]
+        level = (1.0 + tol) * best_gain[0]
         crossing = system.crossings(level)
         middles = np.concatenate([crossing, 0.5 * (crossing[1:] + crossing[:-1])])
         peak = max(((system.gain(w), w) for w in middles.tolist()), default=(0.0, 0.0))
         if peak[0] <= level:
-            return max(best, peak)
-        best = peak
-    raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
+            return max(best_gain, peak)
+        best_gain = peak
+    raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best_gain[0]:.6g}")

@@ -47,18 +47,18 @@ class _Step(NamedTuple):
         """Return the spectral radius of E[A ⊗ A]."""
         from scipy.sparse.linalg import LinearOperator, eigs
 
-        mean, size = self.lost + (1.0 - loss) * sum(self.heard), len(self.lost)
+        mean, dimension = self.lost + (1.0 - loss) * sum(self.heard), len(self.lost)
         variance = loss * (1.0 - loss)
-        if size <= _DENSE:
-            whole = np.kron(mean, mean) + variance * sum(np.kron(x, x) for x in self.heard)
-            return float(np.abs(np.linalg.eigvals(whole)).max())
+        if dimension <= _DENSE:
+            full_matrix = np.kron(mean, mean) + variance * sum(np.kron(x, x) for x in self.heard)
+            return float(np.abs(np.linalg.eigvals(full_matrix)).max())
 
         def apply(flat: FloatArray) -> FloatArray:
-            x = flat.reshape(size, size)
-            return (mean @ x @ mean.T + variance * sum(part @ x @ part.T for part in self.heard)).ravel()
+            x = flat.reshape(dimension, dimension)
+            return (mean @ x @ mean.T + variance * sum(component @ x @ component.T for component in self.heard)).ravel()
 
-        operator = LinearOperator((size * size, size * size), matvec=apply, dtype=np.float64)
-        values = eigs(operator, k=1, v0=np.eye(size).ravel(), return_eigenvectors=False, tol=1e-10)
+        operator = LinearOperator((dimension * dimension, dimension * dimension), matvec=apply, dtype=np.float64)
+        values = eigs(operator, k=1, v0=np.eye(dimension).ravel(), return_eigenvectors=False, tol=1e-10)
         return float(np.abs(values).max())
 
 
@@ -111,15 +111,15 @@ def loss_margin(flock: LinearFlock, period: float, *, lost: str = "agent", on_lo
 def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
     """Return the random step of the flock off its neutral motions; held inputs are states."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
-    size, basis, pace = n * m, off.basis, off.pace
-    one = np.eye(size)
+    dimension, basis, pace = n * m, off.basis, off.pace
+    one = np.eye(dimension)
     free = basis.T @ np.block([[one, pace * period * one], [0.0 * one, one]]) @ basis
     push = basis.T @ np.vstack([0.5 * pace * period**2 * one, period * one])
     if lost == "link":
         channels = _links(flock)
         free = free + push @ (off.force - sum((force for _, force in channels), np.zeros_like(off.force)))
     else:
-        groups = np.arange(size).reshape(1 if lost == "all" else n, -1)
+        groups = np.arange(dimension).reshape(1 if lost == "all" else n, -1)
         channels = [(rows, one[:, rows] @ off.force[rows]) for rows in groups]
     states = len(free) + (sum(rows.size for rows, _ in channels) if on_loss == "hold" else 0)
     if states > MOST:
@@ -128,24 +128,24 @@ def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
         return _Step(free, tuple(push @ force for _, force in channels))
     acts = np.hstack([push[:, rows] for rows, _ in channels] or [np.zeros((len(free), 0))])
     held_rows = np.eye(acts.shape[1])
-    kept_rows, new, first = np.block([[free, acts], [np.zeros((len(held_rows), len(free))), held_rows]]), [], 0
+    kept_rows, new, first_rows = np.block([[free, acts], [np.zeros((len(held_rows), len(free))), held_rows]]), [], 0
     for rows, force in channels:
-        own_held = held_rows[:, first : first + rows.size]
+        own_held = held_rows[:, first_rows : first_rows + rows.size]
         new.append(np.vstack([push[:, rows], own_held]) @ np.hstack([force[rows], -own_held.T]))
-        first += rows.size
+        first_rows += rows.size
     return _Step(kept_rows, tuple(new))
 
 
 def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:
     """Return for each directed link the hearing agent's rows, and its coupling off neutral motions."""
-    off, (n, m) = flock.second_order.quotient, flock.q.shape
+    component, (n, m) = flock.second_order.quotient, flock.q.shape
     k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []
-    heard = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)
-    for i, j in np.argwhere(heard).tolist():
+    is_linked = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)
+    for i, j in np.argwhere(is_linked).tolist():
         parts = (late_part(matrix, m, "pairs", [(i, j)]) for matrix in (k, d))
-        whole = -np.hstack(list(parts)) / np.repeat([off.pace, 1.0], n * m)
-        force = whole @ off.basis
-        if np.abs(whole - force @ off.basis.T).max() > _UNHELD * np.abs(whole).max():
+        full_matrix = -np.hstack(list(parts)) / np.repeat([component.pace, 1.0], n * m)
+        force = full_matrix @ component.basis
+        if np.abs(full_matrix - force @ component.basis.T).max() > _UNHELD * np.abs(full_matrix).max():
             raise ArgumentError(
                 f"the link from agent {j} to {i} carries a force at this equilibrium: without it the flock moves away, "
                 'which no linear step tells; expected links at rest, or lost="agent" or "all"'

@@ -70,35 +70,35 @@ class RobustnessMargins(ShortRepr):
     @property
     def gain(self) -> tuple[float, float]:
         """Narrowest gain margin of any one input: (least, greatest) factor, within `searched`."""
-        return max(one.gain[0] for one in self.loops), min(one.gain[1] for one in self.loops)
+        return max(loop.gain[0] for loop in self.loops), min(loop.gain[1] for loop in self.loops)
 
     @property
     def phase(self) -> float:
         """Least phase margin, in degrees."""
-        return min(one.phase for one in self.loops)
+        return min(loop.phase for loop in self.loops)
 
     @property
     def disk(self) -> float:
         """Least disk margin."""
-        return min(one.disk for one in self.loops)
+        return min(loop.disk for loop in self.loops)
 
     @property
     def sensitivity(self) -> float:
         """Largest sensitivity peak."""
-        return max(one.sensitivity for one in self.loops)
+        return max(loop.sensitivity for loop in self.loops)
 
     @property
     def table(self) -> dict[str, dict[str, float]]:
         """Table of all margins by loop and kind, for `flockana.plots.bars`."""
         return {
-            f"agent {one.agent}, {'xyz'[one.axis]}": {
-                "least gain": one.gain[0],
-                "greatest gain": one.gain[1],
-                "phase (degrees)": one.phase,
-                "disk margin": one.disk,
-                "sensitivity peak": one.sensitivity,
+            f"agent {loop.agent}, {'xyz'[loop.axis]}": {
+                "least gain": loop.gain[0],
+                "greatest gain": loop.gain[1],
+                "phase (degrees)": loop.phase,
+                "disk margin": loop.disk,
+                "sensitivity peak": loop.sensitivity,
             }
-            for one in self.loops
+            for loop in self.loops
         }
 
     @property
@@ -137,10 +137,10 @@ def open_loop(flock: LinearFlock, agent: int, axis: int = 0) -> StateSpace:
     if not 0 <= agent < n or not 0 <= axis < m:
         raise ArgumentError(f"agent = {agent}, axis = {axis}: expected one of {n} agents and {m} axes")
     row = n * m + agent * m + axis
-    opened, unit = flock.A.copy(), np.zeros((2 * n * m, 1))
-    feedback = opened[row : row + 1].copy()
-    opened[row], unit[row] = 0.0, 1.0
-    return control.ss(opened, unit, -feedback, 0.0)
+    opened_matrix, unit = flock.A.copy(), np.zeros((2 * n * m, 1))
+    feedback = opened_matrix[row : row + 1].copy()
+    opened_matrix[row], unit[row] = 0.0, 1.0
+    return control.ss(opened_matrix, unit, -feedback, 0.0)
 
 
 def loop_margins(flock: LinearFlock, limit: float = LIMIT) -> RobustnessMargins:
@@ -150,9 +150,9 @@ def loop_margins(flock: LinearFlock, limit: float = LIMIT) -> RobustnessMargins:
         raise ArgumentError(f"the flock is not stable: decay rate {flock.decay_rate:.3g}, expected one above 0")
     problem = flock.second_order
     proved, m, peaks = np.zeros(flock.q.size, dtype=bool), flock.q.shape[1], _peaks(problem)
-    for k, part in enumerate(problem.parts or (problem,)):  # a loop closes within its strongly connected component
-        proved[problem.net.indices[k] if problem.net else slice(None)] = _gains_are_masses(part)
-    widest = [(0.0, inf) if each else SEARCHED for each in proved.tolist()]
+    for k, component in enumerate(problem.parts or (problem,)):  # a loop closes within its strongly connected component
+        proved[problem.net.indices[k] if problem.net else slice(None)] = _gains_are_masses(component)
+    widest = [(0.0, inf) if item else SEARCHED for item in proved.tolist()]
     loops = tuple(_margins(problem, k, m, widest[k], peaks[:, k]) for k in range(flock.q.size))
     return RobustnessMargins(loops, max(widest))
 
@@ -162,26 +162,26 @@ def _peaks(problem: SecondOrder) -> FloatArray:
     # Of a peak little above 1 = S(∞) the norm's matrix is nearly singular: it is left to confirm what is found here.
     from scipy.optimize import minimize_scalar
 
-    flock, size = problem.quotient, problem.q.size
+    flock, dimension = problem.quotient, problem.q.size
     rates = np.abs(problem.eigenvalues[problem.eigenvalues != 0.0])
     if not rates.size:
-        return np.zeros((2, size))
+        return np.zeros((2, dimension))
     turns = np.abs(problem.eigenvalues.imag)
     spread = np.geomspace(rates.min() / _BESIDE, rates.max() * _BESIDE, _FREQUENCIES)
     grid = np.unique(np.concatenate([spread, rates, turns[turns > 0.0]]))
-    one, inputs = np.eye(len(flock.A)), flock.basis[size:].T
-    answers = (np.linalg.solve(1j * w * one - flock.A, inputs) for w in grid.tolist())
-    s = 1.0 + np.array([np.einsum("ij,ji->i", flock.force, x) for x in answers])  # (grid, n m)
-    peaks = np.empty((2, size))
+    identity, inputs = np.eye(len(flock.A)), flock.basis[dimension:].T
+    response_matrices = (np.linalg.solve(1j * w * identity - flock.A, inputs) for w in grid.tolist())
+    s = 1.0 + np.array([np.einsum("ij,ji->i", flock.force, x) for x in response_matrices])  # (grid, n m)
+    peaks = np.empty((2, dimension))
     for row, shift in enumerate((0.0, 0.5)):
         for k, top in enumerate(np.abs(s - shift).argmax(axis=0).tolist()):
-            ends = np.log(grid[[max(top - 1, 0), min(top + 1, len(grid) - 1)]])
+            log_bracket = np.log(grid[[max(top - 1, 0), min(top + 1, len(grid) - 1)]])
             b, f = inputs[:, k], flock.force[k]
 
             def lack(x: float, b: FloatArray = b, f: FloatArray = f, shift: float = shift) -> float:
-                return -abs(1.0 - shift + complex(f @ np.linalg.solve(1j * np.exp(x) * one - flock.A, b)))
+                return -abs(1.0 - shift + complex(f @ np.linalg.solve(1j * np.exp(x) * identity - flock.A, b)))
 
-            peaks[row, k] = np.exp(minimize_scalar(lack, bounds=tuple(ends), method="bounded").x)
+            peaks[row, k] = np.exp(minimize_scalar(lack, bounds=tuple(log_bracket), method="bounded").x)
     return peaks
 
 
@@ -190,17 +190,17 @@ def _gains_are_masses(problem: SecondOrder) -> bool:
     if not problem.symmetric:
         return False
     k, d = (0.5 * (x + x.T) for x in (problem.stiffness.toarray(), problem.damping.toarray()))
-    stiff = np.linalg.eigvalsh(k)
+    stiffness_values = np.linalg.eigvalsh(k)
     drag, axes = np.linalg.eigh(d)
     undamped = axes[:, drag <= problem.zero * float(np.abs(drag).max(initial=0.0))]
     rest = np.linalg.norm(k @ undamped, axis=0) if undamped.size else np.zeros(1)
-    return bool(stiff[0] >= -problem.zero * problem.scale and rest.max() <= problem.zero * problem.scale)
+    return bool(stiffness_values[0] >= -problem.zero * problem.scale and rest.max() <= problem.zero * problem.scale)
 
 
 def _margins(problem: SecondOrder, index: int, m: int, widest: tuple[float, float], peaks: FloatArray) -> LoopMargins:
     """Return the margins of the loop broken at one coordinate's input."""
-    flock, size = problem.quotient, problem.q.size
-    a, b, f = flock.A, flock.basis[size + index], flock.force[index]
+    flock, dimension = problem.quotient, problem.q.size
+    a, b, f = flock.A, flock.basis[dimension + index], flock.force[index]
     loop = Balanced(a, b[:, None], f[None, :], np.ones((1, 1)), discrete=False)
     peak = largest_gain(loop, _TOLERANCE, peaks[:1].tolist())[0]
     disk = 1.0 / largest_gain(loop._replace(d=np.full((1, 1), 0.5)), _TOLERANCE, peaks[1:].tolist())[0]
@@ -221,29 +221,29 @@ def _where_real(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
     """Return the values S(jω) with Im S = 0, from zeros s² of 2 s f (s² − A²)⁻¹ b, and at s = 0."""
     from scipy.linalg import eigvals
 
-    at_rest = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
-    square = a @ a
-    whole = np.block([[square, b[:, None]], [f[None, :], np.zeros((1, 1))]])
-    mass = np.eye(len(whole))
+    rest_gain = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
+    squared_value = a @ a
+    full_matrix = np.block([[squared_value, b[:, None]], [f[None, :], np.zeros((1, 1))]])
+    mass = np.eye(len(full_matrix))
     mass[-1, -1] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        zeros = eigvals(whole, mass)
+        zeros = eigvals(full_matrix, mass)
     zeros = zeros[np.isfinite(zeros)]
-    return [at_rest, *_on_the_axis(a, b, f, zeros, lambda s: s.imag, lambda slope: slope.imag)]
+    return [rest_gain, *_on_the_axis(a, b, f, zeros, lambda s: s.imag, lambda slope: slope.imag)]
 
 
 def _on_the_axis(
     a: FloatArray, b: FloatArray, f: FloatArray, squares: Any, value: Callable[[complex], float], slope: Any
 ) -> list[complex]:
     """Return the values S(jω) at the roots ω > 0 of a real function of S, by Newton's method."""
-    near = (squares.real < 0.0) & (np.abs(squares.imag) <= _NEAR_AXIS * np.abs(squares))
-    one, frequencies = np.eye(len(a)), []
-    for omega in np.sqrt(-squares.real[near]).tolist():
+    near_axis = (squares.real < 0.0) & (np.abs(squares.imag) <= _NEAR_AXIS * np.abs(squares))
+    identity, frequencies = np.eye(len(a)), []
+    for omega in np.sqrt(-squares.real[near_axis]).tolist():
         for _ in range(_STEPS):
-            shifted = 1j * omega * one - a
-            answer = np.linalg.solve(shifted, b)
-            s, turn = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted, answer))
-            step = value(s) / slope(turn) if slope(turn) else inf
+            shifted_matrix = 1j * omega * identity - a
+            answer = np.linalg.solve(shifted_matrix, b)
+            s, phase_slope = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted_matrix, answer))
+            step = value(s) / slope(phase_slope) if slope(phase_slope) else inf
             if abs(value(s)) <= _TOLERANCE * min(1.0, abs(s)) and abs(step) <= _TOLERANCE * omega:
                 frequencies.append(s)
                 break

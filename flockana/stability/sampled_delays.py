@@ -34,8 +34,8 @@ def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatAr
     growth = first_growth(radius, trials)
     if growth in (0.0, inf):
         return growth
-    again = first_growth(radius, np.concatenate([trials[:1], np.sort(whole[whole < growth])[-_AGAIN:]]))
-    return min(growth, again)
+    second_growth = first_growth(radius, np.concatenate([trials[:1], np.sort(whole[whole < growth])[-_AGAIN:]]))
+    return min(growth, second_growth)
 
 
 def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = LIMIT) -> DelayMargin:
@@ -67,16 +67,16 @@ def sampled_delay_margin(system: DelaySystem, period: float, *, limit: float = L
     >>> 0.5 < margin.delay < 1.5, margin.certified
     (True, False)
     """
-    period, size = ensure_positive("period", period), len(system.prompt[0])
-    ensure_maps(_DELAY, size, np.zeros(_TRIALS + _AGAIN), limit)  # even if none holds much of the past
-    ideal = delay_margin(system, limit=limit).delay
-    if ideal == 0.0 or abs(_multiplier(system, 0.0, period)) >= 1.0:
+    period, dimension = ensure_positive("period", period), len(system.prompt[0])
+    ensure_maps(_DELAY, dimension, np.zeros(_TRIALS + _AGAIN), limit)  # even if none holds much of the past
+    ideal_delay = delay_margin(system, limit=limit).delay
+    if ideal_delay == 0.0 or abs(_multiplier(system, 0.0, period)) >= 1.0:
         return DelayMargin(0.0, nan, 0.0)
-    far = _FAR * (period + (ideal if ideal < inf else period))
+    far = _FAR * (period + (ideal_delay if ideal_delay < inf else period))
     trials: FloatArray = np.concatenate([[0.0], np.linspace(far / _TRIALS, far, _TRIALS)])
     whole = 0.5 * period * np.arange(1.0, 2.0 * far / period)
     early = trials[trials <= far / _FAR] / period
-    ensure_maps(_DELAY, size, np.append(early, np.full(min(_AGAIN, whole.size) + _HALVINGS, early[-1])), limit)
+    ensure_maps(_DELAY, dimension, np.append(early, np.full(min(_AGAIN, whole.size) + _HALVINGS, early[-1])), limit)
     growth = _search(lambda delay: abs(_multiplier(system, delay, period)), trials, whole)
     if growth == inf:
         return DelayMargin(inf, nan, 0.0)
@@ -108,24 +108,24 @@ def delayed_sampling_margin(system: DelaySystem, delay: float, *, limit: float =
     >>> 0.0 < delayed_sampling_margin(swing, 0.1).period < 0.5
     True
     """
-    delay, size = ensure_positive("delay", delay), len(system.prompt[0])
-    ensure_maps(_PERIOD, size, np.zeros(_TRIALS + _AGAIN), limit)
-    ideal = delay_margin(system, limit=limit).delay
-    if delay >= ideal:
+    delay, dimension = ensure_positive("delay", delay), len(system.prompt[0])
+    ensure_maps(_PERIOD, dimension, np.zeros(_TRIALS + _AGAIN), limit)
+    ideal_delay = delay_margin(system, limit=limit).delay
+    if delay >= ideal_delay:
         return SamplingMargin("hold, delayed", 0.0, 0.0, ())
-    quickest = 2.0 * pi / system.highest if system.highest > 0.0 else 1.0
+    quickest_period = 2.0 * pi / system.highest if system.highest > 0.0 else 1.0
     radius: Callable[[float], float] = lambda period: abs(_multiplier(system, delay, period))  # noqa: E731
-    shortest = delay / max(MOST // size - 6, 1)
-    start = max(_BRIEF * quickest, delay / 50.0, shortest)
+    shortest = delay / max(MOST // dimension - 6, 1)
+    start = max(_BRIEF * quickest_period, delay / 50.0, shortest)
     while radius(start) >= 1.0:  # without a hold it is stable: shorter ones are, at last
         start *= 0.5
         if start < shortest:
             return SamplingMargin("hold, delayed", nan, 0.0, ())
-    brief = delay / max(_LARGE // size - 6, 1)
-    whole = 2.0 * delay / np.arange(1.0, 2.0 * delay / max(start, brief))
-    trials: FloatArray = np.geomspace(start, max(50.0 * quickest, 2.0 * start), _TRIALS)
-    ensure_maps(_PERIOD, size, delay / trials, limit)
-    growth = _search(radius, trials, whole)
+    shortest_period = delay / max(_LARGE // dimension - 6, 1)
+    trial_delays = 2.0 * delay / np.arange(1.0, 2.0 * delay / max(start, shortest_period))
+    trials: FloatArray = np.geomspace(start, max(50.0 * quickest_period, 2.0 * start), _TRIALS)
+    ensure_maps(_PERIOD, dimension, delay / trials, limit)
+    growth = _search(radius, trials, trial_delays)
     if growth in (0.0, inf):
         return SamplingMargin("hold, delayed", growth, 0.0, ())
     z = _multiplier(system, delay, growth)

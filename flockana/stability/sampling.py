@@ -129,24 +129,24 @@ def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, compl
     1.0
     """
     k, d = ensure_nonnegative("k", k), ensure_nonnegative("d", d)
-    flip = _flip(k, d, factor)
+    flip_period = _flip(k, d, factor)
     if k == 0.0:
-        return (flip, -1.0 + 0.0j) if d > 0.0 else (0.0, 1.0 + 0.0j)
+        return (flip_period, -1.0 + 0.0j) if d > 0.0 else (0.0, 1.0 + 0.0j)
     if factor >= 1.0:
-        return (flip, -1.0 + 0.0j) if d > 0.0 or factor > 1.0 else (0.0, 1.0 + 0.0j)
+        return (flip_period, -1.0 + 0.0j) if d > 0.0 or factor > 1.0 else (0.0, 1.0 + 0.0j)
     turn = d / ((1.0 - factor) * k)
-    if flip <= turn:
-        return flip, -1.0 + 0.0j
-    half = 1.0 - 0.5 * turn * (d + factor * turn * k)  # cos of the angle: half the trace, of determinant 1
-    return turn, complex(half, sqrt(max(0.0, 1.0 - half * half)))
+    if flip_period <= turn:
+        return flip_period, -1.0 + 0.0j
+    half_trace = 1.0 - 0.5 * turn * (d + factor * turn * k)  # cos of the angle: half the trace, of determinant 1
+    return turn, complex(half_trace, sqrt(max(0.0, 1.0 - half_trace * half_trace)))
 
 
 def _flip(k: float, d: float, factor: float) -> float:
     """Return the least h > 0 with 4 − 2hd + (1 − 2f)h²k = 0, infinite without one."""
-    a, square = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
-    if square < 0.0 or d + sqrt(square) <= 0.0:
+    a, squared_value = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
+    if squared_value < 0.0 or d + sqrt(squared_value) <= 0.0:
         return inf
-    return 4.0 / (d + sqrt(square)) if a != 0.0 or d > 0.0 else inf
+    return 4.0 / (d + sqrt(squared_value)) if a != 0.0 or d > 0.0 else inf
 
 
 def margin_of_flow(
@@ -154,23 +154,23 @@ def margin_of_flow(
 ) -> SamplingMargin:
     """Return the sampling margin of a linearised flock with a hold, or of a map with a `factor`."""
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
-    problem, sure = flow.second_order, flow.second_order.symmetric and not in_place
-    size, work = flow.q.size, f"the modes of {len(flow.q)} agents"
-    ensure_affordable(work, size, _SECONDS * (2 * size) ** 3, 1e-4 * size**2, limit)
-    if not (sure and factor >= 1.0) and factor > 0.0:
-        states = [2 * part.q.size for part in problem.parts or (problem,)]
+    problem, is_certain = flow.second_order, flow.second_order.symmetric and not in_place
+    dimension, task_text = flow.q.size, f"the modes of {len(flow.q)} agents"
+    ensure_affordable(task_text, dimension, _SECONDS * (2 * dimension) ** 3, 1e-4 * dimension**2, limit)
+    if not (is_certain and factor >= 1.0) and factor > 0.0:
+        states = [2 * component.q.size for component in problem.parts or (problem,)]
         seconds = sum(_SECONDS_OF_INTERVALS * x**3 for x in states if x > MOST)
-        work = f"the sampling margin of {len(flow.q)} agents, {max(states)} states in one component,"
-        ensure_affordable(work, size, seconds, 1e-3 * max(states) ** 2, limit)
+        task_text = f"the sampling margin of {len(flow.q)} agents, {max(states)} states in one component,"
+        ensure_affordable(task_text, dimension, seconds, 1e-3 * max(states) ** 2, limit)
     k, d = flow.stiffness.toarray(), flow.damping.toarray()
     symmetric, shape = flow.second_order.symmetric, flow.q.shape
     if factor == 0.0 and not in_place:
-        explicit = _explicit(flow)
+        is_explicit = _explicit(flow)
     elif symmetric and not in_place:
-        explicit = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
+        is_explicit = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
     else:
-        explicit = _first_to_grow(flow, factor, in_place=in_place)
-    shortest, modes = explicit
+        is_explicit = _first_to_grow(flow, factor, in_place=in_place)
+    shortest, modes = is_explicit
     modes = sorted(modes, key=lambda mode: -inf if isnan(mode.period) else mode.period)
     period = modes[0].period if modes else inf
     modes = [mode for mode in modes if not isnan(mode.period)]
@@ -195,59 +195,59 @@ def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -
         return inf, _modal(k, d, factor)
     if not flow.stable and factor <= 1.0:
         return 0.0, [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
-    flips = _flips(k, d, factor)
-    flip = min((mode.period for mode in flips), default=inf)
+    flip_modes = _flips(k, d, factor)
+    flip_period = min((mode.period for mode in flip_modes), default=inf)
     if factor >= 1.0:
-        return inf, flips
-    turn = _least_damped(k, d) / (1.0 - factor)
-    if flip <= turn:
-        return inf, flips
-    shortest, first = _first_to_grow(flow, factor, stable_below=turn)
-    return shortest, [*first, *flips]
+        return inf, flip_modes
+    damping_limit = _least_damped(k, d) / (1.0 - factor)
+    if flip_period <= damping_limit:
+        return inf, flip_modes
+    shortest, first_index = _first_to_grow(flow, factor, stable_below=damping_limit)
+    return shortest, [*first_index, *flip_modes]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
     """Return the margin of each mode in closed form, for K and D with common modes."""
-    sizes = [float(np.abs(x).max()) or 1.0 for x in (k, d)]
-    shapes = np.linalg.eigh(k / sizes[0] + sqrt(2.0) * d / sizes[1])[1]
+    magnitudes = [float(np.abs(x).max()) or 1.0 for x in (k, d)]
+    shapes = np.linalg.eigh(k / magnitudes[0] + sqrt(2.0) * d / magnitudes[1])[1]
     rows = []
     for v in shapes.T:
-        pairs = zip((v @ k @ v, v @ d @ v), sizes, strict=True)
-        stiff, drag = (0.0 if abs(x) <= _UNDAMPED * size else x for x, size in pairs)
-        if stiff < 0.0 or drag < 0.0:
+        pairs = zip((v @ k @ v, v @ d @ v), magnitudes, strict=True)
+        mode_stiffness, drag = (0.0 if abs(x) <= _UNDAMPED * magnitude else x for x, magnitude in pairs)
+        if mode_stiffness < 0.0 or drag < 0.0:
             rows.append(ModePeriod(0.0, 1.0 + 0.0j, v))
-        elif stiff > 0.0 or drag > 0.0:
-            rows.append(ModePeriod(*scalar_period(stiff, drag, factor), v))
+        elif mode_stiffness > 0.0 or drag > 0.0:
+            rows.append(ModePeriod(*scalar_period(mode_stiffness, drag, factor), v))
     return rows
 
 
 def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
     """Return the periods at which 4 − 2hD + (1 − 2f)h²K is singular, by eigenvalues 1/h."""
-    size, a = len(k), (1.0 - 2.0 * factor)
+    dimension, a = len(k), (1.0 - 2.0 * factor)
     if a == 0.0:
         values, vectors = np.linalg.eigh(0.5 * d)
     else:
-        companion = np.block([[np.zeros_like(k), np.eye(size)], [-0.25 * a * k, 0.5 * d]])
+        companion = np.block([[np.zeros_like(k), np.eye(dimension)], [-0.25 * a * k, 0.5 * d]])
         values, vectors = np.linalg.eig(companion)
         real = np.abs(values.imag) <= sqrt(EPS) * np.abs(values)
-        values, vectors = values.real[real], vectors.real[:size, real]
+        values, vectors = values.real[real], vectors.real[:dimension, real]
     is_damped = values > _UNDAMPED * float(np.abs(values).max(initial=0.0))
-    flips = zip(1.0 / values[is_damped], (vectors / np.linalg.norm(vectors, axis=0)).T[is_damped], strict=True)
-    return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in flips]
+    flip_modes = zip(1.0 / values[is_damped], (vectors / np.linalg.norm(vectors, axis=0)).T[is_damped], strict=True)
+    return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in flip_modes]
 
 
 def _least_damped(k: FloatArray, d: FloatArray) -> float:
     """Return the largest h with D − hK positive definite off the kernel of K; 0 if D is not."""
     values, vectors = np.linalg.eigh(k)
     held_vectors = vectors[:, values > 1e-8 * float(np.abs(values).max())]
-    free = vectors[:, values <= 1e-8 * float(np.abs(values).max())]
+    null_vectors = vectors[:, values <= 1e-8 * float(np.abs(values).max())]
     inner = d
-    if free.shape[1]:  # what K does not hold may give way: the Schur complement
-        drag = free.T @ d @ free
-        inner = d - d @ free @ np.linalg.pinv(drag, rcond=1e-10, hermitian=True) @ free.T @ d
-    stiff = np.linalg.eigvalsh(k)[-held_vectors.shape[1] :] if held_vectors.size else np.zeros(0)
-    half = held_vectors / np.sqrt(stiff) if held_vectors.size else held_vectors
-    return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held_vectors.size else inf
+    if null_vectors.shape[1]:  # what K does not hold may give way: the Schur complement
+        drag = null_vectors.T @ d @ null_vectors
+        inner = d - d @ null_vectors @ np.linalg.pinv(drag, rcond=1e-10, hermitian=True) @ null_vectors.T @ d
+    stiffness_values = np.linalg.eigvalsh(k)[-held_vectors.shape[1] :] if held_vectors.size else np.zeros(0)
+    scaled_vectors = held_vectors / np.sqrt(stiffness_values) if held_vectors.size else held_vectors
+    return float(np.linalg.eigvalsh(scaled_vectors.T @ inner @ scaled_vectors)[0]) if held_vectors.size else inf
 
 
 def _first_to_grow(
@@ -287,8 +287,8 @@ def _first_to_grow(
 
 def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:
     """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: immediate entries."""
-    off, size = problem.quotient, problem.q.size
-    low, zero = off.basis[size:], np.zeros((len(off.A),) * 2)
+    component, dimension = problem.quotient, problem.q.size
+    low, zero = component.basis[dimension:], np.zeros((len(component.A),) * 2)
     stiffness = problem.stiffness.toarray()
     e1, e2 = low.T @ before[1] @ low, factor * low.T @ before[0] @ low
-    return Steps(e1, e2, e1 + off.A, e2 - low.T @ (factor * stiffness + before[0]) @ low + zero)
+    return Steps(e1, e2, e1 + component.A, e2 - low.T @ (factor * stiffness + before[0]) @ low + zero)

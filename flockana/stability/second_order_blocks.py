@@ -51,8 +51,8 @@ class Blocks(ShortRepr):
 
     def matrix(self) -> FloatArray:
         """State matrix A of (x, x')' = A (x, x'), shape (2 n m, 2 n m)."""
-        one = np.eye(len(self.stiffness))
-        return reduced(self.stiffness, self.damping, one, one)
+        identity = np.eye(len(self.stiffness))
+        return reduced(self.stiffness, self.damping, identity, identity)
 
     def quotient(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """State and input matrices without free rigid motions, and the bases N of positions, V of velocities.
@@ -91,8 +91,8 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray, *, zero: f
     (2, 0)
     """
     rigid = rigid_motions(ensure_points("q", q))
-    neutral = _kernel(stiffness, rigid, zero)
-    return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral, zero))
+    neutral_basis = _kernel(stiffness, rigid, zero)
+    return Blocks(stiffness, damping, rigid, neutral_basis, _kernel(damping, neutral_basis, zero))
 
 
 def is_pairs_and_pull(law: Any) -> bool:
@@ -113,5 +113,5 @@ def _kernel(matrix: FloatArray, basis: FloatArray, zero: float) -> FloatArray:
     """Return an orthonormal basis of the kernel of a matrix within the span of `basis`."""
     if basis.shape[1] == 0:
         return basis
-    _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
-    return basis @ rows[sizes <= zero * float((np.abs(matrix) @ np.abs(basis)).max())].T
+    _, singular_values, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
+    return basis @ rows[singular_values <= zero * float((np.abs(matrix) @ np.abs(basis)).max())].T

@@ -72,15 +72,15 @@ def whole_system(flock: Any) -> control.StateSpace:
     ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
     target, target_names = _target_inputs(flock)
-    lengths, length_names = _lengths(flock)
-    drive = np.hstack([np.eye(n * m), target])
-    readings = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, lengths])
+    link_lengths, length_names = _lengths(flock)
+    drive_matrix = np.hstack([np.eye(n * m), target])
+    readings = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, link_lengths])
     names = (
         labels("q", n, m) + labels("p", n, m),
         labels("f", n, m) + target_names,
         axes_of("qc", m) + labels("x", n, m) + length_names,
     )
-    return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive, readings, names, "flock")
+    return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive_matrix, readings, names, "flock")
 
 
 def structural_system(flock: Any) -> control.StateSpace:
@@ -92,12 +92,12 @@ def structural_system(flock: Any) -> control.StateSpace:
     ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
     kept_size = (n - 1) * m
-    extend = np.vstack([np.eye(kept_size), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
-    off = (np.eye(n * m) - unit @ unit.T)[:kept_size]
-    lengths, length_names = _lengths(flock)
-    blocks = ((flock.stiffness[:kept_size] @ extend), (flock.damping[:kept_size] @ extend))
+    lift_matrix = np.vstack([np.eye(kept_size), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
+    shape_projection = (np.eye(n * m) - unit @ unit.T)[:kept_size]
+    link_lengths, length_names = _lengths(flock)
+    blocks = ((flock.stiffness[:kept_size] @ lift_matrix), (flock.damping[:kept_size] @ lift_matrix))
     names = (labels("x", n - 1, m) + labels("v", n - 1, m), labels("f", n, m), labels("x", n, m) + length_names)
-    return _system(blocks, off, np.vstack([extend, lengths @ extend]), names, "shape")
+    return _system(blocks, shape_projection, np.vstack([lift_matrix, link_lengths @ lift_matrix]), names, "shape")
 
 
 def translational_system(flock: Any) -> control.StateSpace:
@@ -106,7 +106,7 @@ def translational_system(flock: Any) -> control.StateSpace:
     n, m = flock.q.shape
     mean = translations(n, m).T / np.sqrt(n)
     target, target_names = _target_inputs(flock)
-    alone = flock.second_order.split
+    split_system = flock.second_order.split
     names = (axes_of("qc", m) + axes_of("pc", m), labels("f", n, m) + target_names, axes_of("qc", m))
-    blocks = (np.diag(alone.stiffness), np.diag(alone.damping))
+    blocks = (np.diag(split_system.stiffness), np.diag(split_system.damping))
     return _system(blocks, mean @ np.hstack([np.eye(n * m), target]), np.eye(m), names, "centre")

@@ -71,35 +71,35 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
         raise ArgumentError(f"linearisation = {linearisation!r}: expected what linearise(law, equilibrium) gives")
     count = ensure_count("count", count)
     problem = linearisation.second_order
-    if problem.net and max(part.q.size for part in problem.parts) <= _DENSE:
+    if problem.net and max(component.q.size for component in problem.parts) <= _DENSE:
         return SlowModes(_of_components(problem, count), inf)
-    free = 2 * problem.q.size - problem.rigid_invariant.left.shape[1]
-    if 2 * count >= free - 2:
+    free_count = 2 * problem.q.size - problem.rigid_invariant.left.shape[1]
+    if 2 * count >= free_count - 2:
         raise ArgumentError(
-            f"count = {count}: expected fewer modes, 2 count < {free - 2} eigenvalues off the zero modes; "
+            f"count = {count}: expected fewer modes, 2 count < {free_count - 2} eigenvalues off the zero modes; "
             "a flock this small has its whole spectrum in `modes`"
         )
-    count_wanted = min(_FIRST * count, free - 2)
+    count_wanted = min(_FIRST * count, free_count - 2)
     for _ in range(_ROUNDS):
         values, vectors, radius = _nearest_zero(problem, count_wanted)
         is_upper = values.imag >= 0.0
         errors = mode_errors(problem.stiffness, problem.damping, values[is_upper], vectors[:, is_upper])
         modes = problem.named(values[is_upper], vectors[:, is_upper], errors, problem.rigid_invariant.translational)
-        rising = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
-        slow = _complete_to(problem, rising.tolist(), radius, count)
-        if not modes[count - 1].decay_rate > slow or count_wanted == free - 2:
+        rising_rates = np.maximum.accumulate([mode.decay_rate for mode in modes])  # but for the rounding of equal ones
+        slow_modes = _complete_to(problem, rising_rates.tolist(), radius, count)
+        if not modes[count - 1].decay_rate > slow_modes or count_wanted == free_count - 2:
             break
-        count_wanted = min(2 * count_wanted, free - 2)
-    return SlowModes(modes[:count], slow)
+        count_wanted = min(2 * count_wanted, free_count - 2)
+    return SlowModes(modes[:count], slow_modes)
 
 
 def _of_components(problem: SecondOrder, count: int) -> tuple[Mode, ...]:
     """Return the slowest modes from the whole spectra of the strongly connected components."""
-    local = problem.local_modes()
-    if count >= len(local):
-        raise ArgumentError(f"count = {count}: expected fewer modes than {len(local)}; `modes` has them all")
-    shapes = np.array([problem.spread(k, mode) for _, k, mode in local[:count]]).T
-    values, errors = (np.array([getattr(mode, x) for *_, mode in local[:count]]) for x in ("eigenvalue", "error"))
+    local_modes = problem.local_modes()
+    if count >= len(local_modes):
+        raise ArgumentError(f"count = {count}: expected fewer modes than {len(local_modes)}; `modes` has them all")
+    shapes = np.array([problem.spread(k, mode) for _, k, mode in local_modes[:count]]).T
+    values, errors = (np.array([getattr(mode, x) for *_, mode in local_modes[:count]]) for x in ("eigenvalue", "error"))
     return problem.named(values, shapes, errors, ())
 
 
@@ -162,12 +162,12 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         dq = solve(-p - damping @ q)
         return off(np.concatenate([dq, q + shift * dq]))
 
-    operator, most = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
+    operator, iteration_limit = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
     start = off(np.random.default_rng(0).standard_normal(2 * size))  # fixed, so that results are reproducible
     try:
-        inverted, vectors = eigs(operator, k=count, which="LM", v0=start, ncv=min(2 * size, most))
+        inverse_eigenvalues, vectors = eigs(operator, k=count, which="LM", v0=start, ncv=min(2 * size, iteration_limit))
     except ArpackError as error:
         raise SolverError(f"ARPACK found no {count} eigenvalues nearest to zero ({error}); ask for fewer") from error
-    values = shift + 1.0 / inverted
+    values = shift + 1.0 / inverse_eigenvalues
     # a disc about the shift, cut down to one about zero
     return values, vectors[:size], float(np.max(np.abs(values - shift))) - shift

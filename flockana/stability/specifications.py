@@ -108,11 +108,11 @@ def evaluated(
     """Return the performance of a flock with given c1γ and c2γ, at the equilibrium near q."""
     gains = replace(law.gains, c1_gamma=c1, c2_gamma=c2)
     trial = replace(law, gains=gains)
-    rest = find_equilibrium(trial, q).q if len(q) > 1 else q
-    values = {name: _reached(name, trial, rest) for name in dict.fromkeys((*asked.asked, *also))}
+    equilibrium = find_equilibrium(trial, q).q if len(q) > 1 else q
+    values = {name: _reached(name, trial, equilibrium) for name in dict.fromkeys((*asked.asked, *also))}
     ratios = {name: values[name] / float(getattr(asked, name)) for name in asked.asked}
-    room = {name: max(-1e3, ratio - 1.0 if name in AT_LEAST else 1.0 - ratio) for name, ratio in ratios.items()}
-    return SpecifiedGains(gains, values, room)
+    margins = {name: max(-1e3, ratio - 1.0 if name in AT_LEAST else 1.0 - ratio) for name, ratio in ratios.items()}
+    return SpecifiedGains(gains, values, margins)
 
 
 def _reached(name: str, law: Algorithm2, rest: Any) -> float:

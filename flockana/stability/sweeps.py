@@ -35,8 +35,8 @@ class Sweep:
     @property
     def abscissa(self) -> FloatArray:
         """Return the largest real part at each value, without neutral ones, shape (L,); NaN without others."""
-        rest = self.eigenvalues.real[:, self.neutral :]
-        return rest.max(axis=1) if rest.shape[1] else np.full(len(self.values), np.nan)
+        nonzero_eigenvalues = self.eigenvalues.real[:, self.neutral :]
+        return nonzero_eigenvalues.max(axis=1) if nonzero_eigenvalues.shape[1] else np.full(len(self.values), np.nan)
 
 
 def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, follow: bool = True) -> Sweep:
@@ -65,16 +65,16 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     [2.0, 2.0]
     """
     rows: list[ComplexArray] = []
-    neutral, levels = 0, _rising(values)
-    for here, place in _followed(law, q, name, levels, follow=follow):
-        flock = law_blocks(here, place, strict=follow)
+    neutral_count, levels = 0, _rising(values)
+    for scaled_law, tracked_modes in _followed(law, q, name, levels, follow=follow):
+        flock = law_blocks(scaled_law, tracked_modes, strict=follow)
         roots = np.linalg.eigvals(flock.matrix()).astype(np.complex128)
         roots = roots[np.argsort(np.abs(roots), kind="stable")]
         count = flock.neutral.shape[1] + flock.drifting.shape[1]
         roots[:count] = 0.0  # a defective zero rounds to about 1e-8
-        neutral = count if not rows else min(neutral, count)
+        neutral_count = count if not rows else min(neutral_count, count)
         rows.append(_joined(rows[-1], roots) if rows else roots)
-    return Sweep(name, levels, np.array(rows), neutral)
+    return Sweep(name, levels, np.array(rows), neutral_count)
 
 
 def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferFunction]:
@@ -155,7 +155,7 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
     True
     """
     levels = _rising(values)
-    delays = [delay_margin(delay_system(*each, delayed=delayed)) for each in _followed(law, q, name, levels)]
+    delays = [delay_margin(delay_system(*item, delayed=delayed)) for item in _followed(law, q, name, levels)]
     margins, frequencies = (np.array([getattr(x, kind) for x in delays]) for kind in ("delay", "frequency"))
     return MarginSweep(name, levels, margins, frequencies, delayed)
 
@@ -169,6 +169,6 @@ def _followed(
     ensure_known("gain", name, GAINS[:2] if law.target is None else GAINS)
     q = ensure_points("q", getattr(q, "q", q))  # of an equilibrium
     for level in levels.tolist():
-        here = replace(law, gains=replace(law.gains, **{name: level}))
-        q = np.array(find_equilibrium(here, q).q) if follow else q
-        yield here, q
+        scaled_law = replace(law, gains=replace(law.gains, **{name: level}))
+        q = np.array(find_equilibrium(scaled_law, q).q) if follow else q
+        yield scaled_law, q

@@ -24,12 +24,12 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
     """Return the complex amplitude at ω and its error, by least squares on each coordinate of x."""
     # The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
-    since = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
-    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), since])
-    fit, _, _, sizes = np.linalg.lstsq(basis, x, rcond=None)
+    elapsed_time = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
+    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), elapsed_time])
+    fit, _, _, magnitudes = np.linalg.lstsq(basis, x, rcond=None)
     residual = x - basis @ fit
-    decays = t.size >= _SAMPLES and sizes[-1] > _APART * sizes[0]
-    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if decays else inf
+    decay_verdicts = t.size >= _SAMPLES and magnitudes[-1] > _APART * magnitudes[0]
+    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if decay_verdicts else inf
     return fit[0] - 1j * fit[1], error
 
 
@@ -39,15 +39,15 @@ def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
     if not isinstance(path, SineTarget | CircleTarget):
         raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
     if not whole_period(run, path):
-        length = float(run.t[-1] - run.t[0])
-        raise ArgumentError(f"the run lasts {length:g}: expected at least one period, {1.0 / path.frequency:g}")
-    cycles = max(1, int((1.0 + _WHOLE) * 0.5 * float(run.t[-1] - run.t[0]) * path.frequency))
-    window = run.window(run.t[-1] - cycles / path.frequency, run.t[-1])
+        duration = float(run.t[-1] - run.t[0])
+        raise ArgumentError(f"the run lasts {duration:g}: expected at least one period, {1.0 / path.frequency:g}")
+    cycle_count = max(1, int((1.0 + _WHOLE) * 0.5 * float(run.t[-1] - run.t[0]) * path.frequency))
+    window = run.window(run.t[-1] - cycle_count / path.frequency, run.t[-1])
     omega = 2.0 * pi * path.frequency
     flock, error = _amplitude(window.t, window.q.mean(axis=1), omega)
     agent, _ = _amplitude(window.t, np.array([path.position(t) for t in window.t]), omega)
-    feigned, _ = _amplitude(window.t, _transient(run, window.t), omega)
-    return flock, agent, error + float(np.linalg.norm(feigned))
+    false_amplitude, _ = _amplitude(window.t, _transient(run, window.t), omega)
+    return flock, agent, error + float(np.linalg.norm(false_amplitude))
 
 
 def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
@@ -59,13 +59,13 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     """Return the remaining transient at given times in closed form; for a map, of its flow."""
     # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
-    start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
+    start, position, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
     if gains.c1_gamma > 0.0:
-        return transient(gains, moving, t, start, place, speed)
+        return transient(gains, moving, t, start, position, speed)
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
     slip = speed - moving.drift - (1j * moving.omega * swing * np.exp(1j * moving.omega * start)).real
-    since, drag = (t - start)[:, None], gains.c2_gamma
-    return -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
+    elapsed_time, drag = (t - start)[:, None], gains.c2_gamma
+    return -np.exp(-drag * elapsed_time) * slip / drag if drag > 0.0 else 0.0 * elapsed_time * slip
 
 
 @check_kinds
@@ -96,8 +96,8 @@ def response_ratio(run: Trajectory) -> tuple[float, float]:
     True
     """
     flock, agent, error = _swings(run)
-    size = float(np.linalg.norm(agent))
-    return float(np.linalg.norm(flock)) / size, error / size
+    magnitude = float(np.linalg.norm(agent))
+    return float(np.linalg.norm(flock)) / magnitude, error / magnitude
 
 
 @dataclass(frozen=True)
@@ -190,15 +190,15 @@ def tracking(run: Trajectory) -> Tracking:
 
 def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quantity]:
     flock, agent, error = _swings(run)
-    size = float(np.linalg.norm(agent))
-    discrete = run.law.centre_system() is not None
-    gain = map_gain(run.law, moving.omega, factor=moving.factor) if discrete else abs(centre.response(moving.omega))
-    ratio = Quantity("ratio of sizes", float(gain), float(np.linalg.norm(flock)) / size, error / size)
-    if discrete:
+    magnitude = float(np.linalg.norm(agent))
+    is_discrete = run.law.centre_system() is not None
+    gain = map_gain(run.law, moving.omega, factor=moving.factor) if is_discrete else abs(centre.response(moving.omega))
+    ratio = Quantity("ratio of sizes", float(gain), float(np.linalg.norm(flock)) / magnitude, error / magnitude)
+    if is_discrete:
         return [ratio]
     phase = float(np.degrees(np.angle(np.vdot(agent, flock))))
-    predicted = float(np.degrees(np.angle(centre.response(moving.omega))))
-    return [ratio, Quantity("phase (degrees)", predicted, phase, float(np.degrees(error / size)))]
+    predicted_value = float(np.degrees(np.angle(centre.response(moving.omega))))
+    return [ratio, Quantity("phase (degrees)", predicted_value, phase, float(np.degrees(error / magnitude)))]
 
 
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:

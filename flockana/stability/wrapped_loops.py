@@ -27,21 +27,21 @@ def instant_law(law: Law) -> Law:
     """Return the undelayed law with the same rest: without delays, holds, noise and losses."""
     if not isinstance(law, Wrapper):
         return law
-    within = instant_law(law.law)
+    inner_law = instant_law(law.law)
     if isinstance(law, Disturbed):
-        pushed = law.force is not None or law.swing is not None or law.times is not None
-        return replace(law, law=within, intensity=0.0) if pushed else within
+        pushed_distance = law.force is not None or law.swing is not None or law.times is not None
+        return replace(law, law=inner_law, intensity=0.0) if pushed_distance else inner_law
     if isinstance(law, Lossy):
-        return _MeanLoss(within, law.loss)
+        return _MeanLoss(inner_law, law.loss)
     if isinstance(law, _LOOPS):
-        return within
+        return inner_law
     if law.stepped:
         raise ArgumentError(
             f"{type(law).__name__} has no input at an instant: expected Delayed, Sampled, Measured, Lossy, Disturbed "
             "or Saturated around a law, or a map that steps it"
         )
-    whole: Any = law  # a dataclass, as every wrapper is
-    return law if within is law.law else replace(whole, law=within)
+    wrapped_law: Any = law  # a dataclass, as every wrapper is
+    return law if inner_law is law.law else replace(wrapped_law, law=inner_law)
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,14 @@ class _MeanLoss(WrappingLaw):
     loss: float
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        alone = View(t, q, p, linked=np.zeros((len(q),) * 2, dtype=bool))
-        input_kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), alone)
+        lone_view = View(t, q, p, linked=np.zeros((len(q),) * 2, dtype=bool))
+        input_kept = input_of(self.law, Step(0, 1.0, lambda _: (q, p)), lone_view)
         return (1.0 - self.loss) * self.law.flow(t, q, p)[0] + self.loss * input_kept, float("nan")
 
 
 def hold_of(law: Law) -> Sampled | None:
     """Return the zero-order hold among the wrappers of a law; None without one."""
-    holds = [one for one in law.wrappers if isinstance(one, Sampled)] if isinstance(law, Wrapper) else []
+    holds = [wrapper for wrapper in law.wrappers if isinstance(wrapper, Sampled)] if isinstance(law, Wrapper) else []
     if len(holds) > 1:
         raise ArgumentError(f"the law has {len(holds)} holds, Sampled within Sampled: expected one")
     return holds[0] if holds else None
@@ -68,7 +68,7 @@ def hold_of(law: Law) -> Sampled | None:
 def is_late(law: Law) -> bool:
     """Return whether a positive delay is among the wrappers of a law."""
     wrappers = law.wrappers if isinstance(law, Wrapper) else ()
-    return any(isinstance(one, Delayed) and one.memory > 0.0 for one in wrappers)
+    return any(isinstance(wrapper, Delayed) and wrapper.memory > 0.0 for wrapper in wrappers)
 
 
 def late_parts(law: Law, state: State) -> list[LatePart]:
@@ -88,32 +88,32 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
         _, k, d = parts.get(delay, LatePart(delay, np.zeros_like(stiffness), np.zeros_like(damping)))
         parts[delay] = LatePart(delay, k + stiffness, d + damping)
 
-    share, bend, shift, heard = 1.0, np.eye(state[1].size), 0.0, None
-    for one in law.wrappers if isinstance(law, Wrapper) else ():
-        if isinstance(one, Lossy):
-            share *= 1.0 - one.loss
-        elif isinstance(one, Saturated):
-            bend = bend @ block_diag(*one.slopes(instant_law(one.law).flow(*state)[0]))
-        elif isinstance(one, Delayed) and one.late == "all":
-            shift, heard = shift + float(one.delay), None
-        elif isinstance(one, Delayed):
-            heard = _Heard(shift + np.asarray(one.delay), one.late == "pairs")
+    share, bend_ratio, shift, is_neighbour = 1.0, np.eye(state[1].size), 0.0, None
+    for item in law.wrappers if isinstance(law, Wrapper) else ():
+        if isinstance(item, Lossy):
+            share *= 1.0 - item.loss
+        elif isinstance(item, Saturated):
+            bend_ratio = bend_ratio @ block_diag(*item.slopes(instant_law(item.law).flow(*state)[0]))
+        elif isinstance(item, Delayed) and item.late == "all":
+            shift, is_neighbour = shift + float(item.delay), None
+        elif isinstance(item, Delayed):
+            is_neighbour = _Heard(shift + np.asarray(item.delay), item.late == "pairs")
     m = state[1].shape[1]
     pairs = _pair_terms(core, state)
-    add(shift, bend @ (by_position - pairs[0]), bend @ (by_velocity - pairs[1]))
-    pairs = [share * bend @ part for part in pairs]
-    if heard is None:
+    add(shift, bend_ratio @ (by_position - pairs[0]), bend_ratio @ (by_velocity - pairs[1]))
+    pairs = [share * bend_ratio @ part for part in pairs]
+    if is_neighbour is None:
         add(shift, *pairs)
-    elif heard.both:
-        add(float(heard.delay), *pairs)
+    elif is_neighbour.both:
+        add(float(is_neighbour.delay), *pairs)
     else:
-        _ensure_at_rest(state[2], heard)
-        others = [late_part(part, m, "neighbours") for part in pairs]
-        add(shift, pairs[0] - others[0], pairs[1] - others[1])
-        lags = np.broadcast_to(heard.delay, (len(state[1]),) * 2)
+        _ensure_at_rest(state[2], is_neighbour)
+        neighbour_matrix = [late_part(part, m, "neighbours") for part in pairs]
+        add(shift, pairs[0] - neighbour_matrix[0], pairs[1] - neighbour_matrix[1])
+        lags = np.broadcast_to(is_neighbour.delay, (len(state[1]),) * 2)
         lags = np.kron(lags, np.ones((m, m)))
         for delay in np.unique(lags).tolist():
-            add(delay, *(np.where(lags == delay, part, 0.0) for part in others))
+            add(delay, *(np.where(lags == delay, part, 0.0) for part in neighbour_matrix))
     used_parts = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
     return sorted(used_parts, key=lambda part: part.delay)
 
@@ -121,14 +121,14 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
 def _pair_terms(core: Law, state: State) -> list[FloatArray]:
     """Return K and D of the pair terms of a law; of all terms for other laws."""
     if not any(isinstance(term, PairTerm) for term in core.terms):
-        whole: Any = core.derivatives(*state)
-        return [-part.toarray() for part in whole]
-    size = state[1].size
-    total = [np.zeros((size, size)), np.zeros((size, size))]
+        full_blocks: Any = core.derivatives(*state)
+        return [-delay_term.toarray() for delay_term in full_blocks]
+    dimension = state[1].size
+    total = [np.zeros((dimension, dimension)), np.zeros((dimension, dimension))]
     for term in core.terms:
         if isinstance(term, PairTerm):
             slopes: Any = term.derivatives(*state)
-            total = [part - slope.toarray() for part, slope in zip(total, slopes, strict=True)]
+            total = [delay_term - slope.toarray() for delay_term, slope in zip(total, slopes, strict=True)]
     return total
 
 

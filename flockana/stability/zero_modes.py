@@ -46,16 +46,16 @@ class Split(NamedTuple):
 def split(stiffness: Any, damping: Any, m: int) -> Split:
     """Return the split into centre of mass and shape, if K, D and their transposes map translations to translations."""
     unit = translations(stiffness.shape[0] // m, m)
-    own_groups, leak, errors = [], 0.0, []
+    own_groups, coupling_leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
-        size = float(abs(matrix).max()) or 1.0
+        magnitude = float(abs(matrix).max()) or 1.0
         errors.append(_ROUNDINGS * EPS * sqrt(stiffness.shape[0]).real * float(abs(matrix).sum(axis=1).max()))
         block = unit.T @ (matrix @ unit)
-        diagonal = np.diag(block)
+        diagonal_entries = np.diag(block)
         for image in (matrix @ unit, matrix.T @ unit):
-            leak = max(leak, float(np.abs(image - unit * diagonal).max()) / size)
-        own_groups.append(diagonal)
-    return Split(own_groups[0], own_groups[1], leak, (errors[0], errors[1]))
+            coupling_leak = max(coupling_leak, float(np.abs(image - unit * diagonal_entries).max()) / magnitude)
+        own_groups.append(diagonal_entries)
+    return Split(own_groups[0], own_groups[1], coupling_leak, (errors[0], errors[1]))
 
 
 def agent_scales(stiffness: Any, m: int) -> FloatArray:
@@ -66,8 +66,8 @@ def agent_scales(stiffness: Any, m: int) -> FloatArray:
 
 def extent(q: FloatArray) -> float:
     """Return the size of a flock; for coincident agents, their distance from the origin."""
-    size, far = float(np.linalg.norm(moving_frame(q), axis=1).max()), float(np.abs(q).max())
-    return size if size > _ONE_PLACE * far else far or 1.0
+    magnitude, largest_entry = float(np.linalg.norm(moving_frame(q), axis=1).max()), float(np.abs(q).max())
+    return magnitude if magnitude > _ONE_PLACE * largest_entry else largest_entry or 1.0
 
 
 def zero_threshold(stiffness: Any, force: FloatArray, length: float) -> float:
@@ -92,43 +92,43 @@ class Kernel(NamedTuple):
 def kernel_of(stiffness: FloatArray, scales: FloatArray, zero: float, *, symmetric: bool) -> Kernel:
     """Return the kernels of a dense K: motions with relative stiffness at most `zero`."""
     if symmetric:
-        half = 1.0 / np.sqrt(scales)
-        values, vectors = np.linalg.eigh(half[:, None] * (0.5 * (stiffness + stiffness.T)) * half)
-        flat = np.abs(values) <= zero
-        right = _orthonormal(half[:, None] * vectors[:, flat])
+        inverse_root = 1.0 / np.sqrt(scales)
+        values, vectors = np.linalg.eigh(inverse_root[:, None] * (0.5 * (stiffness + stiffness.T)) * inverse_root)
+        is_null = np.abs(values) <= zero
+        right = _orthonormal(inverse_root[:, None] * vectors[:, is_null])
         return Kernel(right, right, np.sort(np.abs(values)))
-    left, sizes, rows = np.linalg.svd(stiffness / scales[:, None])
-    flat = sizes <= zero
-    return Kernel(rows[flat].T, _orthonormal(left[:, flat] / scales[:, None]), sizes[::-1])
+    left, singular_values, rows = np.linalg.svd(stiffness / scales[:, None])
+    is_null = singular_values <= zero
+    return Kernel(rows[is_null].T, _orthonormal(left[:, is_null] / scales[:, None]), singular_values[::-1])
 
 
 def joined_kernel(stiffness: Any, net: StrongComponents, parts: list[Kernel], zero: float) -> Kernel:
     """Return the kernels of a sparse K from those of its strongly connected components."""
-    forward, backward = range(len(net)), range(len(net) - 1, -1, -1)
-    right = _continued(stiffness, net, [(part.right, part.left) for part in parts], forward, zero)
-    left = _continued(stiffness.T.tocsr(), net, [(part.left, part.right) for part in parts], backward, zero)
+    group_order, reverse_order = range(len(net)), range(len(net) - 1, -1, -1)
+    right = _continued(stiffness, net, [(block.right, block.left) for block in parts], group_order, zero)
+    left = _continued(stiffness.T.tocsr(), net, [(block.left, block.right) for block in parts], reverse_order, zero)
     if right.shape != left.shape:
         raise SolverError(
             f"K has {right.shape[1]} zero modes by its rows and {left.shape[1]} by its columns: its rank is in doubt "
             f"at {zero:.2g}; give `zero`, what counts as a zero mode"
         )
-    return Kernel(right, left, np.sort(np.concatenate([part.sizes for part in parts])))
+    return Kernel(right, left, np.sort(np.concatenate([block.sizes for block in parts])))
 
 
 def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, zero: float) -> FloatArray:
     """Return a kernel built component by component, each following heard components where possible."""
     basis = np.zeros((stiffness.shape[0], 0))
     for k in order:
-        rows, (free, against) = net.indices[k], kernels[k]
+        rows, (free, left_kernel) = net.indices[k], kernels[k]
         block = stiffness[rows]
         if basis.shape[1] and block.nnz:
             push, all_terms = block @ basis, abs(block) @ np.abs(basis)
             push[np.abs(push) <= zero * all_terms] = 0.0  # terms that cancel: what is left would be a motion elsewhere
             if free.shape[1] and push.any():  # a part that can move freely cannot take up a force along that motion
-                stuck = against.T @ push
-                terms = float((np.abs(against).T @ all_terms).max())
-                _, sizes, turn = np.linalg.svd(stuck)
-                rank = int(np.sum(sizes > zero * terms))
+                projected_push = left_kernel.T @ push
+                terms = float((np.abs(left_kernel).T @ all_terms).max())
+                _, singular_values, turn = np.linalg.svd(projected_push)
+                rank = int(np.sum(singular_values > zero * terms))
                 basis, push = basis @ turn[rank:].T, push @ turn[rank:].T
             if push.any():
                 own_rows = block[:, rows].toarray()
@@ -136,9 +136,9 @@ def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, 
                 scale[scale == 0.0] = 1.0
                 basis[rows] = -np.linalg.lstsq(own_rows / scale, push / scale, rcond=zero)[0]
                 basis = basis / np.linalg.norm(basis, axis=0)
-        fresh = np.zeros((len(basis), free.shape[1]))
-        fresh[rows] = free
-        basis = np.hstack([basis, fresh])
+        new_columns = np.zeros((len(basis), free.shape[1]))
+        new_columns[rows] = free
+        basis = np.hstack([basis, new_columns])
     return _orthonormal(basis)
 
 

@@ -43,9 +43,9 @@ def _agent_rates(m: int, gains: GainSymbols, moving: bool) -> tuple[sp.Expr, sp.
     energy = gains.c1_gamma * sigma_norm(q_i - q_r, eps=_ONE) + HALF * p_i.dot(p_i)
     force = gamma_force(q_i, p_i, q_r, p_r, gains=gains)
     rate = along_flow(energy, [*q_i, *q_r], [*p_i, *speed], [*force, *sp.zeros(m, 1)])
-    claimed = -gains.c2_gamma * p_i.dot(p_i - p_r) - gains.c1_gamma * sigma_1(q_i - q_r).dot(speed)
+    stated_rate = -gains.c2_gamma * p_i.dot(p_i - p_r) - gains.c1_gamma * sigma_1(q_i - q_r).dot(speed)
     names = indexed((Q, q_i), (P, p_i)) | ({} if moving else dict.fromkeys(speed, sp.S.Zero))
-    return sp.expand(rate).xreplace(names), sp.expand(claimed).xreplace(names)
+    return sp.expand(rate).xreplace(names), sp.expand(stated_rate).xreplace(names)
 
 
 def theorem6_identity(
@@ -62,9 +62,9 @@ def theorem6_identity(
     dissipation = -gains.c2_alpha * pair.laplacian_form()
     own_rate, own_claimed = _agent_rates(m, gains, moving)
     left = sp.Add(*(GenericObstacle(kind, m).energy_residual(gains) for kind in kinds))
-    braking = gains.c2_beta * _over_obstacles(WEIGHT(CLEARANCE[I_, K_]) * BRAKING[I_, K_])
-    rate = pair.lift(total) + over_agents(own_rate) + braking + _over_obstacles(left)
-    claimed = pair.lift(dissipation) + over_agents(own_claimed) + braking
+    braking_power = gains.c2_beta * _over_obstacles(WEIGHT(CLEARANCE[I_, K_]) * BRAKING[I_, K_])
+    rate = pair.lift(total) + over_agents(own_rate) + braking_power + _over_obstacles(left)
+    stated_rate = pair.lift(dissipation) + over_agents(own_claimed) + braking_power
     residual = pair.lift(pair.tidy(total - dissipation)) + over_agents(sp.expand(own_rate - own_claimed))
     pull = sigma_norm(sp.Matrix([Q[I_, k] for k in range(1, m + 1)]) - vector("q_r", m), eps=_ONE)
     energy = (
@@ -83,9 +83,9 @@ def theorem6_identity(
         ),
         Step("One agent and the gamma-agent contribute", own_rate),
         Step(r"Together $\dot H$ is", rate),
-        Step("and the closed form is", claimed),
+        Step("and the closed form is", stated_rate),
     )
-    return EnergyIdentity("Algorithm 3: energy", energy, rate, claimed, residual + _over_obstacles(left), steps)
+    return EnergyIdentity("Algorithm 3: energy", energy, rate, stated_rate, residual + _over_obstacles(left), steps)
 
 
 def condition_76_residual(m: int = 2) -> sp.Expr:
@@ -100,10 +100,10 @@ def condition_76_residual(m: int = 2) -> sp.Expr:
 
 def e2_identity(m: int = 2) -> EnergyIdentity:
     """Derive dH/dt of the printed H, which counts every pair twice and keeps an indefinite dV_alpha/dt."""
-    printed = theorem6_identity(m, copies=sp.Integer(2))
-    left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", printed.residual)
+    printed_value = theorem6_identity(m, copies=sp.Integer(2))
+    left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", printed_value.residual)
     name = r"E2: the printed $V_\alpha = \sum_i \sum_{j \neq i} \psi_\alpha$"
-    return replace(printed, name=name, steps=(*printed.steps, left))
+    return replace(printed_value, name=name, steps=(*printed_value.steps, left))
 
 
 def e2_counterexample() -> RisingEnergy:
@@ -113,7 +113,7 @@ def e2_counterexample() -> RisingEnergy:
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)
     q, p = (sp.Integer(0), sp.Integer(2)), (sp.Integer(0), -sp.Rational(1, 5))
     pair = GenericPair(1)
-    state = {s[0]: x for ends, part in ((pair.q, q), (pair.p, p)) for s, x in zip(ends, part, strict=True)}
+    state = {s[0]: x for ends, component in ((pair.q, q), (pair.p, p)) for s, x in zip(ends, component, strict=True)}
     state |= {pair.z: sigma_norm(q[1] - q[0], eps=alpha.eps), sp.Symbol("epsilon", positive=True): alpha.eps}
     drag = -gains.c2_gamma * sp.Add(*(speed**2 for speed in p))  # the gamma-agent's pull and potential cancel
 

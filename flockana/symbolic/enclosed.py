@@ -26,12 +26,12 @@ _T = sp.Symbol("t", real=True)
 @contextmanager
 def precision(bits: int, terms: int = 1) -> Iterator[None]:
     """Set the precision of ball arithmetic, and the length of its series, inside the block."""
-    saved = ctx.prec, ctx.cap
+    saved_precision = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = bits, terms
     try:
         yield
     finally:
-        ctx.prec, ctx.cap = saved
+        ctx.prec, ctx.cap = saved_precision
 
 
 def rational(number: Any) -> fmpq:
@@ -62,7 +62,7 @@ class Enclosed:
     def _add(self, node: sp.Expr) -> int:
         """Return the index of a node, added after the nodes it depends on."""
         if node not in self._at:
-            arguments = tuple(self._add(each) for each in _arguments(node))
+            arguments = tuple(self._add(argument) for argument in _arguments(node))
             self._steps.append((_operation(node, self.variable), arguments, node, self.variable in node.free_symbols))
             self._at[node] = len(self._steps) - 1
         return self._at[node]
@@ -80,23 +80,23 @@ class Enclosed:
     def _run(self, x: arb) -> list[tuple[Any, int]] | None:
         constants = self._constants.setdefault((ctx.prec, ctx.cap), {})
         values: list[tuple[Any, int]] = []
-        middle, centre = x.mid(), None
-        if not x.is_exact() and ctx.cap > 1 and (centre := self._run(middle)) is None:
+        midpoint, centre = x.mid(), None
+        if not x.is_exact() and ctx.cap > 1 and (centre := self._run(midpoint)) is None:
             return None
         try:
-            for k, (operation, arguments, node, varies) in enumerate(self._steps):
-                if not varies and k in constants:
+            for k, (operation, arguments, node, is_variable) in enumerate(self._steps):
+                if not is_variable and k in constants:
                     values.append(constants[k])
                     continue
-                arguments_given = [values[each] for each in arguments]
-                value = operation(x, *(each for each, _ in arguments_given))
+                arguments_given = [values[argument] for argument in arguments]
+                value = operation(x, *(argument for argument, _ in arguments_given))
                 if centre is not None and (node.is_Add or node.is_Mul):
-                    mean = centre[k][0][0] + value[1] * (x - middle)  # by the mean value form
+                    mean = centre[k][0][0] + value[1] * (x - midpoint)  # by the mean value form
                     value = _with_value(value, value[0].intersection(mean))
                 if not all(map(arb.is_finite, value.coeffs())):
                     return None
                 values.append((value, _sign(node, value, [sign for _, sign in arguments_given])))
-                if not varies:
+                if not is_variable:
                     constants[k] = values[-1]
         except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
             return None
@@ -132,12 +132,12 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
     if node.is_Mul:
         return lambda x, *factors: reduce(mul, factors)
     if node.is_Pow and node.exp.is_Rational:
-        whole, root, up = int(abs(node.exp.p)), int(node.exp.q), bool(node.exp.p > 0)
-        return lambda x, base: _power(base, whole, root, up=up)
+        whole, root, is_positive = int(abs(node.exp.p)), int(node.exp.q), bool(node.exp.p > 0)
+        return lambda x, base: _power(base, whole, root, up=is_positive)
     if node.is_Pow:
         return lambda x, base, exponent: _exp(exponent * _positive(base).log())
-    if (of := _FUNCTIONS.get(node.func)) is not None:
-        return lambda x, argument: of(argument)
+    if (function := _FUNCTIONS.get(node.func)) is not None:
+        return lambda x, argument: function(argument)
     if not isinstance(node, sp.Function):  # an infinity, bounds of one, or none
         return lambda x, *arguments: _where(False, x)
     raise TypeError(f"{node.func.__name__} has no enclosure")
@@ -179,10 +179,10 @@ def _multiplied(base: Any, whole: int) -> Any:
 
 def _power_range(base: arb, whole: int) -> arb:
     """Return the range of an integer power, including 0 where the base changes sign."""
-    ends = _multiplied(base.lower(), whole).union(_multiplied(base.upper(), whole))
+    range_ends = _multiplied(base.lower(), whole).union(_multiplied(base.upper(), whole))
     if whole % 2 or base > 0 or base < 0:
-        return ends
-    return arb(0).union(abs(ends).upper())
+        return range_ends
+    return arb(0).union(abs(range_ends).upper())
 
 
 def _exp(x: Any) -> Any:
@@ -199,10 +199,10 @@ def _integrated(value: arb, slope: Any, x: Any) -> Any:
 
 def _tanh(x: Any) -> Any:
     """Return tanh of a series from the ends of its range; its slope is 1 − tanh²."""
-    at = x[0].lower().tanh().union(x[0].upper().tanh())
-    value = arb_series([at])
+    tanh_range = x[0].lower().tanh().union(x[0].upper().tanh())
+    value = arb_series([tanh_range])
     for _ in range(ctx.cap - 1):
-        value = _integrated(at, 1 - value * value, x)
+        value = _integrated(tanh_range, 1 - value * value, x)
     return value
 
 
@@ -211,11 +211,11 @@ def _cosine_range(x: arb) -> arb:
     turns = x / arb.pi()
     if x.is_exact() or not turns.rad() < 0.25:
         return x.cos()
-    ends = x.lower().cos().union(x.upper().cos())
+    range_ends = x.lower().cos().union(x.upper().cos())
     if not turns.contains_integer():
-        return ends
-    whole = round(float(turns.mid()))
-    return ends.union(arb(1 - 2 * (whole % 2))).intersection(arb(0, 1))
+        return range_ends
+    connected_samples = round(float(turns.mid()))
+    return range_ends.union(arb(1 - 2 * (connected_samples % 2))).intersection(arb(0, 1))
 
 
 def _inside(x: Any) -> Any:
@@ -224,8 +224,8 @@ def _inside(x: Any) -> Any:
 
 
 def _hyperbolic(x: Any, *, odd: bool) -> Any:
-    up, down = _exp(x), _exp(-x)
-    return _with_value((up - down if odd else up + down) / 2, x[0].sinh() if odd else x[0].cosh())
+    up, decaying_exp = _exp(x), _exp(-x)
+    return _with_value((up - decaying_exp if odd else up + decaying_exp) / 2, x[0].sinh() if odd else x[0].cosh())
 
 
 _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
@@ -290,10 +290,10 @@ class _GermVisitor:
 
     def of(self, node: sp.Expr) -> Germ:
         if node not in self._known:
-            germ = self._of(node)
-            if not germ.factor.is_finite():
+            germ_node = self._of(node)
+            if not germ_node.factor.is_finite():
                 raise _UnknownError
-            self._known[node] = germ
+            self._known[node] = germ_node
         return self._known[node]
 
     def _of(self, node: sp.Expr) -> Germ:
@@ -302,9 +302,9 @@ class _GermVisitor:
         if self.variable not in node.free_symbols:
             return Germ(Fraction(0), _first(Enclosed(node, self.variable), arb(0)))
         if node.is_Add:
-            return self._sum([self.of(each) for each in node.args])
+            return self._sum([self.of(arg) for arg in node.args])
         if node.is_Mul:
-            powers, factors = zip(*(self.of(each) for each in node.args), strict=True)
+            powers, factors = zip(*(self.of(arg) for arg in node.args), strict=True)
             return Germ(sum(powers, Fraction(0)), prod(factors, start=arb(1)))
         if node.is_Pow and node.exp.is_Rational:
             return self._power(self.of(node.base), node.exp)
@@ -313,8 +313,8 @@ class _GermVisitor:
         return self._function(node.func, self.of(node.args[0]))
 
     def _sum(self, terms: list[Germ]) -> Germ:
-        power = min(each.power for each in terms)
-        return Germ(power, sum((each.factor * self._until(each.power - power) for each in terms), arb(0)))
+        power = min(term.power for term in terms)
+        return Germ(power, sum((term.factor * self._until(term.power - power) for term in terms), arb(0)))
 
     def _until(self, power: Fraction) -> arb:
         """Return the range of t^power, power ≥ 0."""
@@ -327,27 +327,27 @@ class _GermVisitor:
         return Germ(base.power * power, _first(Enclosed(x**exponent, x), base.factor))
 
     def _function(self, of: Any, argument: Germ) -> Germ:
-        none = Fraction(0)
+        zero_power = Fraction(0)
         if of is sp.log and argument.power != 0:
             return self._logarithm(argument)
         if argument.power >= 0:
-            at = argument.factor * self._until(argument.power)  # all values, the limit included
+            argument_range = argument.factor * self._until(argument.power)  # all values, the limit included
             if of in _ODD and argument.power > 0:
                 slope = Enclosed(sp.diff(of(_T), _T), _T)
-                return Germ(argument.power, argument.factor * _first(slope, at.union(arb(0))))
-            return Germ(none, _first(Enclosed(of(_T), _T), at))
+                return Germ(argument.power, argument.factor * _first(slope, argument_range.union(arb(0))))
+            return Germ(zero_power, _first(Enclosed(of(_T), _T), argument_range))
         if of in (sp.sin, sp.cos):
-            return Germ(none, arb(0, 1))
+            return Germ(zero_power, arb(0, 1))
         bound = abs(argument.factor).lower() * (1 / self._until(-argument.power).upper())
         rises = bool(argument.factor > 0)
         if not (rises or argument.factor < 0):
             raise _UnknownError
         if of is sp.exp and not rises:
-            return Germ(none, arb(0).union((-bound).exp().upper()))
+            return Germ(zero_power, arb(0).union((-bound).exp().upper()))
         if of in (sp.atan, sp.tanh):
             limit, value = (arb.pi() / 2, bound.atan()) if of is sp.atan else (arb(1), bound.tanh())
             hull = value.lower().union(limit.upper())
-            return Germ(none, hull if rises else -hull)
+            return Germ(zero_power, hull if rises else -hull)
         raise _UnknownError
 
     def _logarithm(self, argument: Germ) -> Germ:

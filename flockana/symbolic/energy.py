@@ -77,7 +77,7 @@ class GenericPair:
 
     def along(self, energy: sp.Expr, gains: GainSymbols = GAINS) -> sp.Expr:
         """Return the rate of a pair's energy under the mutual forces, simplified."""
-        components = [[*first, *second] for first, second in (self.q, self.p, self.forces(gains))]
+        components = [[*first, *second_symbols] for first, second_symbols in (self.q, self.p, self.forces(gains))]
         return self.tidy(along_flow(energy, *components))
 
     def energy_rates(
@@ -89,27 +89,27 @@ class GenericPair:
 
     def laplacian_form(self) -> sp.Expr:
         """Return the pair's block of p^T L p: a_ij times [[1, -1], [-1, 1]] for every component."""
-        stacked = sp.Matrix.vstack(*self.p)
+        stacked_velocities = sp.Matrix.vstack(*self.p)
         block = sp.kronecker_product(sp.Matrix([[1, -1], [-1, 1]]), sp.eye(self.m))
-        return self.tidy(ADJACENCY(self.z) * (stacked.T * block * stacked)[0])
+        return self.tidy(ADJACENCY(self.z) * (stacked_velocities.T * block * stacked_velocities)[0])
 
     def tidy(self, expression: sp.Expr) -> sp.Expr:
         """Return an expression expanded in relative coordinates, with the pair's sigma-norm named z_ij."""
         root = sp.Symbol("w", positive=True)
-        ends = [pair for both in (self.q, self.p) for pair in zip(*both, strict=True)]
-        relative = {i: j + sp.Symbol(f"d{i}", real=True) for i, j in ends}
+        pair_symbols = [pair for vectors in (self.q, self.p) for pair in zip(*vectors, strict=True)]
+        relative = {i: j + sp.Symbol(f"d{i}", real=True) for i, j in pair_symbols}
         sigma = sigma_norm(self.q[1] - self.q[0])
         expression = expression.xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
-        expanded = sp.expand(expression.subs(relative))
-        collected = sp.collect(expanded, [PHI(self.z), ADJACENCY(self.z)], func=sp.factor)
-        back = {relative[i] - j: i - j for i, j in ends}
-        return collected.xreplace(back).subs(root, 1 + EPS * self.z)
+        expanded_form = sp.expand(expression.subs(relative))
+        collected_form = sp.collect(expanded_form, [PHI(self.z), ADJACENCY(self.z)], func=sp.factor)
+        symbol_map = {relative[i] - j: i - j for i, j in pair_symbols}
+        return collected_form.xreplace(symbol_map).subs(root, 1 + EPS * self.z)
 
     def lift(self, expression: sp.Expr) -> sp.Expr:
         """Return the sum over all pairs of a one-pair expression."""
         names: dict[sp.Expr, sp.Expr] = {self.z: Z[I_, J_]}
-        for base, ends in zip(self.frame, (self.q, self.p), strict=True):
-            for index, end in zip((I_, J_), ends, strict=True):
+        for base, pair_symbols in zip(self.frame, (self.q, self.p), strict=True):
+            for index, end in zip((I_, J_), pair_symbols, strict=True):
                 names |= {symbol: base[index, k] for k, symbol in enumerate(end, start=1)}
         return over_pairs(expression.xreplace(names))
 
@@ -118,14 +118,14 @@ def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple
     """Return the pair's derived contribution to dH/dt, the claimed one, and the steps between."""
     potential, power = pair.energy_rates(gains, factor=factor)
     total = pair.tidy(potential + power)
-    claimed = -gains.c2_alpha * pair.laplacian_form()
-    first = r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
+    stated_rate = -gains.c2_alpha * pair.laplacian_form()
+    first_text = r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
     steps = (
-        Step(first + r"$c_1^\alpha \nabla\psi_\alpha \cdot (p_j - p_i)$,", potential),
+        Step(first_text + r"$c_1^\alpha \nabla\psi_\alpha \cdot (p_j - p_i)$,", potential),
         Step("the forces between the two, entered in the kinetic energy, work at", power),
         Step("and together the pair contributes", total),
     )
-    return total, claimed, steps
+    return total, stated_rate, steps
 
 
 def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_factor: sp.Expr = HALF) -> EnergyIdentity:
@@ -142,11 +142,11 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     True
     """
     pair = GenericPair(m)
-    total, claimed, steps = _pair_steps(pair, kinetic_factor, gains)
+    total, stated_rate, steps = _pair_steps(pair, kinetic_factor, gains)
     energy = sums.hamiltonian(m, gains=gains, factor=kinetic_factor)
     rate = pair.lift(total)
-    stated = pair.lift(claimed)
-    lifting = (
+    stated_form = pair.lift(stated_rate)
+    lifting_step = (
         Step("The energy, every pair once, with", energy),
         Step("the sigma-distance of a pair:", sums.sigma_distance(Q, m)),
         *steps,
@@ -156,10 +156,10 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
             r"($\phi_\alpha = a_{ij} = 0$ beyond $r_\alpha$), so $\dot H$ is",
             rate,
         ),
-        Step(r"and $-c_2^\alpha\, p^T \hat L p$ is, with $\hat L$ the sum of its pairs' blocks,", stated),
+        Step(r"and $-c_2^\alpha\, p^T \hat L p$ is, with $\hat L$ the sum of its pairs' blocks,", stated_form),
     )
-    residual = pair.lift(pair.tidy(total - claimed))
-    return EnergyIdentity("Algorithm 1: energy", energy, rate, stated, residual, lifting)
+    residual = pair.lift(pair.tidy(total - stated_rate))
+    return EnergyIdentity("Algorithm 1: energy", energy, rate, stated_form, residual, lifting_step)
 
 
 def relative_feedback(x_i: sp.Matrix, v_i: sp.Matrix, gains: GainSymbols) -> tuple[sp.Matrix, sp.Matrix]:
@@ -188,7 +188,7 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     """
     lambda_ = gains.c1_gamma if lambda_ is None else lambda_
     pair = GenericPair(m, (X, V))
-    total, claimed, steps = _pair_steps(pair, HALF, gains)
+    total, stated_rate, steps = _pair_steps(pair, HALF, gains)
     (x_i, _), (v_i, _) = pair.q, pair.p
     own_part = relative_feedback(x_i, v_i, gains)[0]
     agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own_part)))
@@ -196,8 +196,8 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     names = indexed((X, x_i), (V, v_i))
     energy = sums.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
     rate = pair.lift(total) + over_agents(agent.xreplace(names))
-    stated = pair.lift(claimed) + over_agents(agent_claimed.xreplace(names))
-    lifting = (
+    stated_form = pair.lift(stated_rate) + over_agents(agent_claimed.xreplace(names))
+    lifting_step = (
         Step("The energy in the moving frame, with", energy),
         Step("the sigma-distance of a pair:", sums.sigma_distance(X, m)),
         *steps,
@@ -211,8 +211,8 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
             r"summed over pairs and agents, $\dot H_\lambda$ is",
             rate,
         ),
-        Step(r"and $-c_2^\gamma \|v\|^2 - c_2^\alpha\, v^T \hat L v$ is", stated),
+        Step(r"and $-c_2^\gamma \|v\|^2 - c_2^\alpha\, v^T \hat L v$ is", stated_form),
     )
-    agents_left = over_agents(sp.expand(agent - agent_claimed).xreplace(names))
-    residual = pair.lift(pair.tidy(total - claimed)) + agents_left
-    return EnergyIdentity("Structural energy in the moving frame", energy, rate, stated, residual, lifting)
+    agent_residual = over_agents(sp.expand(agent - agent_claimed).xreplace(names))
+    residual = pair.lift(pair.tidy(total - stated_rate)) + agent_residual
+    return EnergyIdentity("Structural energy in the moving frame", energy, rate, stated_form, residual, lifting_step)

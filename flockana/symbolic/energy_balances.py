@@ -39,13 +39,13 @@ def _between_agents(
     """Return (potential forces, forces with consensus, potential, consensus power)."""
     pulls, u, potential, power = [sp.zeros(*x.shape) for x in q], [sp.zeros(*x.shape) for x in q], sp.S.Zero, sp.S.Zero
     for i, j in combinations(range(_N), 2):
-        apart, slip = q[j] - q[i], p[j] - p[i]
-        square = apart.dot(apart)
-        pull, own_weight = 2 * _HALF_PULL(square) * apart, weight(i, j, square)
-        for forces, force in ((pulls, pull), (u, pull + own_weight * slip)):
+        displacement, velocity_difference = q[j] - q[i], p[j] - p[i]
+        squared_value = displacement.dot(displacement)
+        pull, own_weight = 2 * _HALF_PULL(squared_value) * displacement, weight(i, j, squared_value)
+        for forces, force in ((pulls, pull), (u, pull + own_weight * velocity_difference)):
             forces[i], forces[j] = forces[i] + force, forces[j] - force
-        potential += _OF_SQUARE(square)
-        power -= own_weight * slip.dot(slip)
+        potential += _OF_SQUARE(squared_value)
+        power -= own_weight * velocity_difference.dot(velocity_difference)
     return pulls, u, potential, power
 
 
@@ -87,12 +87,12 @@ def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
     # H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
     q, p, _ = _state(m)
     mean = (p[0] + p[1] + p[2]) / _N
-    pulls, u, energy, lost = _between_agents(q, p, lambda i, j, square: WEIGHT(square))
+    pulls, u, energy, dissipated_power = _between_agents(q, p, lambda i, j, square: WEIGHT(square))
     if not potential:
         u, energy = [a - b for a, b in zip(u, pulls, strict=True)], sp.S.Zero
     energy += sum((v - mean).dot(v - mean) for v in p) / 2
-    of = "The energy in the frame of the centre of mass,"
-    return energy_balance("Energy of agents that match velocities", energy, lost, q, p, u, of=of)
+    subject_text = "The energy in the frame of the centre of mass,"
+    return energy_balance("Energy of agents that match velocities", energy, dissipated_power, q, p, u, of=subject_text)
 
 
 def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
@@ -101,21 +101,21 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
     # within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
     q, p, _ = _state(m)
     leaders = [[vector(f"{name}_{number}", m) for number in "gh"] for name in ("q", "p", "a")]
-    q_l, p_l, a_l = ([each[number] for number in _GROUP] for each in leaders)
-    slip = [own_velocity - led for own_velocity, led in zip(p, p_l, strict=True)]
-    same = [[int(a == b) for b in _GROUP] for a in _GROUP]
-    pairs, u, energy, lost = _between_agents(q, p, lambda i, j, _: K_2 * same[i][j] * _weight(i, j))
+    q_l, p_l, a_l = ([leader[number] for number in _GROUP] for leader in leaders)
+    velocity_difference = [own_velocity - leader_velocity for own_velocity, leader_velocity in zip(p, p_l, strict=True)]
+    unit_matrix = [[int(a == b) for b in _GROUP] for a in _GROUP]
+    pairs, u, energy, dissipated_power = _between_agents(q, p, lambda i, j, _: K_2 * unit_matrix[i][j] * _weight(i, j))
     for i in range(_N):
         u[i] += int(feedforward) * a_l[i]
-        energy += slip[i].dot(slip[i]) / 2
-        lost -= pairs[i].dot(p_l[i]) + (0 if feedforward else slip[i].dot(a_l[i]))
+        energy += velocity_difference[i].dot(velocity_difference[i]) / 2
+        dissipated_power -= pairs[i].dot(p_l[i]) + (0 if feedforward else velocity_difference[i].dot(a_l[i]))
         if i in _PINNED:
-            u[i] -= PULL * (q[i] - q_l[i]) + MATCH * slip[i]
+            u[i] -= PULL * (q[i] - q_l[i]) + MATCH * velocity_difference[i]
             energy += PULL * (q[i] - q_l[i]).dot(q[i] - q_l[i]) / 2
-            lost -= MATCH * slip[i].dot(slip[i])
+            dissipated_power -= MATCH * velocity_difference[i].dot(velocity_difference[i])
     flow = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
     title = "Energy of the dead-zone law with leaders"
-    return energy_balance(title, energy, lost, *flow, of="The energy in the frames of the leaders,")
+    return energy_balance(title, energy, dissipated_power, *flow, of="The energy in the frames of the leaders,")
 
 
 def copies_balance() -> Derivation:
@@ -123,17 +123,17 @@ def copies_balance() -> Derivation:
 
     f is all else; what it does, p f, is counted where its energy is.
     """
-    q, place, other = (sp.Function(name)(T) for name in ("q", "q_r", "f"))
-    p, rate = q.diff(T), place.diff(T)
-    acceleration = other - PULL * (q - place) - MATCH * (p - rate)
-    energy = PULL * (q - place) ** 2 / 2 + p**2 / 2
-    along = energy.diff(T).subs(q.diff(T, 2), acceleration) - p * other
-    stated = -MATCH * p * (p - rate) - PULL * (q - place) * rate
+    q, position, other_term = (sp.Function(name)(T) for name in ("q", "q_r", "f"))
+    p, rate = q.diff(T), position.diff(T)
+    acceleration = other_term - PULL * (q - position) - MATCH * (p - rate)
+    energy = PULL * (q - position) ** 2 / 2 + p**2 / 2
+    along = energy.diff(T).subs(q.diff(T, 2), acceleration) - p * other_term
+    stated_form = -MATCH * p * (p - rate) - PULL * (q - position) * rate
     steps = (
         Step("Energy of one agent and its copy, a component of each:", energy),
         Step("Its rate along the law, without the power of all else:", sp.expand(along)),
     )
-    return Derivation("Balance of an agent and its copy", steps, stated, (sp.expand(along - stated),))
+    return Derivation("Balance of an agent and its copy", steps, stated_form, (sp.expand(along - stated_form),))
 
 
 def copies_part() -> Derivation:

@@ -67,8 +67,8 @@ class RisingEnergy:
 
 def with_pair_law(expression: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
     """Return an expression with the paper's functions for phi_alpha and a_ij."""
-    concrete = expression.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
-    return sp.expand(concrete.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
+    concrete_form = expression.replace(PHI, lambda z: phi_alpha(z, alpha=alpha))
+    return sp.expand(concrete_form.replace(ADJACENCY, lambda z: adjacency(z, alpha=alpha)))
 
 
 def e1_counterexample() -> RisingEnergy:
@@ -94,7 +94,7 @@ def e1_counterexample() -> RisingEnergy:
 def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i."""
     pull = sp.expand(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)))
-    return sp.expand(sp.Add(*(sum_over(pull, part) for part in _PARTS)))
+    return sp.expand(sp.Add(*(sum_over(pull, component) for component in _PARTS)))
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
@@ -102,21 +102,21 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
     # means.
     total = sp.S.Zero
-    for part in _PARTS:
-        stress = sum_over(STRESS[_J], part)
-        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), part) / stress
+    for component in _PARTS:
+        stress = sum_over(STRESS[_J], component)
+        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), component) / stress
         total += stress * (mean if printed else mean - (OWN + shift))
     return sp.expand(total)
 
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
     """Derive the friends' form of u_i^g; the printed form loses -S_i q_i and depends on the origin."""
-    true, stated = gradient_part(), friends_form(printed=printed)
-    friends = friends_form(printed=printed, shift=SHIFT)
+    true_value, stated_form = gradient_part(), friends_form(printed=printed)
+    friend_sum = friends_form(printed=printed, shift=SHIFT)
     steps = (
-        Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true),
-        Step("What is stated in the stress-weighted means of both:", stated),
-        Step(r"Move all agents by $w$; it becomes", friends),
+        Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true_value),
+        Step("What is stated in the stress-weighted means of both:", stated_form),
+        Step(r"Move all agents by $w$; it becomes", friend_sum),
     )
-    residuals = (sp.expand(true - stated), sp.expand(friends - stated))
-    return Derivation(r"Flock centring and collision avoidance, $u_i^g$", steps, stated, residuals)
+    residuals = (sp.expand(true_value - stated_form), sp.expand(friend_sum - stated_form))
+    return Derivation(r"Flock centring and collision avoidance, $u_i^g$", steps, stated_form, residuals)

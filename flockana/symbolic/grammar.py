@@ -69,14 +69,14 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
     """Return the number of nodes of an expression, its height of exponentials, and its degree."""
     if value not in known:
-        rows = [expression_size(each, known) for each in value.args] or [(0, 0, 1)]
+        rows = [expression_size(arg, known) for arg in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)
-        tower, degree = (max(row[k] for row in rows) for k in (1, 2))
+        power_height, degree = (max(row[k] for row in rows) for k in (1, 2))
         if isinstance(value, sp.Pow) and value.exp.is_number:
             degree *= max(1, int(abs(float(value.exp))))
         elif isinstance(value, sp.Pow) or value.func.__name__ in _GROWING:
-            tower += 1
-        known[value] = nodes, tower, degree
+            power_height += 1
+        known[value] = nodes, power_height, degree
     return known[value]
 
 
@@ -144,7 +144,7 @@ class _Reader:
         if isinstance(node, ast.BinOp):
             return self._operation(node, depth)
         if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _RELATIONS:
-            sides = [self._value(each, depth) for each in (node.left, node.comparators[0])]
+            sides = [self._value(item, depth) for item in (node.left, node.comparators[0])]
             for side in sides:
                 _ensure_plain(side, self.where)
             try:
@@ -156,9 +156,9 @@ class _Reader:
         raise self._refused(node)
 
     def _refused(self, node: ast.AST) -> ArgumentError:
-        part = ast.get_source_segment(self.text.strip(), node) or self.text
+        expression_text = ast.get_source_segment(self.text.strip(), node) or self.text
         return ArgumentError(
-            f"{self.where}: {_short(part)} is no formula; expected names, numbers, + - * / **, comparisons, "
+            f"{self.where}: {_short(expression_text)} is no formula; expected names, numbers, + - * / **, comparisons, "
             f"Piecewise((value, condition), ...) and {', '.join(sorted(FUNCTIONS))}"
         )
 
@@ -196,8 +196,8 @@ class _Reader:
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
         """Return a value; raise if it is too large, complex, or beyond floating point."""
         self._ensure_small(value)
-        unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
-        if unreal or (value.is_number and not self._size_of(value) < _GREATEST):
+        is_unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
+        if is_unreal or (value.is_number and not self._size_of(value) < _GREATEST):
             raise ArgumentError(f"{self.where}: {_short(ast.unparse(node))} is no real number below {_GREATEST:g}")
         return value
 
@@ -211,11 +211,11 @@ class _Reader:
 
     def _ensure_small(self, value: sp.Expr) -> None:
         """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
-        nodes, tower, degree = expression_size(value, self._sizes)
-        towers = tower, TOWER, "exponentials within each other"
-        for count, most, what in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):
+        nodes, power_height, degree = expression_size(value, self._sizes)
+        towers = power_height, TOWER, "exponentials within each other"
+        for count, most, part_name in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):
             if count > most:
-                raise ArgumentError(f"{self.where} has {count} {what}: expected at most {most}, a simpler formula")
+                raise ArgumentError(f"{self.where} has {count} {part_name}: expected at most {most}, a simpler formula")
 
     def _ensure_divisor(self, value: sp.Expr, node: ast.AST) -> None:
         """Raise on a divisor that is or may be 0."""
@@ -240,7 +240,7 @@ class _Reader:
 
     def _call(self, name: str, arguments: list[ast.expr], depth: int) -> sp.Expr:
         if name == "Piecewise":
-            return sp.Piecewise(*(self._piece(each, depth) for each in arguments), evaluate=False)
+            return sp.Piecewise(*(self._piece(item, depth) for item in arguments), evaluate=False)
         if name not in FUNCTIONS:
             raise UnknownNameError(f"function in {self.where}:", name, [*FUNCTIONS, "Piecewise"])
         if len(arguments) != 1:

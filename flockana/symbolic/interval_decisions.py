@@ -97,8 +97,8 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
             if of.series(interval(left, right)) is not None:
                 continue
         if depth < _DEEPEST:
-            middle = (left + right) / 2
-            stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+            midpoint = (left + right) / 2
+            stack += [(midpoint, right, depth + 1), (left, midpoint, depth + 1)]
             continue
         fact = _visible_faults(of, region, (left + right) / 2, name, (scale, slope), kinks)
         if fact.status == "unmet":
@@ -119,29 +119,29 @@ def _float(x: fmpq) -> float:
 
 def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
     """Return faults visible in values and slopes near a point: a jump, pole, kink or missing value."""
-    whole, place = region.right - region.left, region.place(at)
-    near, far = whole / 2**100, whole / 2**50
+    region_width, position = region.right - region.left, region.place(at)
+    near_end, far_end = region_width / 2**100, region_width / 2**50
     sides: list[list[list[arb] | None]] = []
-    witness = region.between(max(at - near, region.left), min(at + near, region.right))
+    witness = region.between(max(at - near_end, region.left), min(at + near_end, region.right))
     with precision(900, 2):
         for sign in (-1, 1):
-            points = [at + sign * step for step in (near, far)]
+            points = [at + sign * step for step in (near_end, far_end)]
             if region.left <= points[0] <= region.right:
                 sides.append([of.series(arb(point)) for point in points])
     if any(all(values is None for values in side) for side in sides):
-        return Fact("unmet", f"{name} has no finite real value at s = {place:.6g}", witness)
+        return Fact("unmet", f"{name} has no finite real value at s = {position:.6g}", witness)
     if any(None in side for side in sides):
-        return Fact("assumed", f"whether {name} is defined at s = {place:.6g} is open", witness)
+        return Fact("assumed", f"whether {name} is defined at s = {position:.6g} is open", witness)
     for order, (scale, word) in enumerate(zip(scales, (name, kinks), strict=True)):
         if not word:
             continue
         threshold = _SEEN * (scale or 1.0)
         changes = [abs(side[0][order] - side[1][order]) for side in sides]  # type: ignore[index]
         if any(change > threshold for change in changes):
-            return Fact("unmet", f"{word} has no limit at s = {place:.6g}", witness)
+            return Fact("unmet", f"{word} has no limit at s = {position:.6g}", witness)
         if len(sides) == 2 and abs(sides[0][0][order] - sides[1][0][order]) > threshold:  # type: ignore[index]
-            return Fact("unmet", f"{word} jumps at s = {place:.6g}", witness)
-    return Fact("assumed", f"whether {name} is smooth at s = {place:.6g} is open", witness)
+            return Fact("unmet", f"{word} jumps at s = {position:.6g}", witness)
+    return Fact("assumed", f"whether {name} is smooth at s = {position:.6g} is open", witness)
 
 
 def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
@@ -161,19 +161,19 @@ def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
 
 def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
     """Return the sign of a formula near an end where it vanishes, and its validity width; else (0, 0)."""
-    derivative, whole = region.expression, region.right - region.left
+    derivative, region_width = region.expression, region.right - region.left
     end = region.ends[side]
     order = 0
     while (zero := is_zero(derivative.subs(region.variable, end), region.numbers)) and order < _ORDERS - 1:
         derivative, order = sp.diff(derivative, region.variable), order + 1
     if zero is not False or order == 0:
         return 0, fmpq(0)
-    of = region.enclosed
+    enclosed_expression = region.enclosed
     for halving in range(2, 60):
-        width = whole / 2**halving
+        width = region_width / 2**halving
         ball = interval(region.left, region.left + width) if side == 0 else interval(region.right - width, region.right)
         with precision(_BITS + halving, order + 1):
-            series = of.series(ball)
+            series = enclosed_expression.series(ball)
         if series is not None and not series[order].contains(0):
             sign = 1 if series[order] > 0 else -1
             return sign * (-1) ** (order * side), width
@@ -182,28 +182,28 @@ def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
 
 def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fact, Fact]:
     of = region.enclosed
-    stack, weak, looked = [(left, right, 0)], [], 0
-    while stack and looked <= MOST:
+    stack, weak, search_count = [(left, right, 0)], [], 0
+    while stack and search_count <= MOST:
         left, right, depth = stack.pop()
-        looked += 1
+        search_count += 1
         with precision(_BITS + 2 * depth, 2):
             sign = _sign_of(of, left, right)
-            middle = (left + right) / 2
-            at = of.series(arb(middle))
+            midpoint = (left + right) / 2
+            at = of.series(arb(midpoint))
             if at is not None and at[0] < 0:
-                place = region.place(middle)
-                return (Fact("unmet", f"{name} is {float(at[0]):.3g} at s = {place:.6g}", (place, place)),) * 2
+                position = region.place(midpoint)
+                return (Fact("unmet", f"{name} is {float(at[0]):.3g} at s = {position:.6g}", (position, position)),) * 2
         if sign == POSITIVE or (sign == NONNEGATIVE and depth >= _STRICT):
             weak += [(left, right)] * (sign == NONNEGATIVE)
             continue
         if depth >= _DEEPEST:
             stack.append((left, right, depth))
             break
-        stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+        stack += [(midpoint, right, depth + 1), (left, midpoint, depth + 1)]
     if stack:
-        where, rest = region.between(stack[-1][0], stack[0][1]), sum(_float(b) - _float(a) for a, b, _ in stack)
+        where, open_width = region.between(stack[-1][0], stack[0][1]), sum(_float(b) - _float(a) for a, b, _ in stack)
         text = f"whether {name} is negative is open from s = {where[0]:.6g} on"
-        return (Fact("assumed", text, where, rest),) * 2
+        return (Fact("assumed", text, where, open_width),) * 2
     fact = Fact("met", f"{name} is enclosed at every distance")
     if not weak:
         return fact, fact
@@ -233,50 +233,50 @@ class Least(NamedTuple):
 
 def least_on(region: Region, scale: float) -> Least:
     """Return an enclosure of the least value on an interval; −∞ as lower bound for undefined formulas."""
-    of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
-    best, where, looked = arb.pos_inf(), region.left, 0
+    enclosed_expression, number = region.enclosed, count(0, -1)  # of two that are as low the later first
+    best, where, search_count = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
 
     def bound_part(left: fmpq, right: fmpq) -> None:
         nonlocal best, where
-        low, high, at = _lowest(of, left, right)
+        low, high, midpoint_series = _lowest(enclosed_expression, left, right)
         if high < best:
-            best, where = high, at
+            best, where = high, midpoint_series
         heapq.heappush(heap, (down(low) if low.is_finite() else -inf, next(number), left, right))
 
     with precision(_BITS, 3):
         bound_part(region.left, region.right)
-        while looked < MOST // 2:
-            looked += 1
+        while search_count < MOST // 2:
+            search_count += 1
             low, _, left, right = heap[0]
-            close = low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best)))
-            if close or (right - left) * 2**_NARROWEST < region.right - region.left:
+            is_low = low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best)))
+            if is_low or (right - left) * 2**_NARROWEST < region.right - region.left:
                 break
             heapq.heappop(heap)
-            middle = (left + right) / 2
-            bound_part(left, middle)
-            bound_part(middle, right)
+            midpoint = (left + right) / 2
+            bound_part(left, midpoint)
+            bound_part(midpoint, right)
         return Least(min(heap[0][0], down(best)), up(best), region.place(where))
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
     """Return a lower bound on an interval, a value in the interval, and its position."""
-    middle = (left + right) / 2
-    series, at = of.series(interval(left, right)), of.series(arb(middle))
-    lowest_value = arb.pos_inf() if at is None else at[0].upper()
+    midpoint = (left + right) / 2
+    series, midpoint_series = of.series(interval(left, right)), of.series(arb(midpoint))
+    lowest_value = arb.pos_inf() if midpoint_series is None else midpoint_series[0].upper()
     if series is None:
-        return arb.neg_inf(), lowest_value, middle
+        return arb.neg_inf(), lowest_value, midpoint
     if not series[1].contains(0):
         end = left if series[1] > 0 else right
         value = of.series(arb(end))
         if value is not None:
             return value[0].lower(), value[0].upper(), end
     low = series[0].lower()
-    if at is not None:
-        off = interval(left - middle, right - middle)
-        square = (off * off).nonnegative_part()
-        low = low.max((at[0] + at[1] * off + series[2] * square).lower())
-    return low, lowest_value, middle
+    if midpoint_series is not None:
+        deviation = interval(left - midpoint, right - midpoint)
+        squared_value = (deviation * deviation).nonnegative_part()
+        low = low.max((midpoint_series[0] + midpoint_series[1] * deviation + series[2] * squared_value).lower())
+    return low, lowest_value, midpoint
 
 
 def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
@@ -289,16 +289,16 @@ def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tupl
             parts = _taylor_parts(region, scale)
             if parts is None:
                 return _UNKNOWN
-            for whole, slope, width in parts:
+            for piece_integral, slope, width in parts:
                 if slope.contains(0):
                     lows.append((total + arb(0).union(slope * width)).lower())
-                total += whole
+                total += piece_integral
                 lows.append(total.lower())
                 highs.append(total.upper())
         if at_anchor is None:
             at_anchor = total
-        minimum, most = reduce(arb.min, lows), reduce(arb.min, highs)
-        return (down(minimum - at_anchor), up(most - at_anchor)), (down(-at_anchor), up(-at_anchor))
+        minimum, maximum = reduce(arb.min, lows), reduce(arb.min, highs)
+        return (down(minimum - at_anchor), up(maximum - at_anchor)), (down(-at_anchor), up(-at_anchor))
 
 
 def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
@@ -307,8 +307,8 @@ def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | 
     stack = [(region.left, region.right, 0)]
     while stack:
         left, right, depth = stack.pop()
-        middle, half = (left + right) / 2, (right - left) / 2
-        series, at = of.series(interval(left, right)), of.series(arb(middle))
+        midpoint, half = (left + right) / 2, (right - left) / 2
+        series, at = of.series(interval(left, right)), of.series(arb(midpoint))
         if series is not None and at is not None:
             whole = sum((2 * at[k] * arb(half) ** (k + 1) / (k + 1) for k in range(0, _TERMS - 1, 2)), arb(0))
             rest = 2 * arb(half) ** _TERMS / _TERMS * series[_TERMS - 1].abs_upper()
@@ -318,5 +318,5 @@ def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | 
                 continue
         if depth >= _FINEST or len(parts) + len(stack) > _PARTS:
             return None
-        stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+        stack += [(midpoint, right, depth + 1), (left, midpoint, depth + 1)]
     return parts

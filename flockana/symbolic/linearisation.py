@@ -47,23 +47,23 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     # residuals hold each of them.
     pair = GenericPair(m)
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
-    delta, slip, z = q_j - q_i, p_j - p_i, pair.z
+    delta, velocity_difference, z = q_j - q_i, p_j - p_i, pair.z
     table = {PHI: PHI_SLOPE, ADJACENCY: ADJACENCY_SLOPE}
     weight, slope = PHI(z) / ROOT, (PHI_SLOPE(z) - EPS * PHI(z) / ROOT) / (2 * ROOT**2)
     consensus = ADJACENCY_SLOPE(z) / (2 * ROOT)
     stiffness = gains.c1_alpha * (weight * sp.eye(m) + 2 * slope * delta * delta.T)
-    by_position = stiffness + 2 * gains.c2_alpha * consensus * slip * delta.T
+    by_position = stiffness + 2 * gains.c2_alpha * consensus * velocity_difference * delta.T
     by_velocity = gains.c2_alpha * ADJACENCY(z) * sp.eye(m)
-    stated = (-by_position, by_position, -by_velocity, by_velocity)
+    stated_form = (-by_position, by_position, -by_velocity, by_velocity)
     residuals = [
         sp.expand(entry)
         for force, sign in zip(pair.forces(gains), (1, -1), strict=True)
-        for end, claimed in zip((q_i, q_j, p_i, p_j), stated, strict=True)
-        for entry in _slopes(force, table, end, sigma_norm(delta), z) - sign * claimed
+        for end, stated_rate in zip((q_i, q_j, p_i, p_j), stated_form, strict=True)
+        for entry in _slopes(force, table, end, sigma_norm(delta), z) - sign * stated_rate
     ]
-    first = r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:"
+    first_text = r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:"
     steps = (
-        Step(first, weight * delta),
+        Step(first_text, weight * delta),
         Step(r"the slope of its weight in $\|\Delta\|^2$,", slope),
         Step(r"and of $a_{ij}$,", consensus),
         Step(r"so $\partial u_i/\partial q_j = -\partial u_i/\partial q_i$ has from this pair", by_position),
@@ -80,11 +80,11 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
     root = sp.sqrt(1 + sp.Add(*(c**2 for c in x)))
     pull = sp.eye(m) / root - x * x.T / root**3 if bounded else sp.eye(m)
     by_position, by_velocity = -gains.c1_gamma * pull, -gains.c2_gamma * sp.eye(m)
-    stated = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
+    stated_form = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
     residuals = [
         sp.simplify(entry)
-        for end, claimed in stated
-        for entry in sp.ImmutableMatrix(force).jacobian(sp.Matrix(list(end))) - claimed
+        for end, stated_rate in stated_form
+        for entry in sp.ImmutableMatrix(force).jacobian(sp.Matrix(list(end))) - stated_rate
     ]
     steps = (
         Step(r"The pull to the $\gamma$-agent:", force),
@@ -103,36 +103,36 @@ def turn(obstacle: GenericObstacle) -> sp.Matrix:
     distance = sp.sqrt(x.dot(x))
     a = x / distance
     projection = sp.eye(m) - a * a.T
-    bend = projection * p * a.T + a.dot(p) * projection + a * (projection * p).T
-    return -obstacle.mu / distance * bend
+    curvature_term = projection * p * a.T + a.dot(p) * projection + a * (projection * p).T
+    return -obstacle.mu / distance * curvature_term
 
 
 def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     """Derive an obstacle's part of ∂u_i/∂(q_i, p_i), its β-agent moving with the agent."""
     # With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2
     # b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i c2 b (D − I).
-    one = GenericObstacle(kind, m)
-    gap, slip, z = one.gap, one.rate - one.p, one.z
+    obstacle = GenericObstacle(kind, m)
+    gap, velocity_difference, z = obstacle.gap, obstacle.rate - obstacle.p, obstacle.z
     table = {PHI_BETA: PHI_BETA_SLOPE, WEIGHT: WEIGHT_SLOPE}
     weight = PHI_BETA(z) / ROOT
     slope = (PHI_BETA_SLOPE(z) - EPS * PHI_BETA(z) / ROOT) / (2 * ROOT**2)
-    braking = WEIGHT_SLOPE(z) / (2 * ROOT)
-    identity = sp.eye(m) - one.derivative
+    braking_slope = WEIGHT_SLOPE(z) / (2 * ROOT)
+    identity = sp.eye(m) - obstacle.derivative
     by_position = -gains.c1_beta * (weight * identity + 2 * slope * gap * gap.T)
-    by_position += gains.c2_beta * (WEIGHT(z) * turn(one) - 2 * braking * slip * gap.T)
+    by_position += gains.c2_beta * (WEIGHT(z) * turn(obstacle) - 2 * braking_slope * velocity_difference * gap.T)
     by_velocity = -gains.c2_beta * WEIGHT(z) * identity
     functions = (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
     names = {f(z): sp.Symbol(f.__name__) for f in functions}  # then it is rational
-    force = one.force(gains)
+    force = obstacle.force(gains)
     residuals = [
-        one.reduce((entry - claimed).xreplace(names))
-        for end, block in ((one.x, by_position), (one.p, by_velocity))
-        for entry, claimed in zip(_slopes(force, table, end, sigma_norm(gap), z), block, strict=True)
+        obstacle.reduce((entry - stated_rate).xreplace(names))
+        for end, block in ((obstacle.x, by_position), (obstacle.p, by_velocity))
+        for entry, stated_rate in zip(_slopes(force, table, end, sigma_norm(gap), z), block, strict=True)
     ]
     steps = (
         Step(r"The gap to the closest point, $g = \hat q - q$:", gap),
-        Step(r"how the closest point follows, $D = \partial \hat q/\partial q$:", one.derivative),
-        Step(r"how its velocity turns, $\partial \hat p/\partial q$:", turn(one)),
+        Step(r"how the closest point follows, $D = \partial \hat q/\partial q$:", obstacle.derivative),
+        Step(r"how its velocity turns, $\partial \hat p/\partial q$:", turn(obstacle)),
         Step(r"so in $q_i$, with $w = \sqrt{1 + \epsilon \|g\|^2}$,", by_position),
         Step(r"and in $p_i$", by_velocity),
     )

@@ -23,10 +23,10 @@ class Named(sp.Function):
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the derivative by the first argument; the others are parameters."""
-        at = sp.Dummy("at", real=True)
-        composed = self.func(at, *self.args[1:]).composed
-        slope = sp.diff(composed, at)
-        return (slope if composed.has(Named) else sp.simplify(slope)).subs(at, self.args[0])
+        argument_range = sp.Dummy("at", real=True)
+        composed_form = self.func(argument_range, *self.args[1:]).composed
+        slope = sp.diff(composed_form, argument_range)
+        return (slope if composed_form.has(Named) else sp.simplify(slope)).subs(argument_range, self.args[0])
 
 
 def written(expression: sp.Expr) -> sp.Expr:
@@ -86,8 +86,8 @@ class BumpSlope(Named):
     @property
     def composed(self) -> sp.Expr:  # noqa: D102
         z, h = self.args
-        at = sp.Dummy("at", positive=True)
-        slope = sp.diff(written(Taper(Place(at, h))), at).subs(at, z)
+        argument_range = sp.Dummy("at", positive=True)
+        slope = sp.diff(written(Taper(Place(argument_range, h))), argument_range).subs(argument_range, z)
         return sp.Piecewise((0, sp.Or(z <= h, z >= 1)), (slope, True))
 
 
@@ -111,8 +111,8 @@ class Phi(Named):
         """Return (s + c, g, product of the roots), with g regularised against 0/0."""
         s, _, _, c = self.args
         x = s + c
-        at_x, at_c = sp.sqrt(1 + x**2), sp.sqrt(1 + c**2)
-        return x, sp.Abs(x) * at_c + c * at_x + TINY, at_x * at_c
+        root_at_x, root_at_c = sp.sqrt(1 + x**2), sp.sqrt(1 + c**2)
+        return x, sp.Abs(x) * root_at_c + c * root_at_x + TINY, root_at_x * root_at_c
 
 
 class PhiAbove(Phi):
@@ -142,10 +142,10 @@ class PhiIntegral(Named):
     @property
     def stable(self) -> sp.Expr:  # noqa: D102
         s, a, b, c = self.args
-        at_s, at_0, product = sp.sqrt(1 + (s + c) ** 2), sp.sqrt(1 + c**2), c * (s + c)
-        apart = (1 + c**2 + (s + c) ** 2) / (at_s * at_0 + product)
-        gap = sp.Piecewise((apart, product > 0), (at_s * at_0 - product, True))
-        return HALF * (a + b) * (s / (at_s + at_0)) ** 2 * (gap + 1) / at_0
+        root_at_s, root_at_zero, product = sp.sqrt(1 + (s + c) ** 2), sp.sqrt(1 + c**2), c * (s + c)
+        difference = (1 + c**2 + (s + c) ** 2) / (root_at_s * root_at_zero + product)
+        gap = sp.Piecewise((difference, product > 0), (root_at_s * root_at_zero - product, True))
+        return HALF * (a + b) * (s / (root_at_s + root_at_zero)) ** 2 * (gap + 1) / root_at_zero
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the derivative phi."""

@@ -63,8 +63,8 @@ class GenericObstacle:
         """Return an expression in normal form, with |x| named rho, so that identities reduce to 0."""
         square, first = self.x.dot(self.x), self.x[0]
         on_a_line = {sp.Abs(first): self.distance, sp.sign(first): first / self.distance}  # sqrt(x . x) if m = 1
-        named = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})
-        numerator, denominator = sp.fraction(sp.together(named))
+        substituted = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})
+        numerator, denominator = sp.fraction(sp.together(substituted))
         remainder = sp.rem(sp.expand(numerator), sp.expand(self.distance**2 - square), first)
         return sp.factor(remainder) / denominator if remainder != 0 else sp.S.Zero
 
@@ -82,11 +82,11 @@ class GenericObstacle:
         """Return the rate of c1_beta psi_beta + |p|^2/2 under `force`, less c2_beta b <p, p_hat - p>, reduced."""
         energy = gains.c1_beta * PSI_BETA(sigma_norm(self.gap)) + HALF * self.p.dot(self.p)
         rate = along_flow(energy, self.x, self.p, self.force(gains))
-        claimed = gains.c2_beta * WEIGHT(sigma_norm(self.gap)) * self.braking()
+        stated_rate = gains.c2_beta * WEIGHT(sigma_norm(self.gap)) * self.braking()
         phi, b, root = sp.symbols("phi b root", positive=True)
         sigma = sigma_norm(self.gap)
-        named = (rate - claimed).xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
-        return self.reduce(named.xreplace({PHI_BETA(self.z): phi, WEIGHT(self.z): b}))
+        substituted = (rate - stated_rate).xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
+        return self.reduce(substituted.xreplace({PHI_BETA(self.z): phi, WEIGHT(self.z): b}))
 
 
 def derive_envelope(kind: str, m: int = 2) -> Derivation:
@@ -125,10 +125,10 @@ class Braking:
 
 def derive_braking(kind: str, m: int = 2) -> Braking:
     """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall."""
-    generic = GenericObstacle(kind, m)
-    normal, p = generic.normal, generic.p
-    along = normal.dot(p) ** 2 / normal.dot(normal)
-    geometric = (generic.mu - 1) * (p.dot(p) - along) - along
-    residual = generic.reduce(generic.braking() - geometric)
+    generic_obstacle = GenericObstacle(kind, m)
+    normal, p = generic_obstacle.normal, generic_obstacle.p
+    axial_part = normal.dot(p) ** 2 / normal.dot(normal)
+    geometric = (generic_obstacle.mu - 1) * (p.dot(p) - axial_part) - axial_part
+    residual = generic_obstacle.reduce(generic_obstacle.braking() - geometric)
     mu = sp.S.One if kind == "wall" else 1 / (1 + DEPTH)
     return Braking(kind, residual, (sp.factor((mu - 1) * TANGENT_SQUARE), -(NORMAL_SPEED**2)))

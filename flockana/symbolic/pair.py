@@ -88,5 +88,5 @@ def energy_balance(
     title: str, energy: sp.Expr, rate: sp.Expr, *flow: Sequence[sp.Matrix], of: str = "The energy"
 ) -> Derivation:
     """Derive that an energy of columns q and p changes at a stated rate along the flow (q, p, u)."""
-    derived = along_flow(energy, *([entry for column in columns for entry in column] for columns in flow))
-    return Derivation(title, (Step(of, energy), Step("changes at", rate)), rate, (sp.expand(derived - rate),))
+    derived_rate = along_flow(energy, *([entry for column in columns for entry in column] for columns in flow))
+    return Derivation(title, (Step(of, energy), Step("changes at", rate)), rate, (sp.expand(derived_rate - rate),))

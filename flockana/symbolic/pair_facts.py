@@ -37,8 +37,8 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
     exact = {symbol: sp.Rational(repr(float(value))) for symbol, value in numbers.items()}
     if eps > 0.0:
         for name in ("r", "d"):
-            square = 1 + exact[EPS] * exact[sp.Symbol(name, positive=True)] ** 2
-            exact[sp.Symbol(f"{name}_z", positive=True)] = (sp.sqrt(square) - 1) / exact[EPS]
+            squared_value = 1 + exact[EPS] * exact[sp.Symbol(name, positive=True)] ** 2
+            exact[sp.Symbol(f"{name}_z", positive=True)] = (sp.sqrt(squared_value) - 1) / exact[EPS]
     return exact
 
 
@@ -59,14 +59,14 @@ class _NumericFormula:
     @property
     def facts(self) -> PairFacts:
         """Facts on smoothness, sign and least values."""
-        weight, inside = self._signs()
-        minimum, contact = self._energies()
-        rest = [least_on(region, self.tallest) for region in self._regions(self._weights)]
-        lowest = (min(each.low for each in rest), min(each.high for each in rest))
+        weight, inside_fact = self._signs()
+        minimum, contact_value = self._energies()
+        region_minima = [least_on(region, self.tallest) for region in self._regions(self._weights)]
+        lowest_value = (min(item.low for item in region_minima), min(item.high for item in region_minima))
         if weight.status == "met":
-            lowest = (max(lowest[0], 0.0), lowest[1])
-        smooth = conjunction([*self._inner(), *self._joints(), *self._end()], _PROOF)
-        return PairFacts(smooth, weight, inside, minimum, contact, lowest)
+            lowest_value = (max(lowest_value[0], 0.0), lowest_value[1])
+        smooth_fact = conjunction([*self._inner(), *self._joints(), *self._end()], _PROOF)
+        return PairFacts(smooth_fact, weight, inside_fact, minimum, contact_value, lowest_value)
 
     @property
     def _y(self) -> sp.Symbol:
@@ -124,7 +124,7 @@ class _NumericFormula:
         forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
-        for formulas, what, (scale, slope), kinks in (
+        for formulas, law_text, (scale, slope), kinks in (
             (self._main_pieces, name, scales, "" if forces else "the force"),
             (self._weights, "the adjacency", (self.tallest, self.tallest / self.cut.end), ""),
         ):
@@ -133,13 +133,13 @@ class _NumericFormula:
                     width, is_clear = self._clear(region)
                     region = region._replace(left=width)
                     if not is_clear:
-                        text = f"whether {what} is smooth near contact is open"
+                        text = f"whether {law_text} is smooth near contact is open"
                         yield Fact("assumed", text, (0.0, self.place(width)), float(arb(width)))
-                for fact in smooth_on(region, what, scale, slope, kinks=kinks):
-                    last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
-                    at_end = fact.status == "unmet" and last and "no limit" in fact.detail
-                    text = f"{what} has a pole at the range, s = {self.place(self.cut.end):g}"
-                    yield Fact("unmet", text, fact.witness) if at_end else fact
+                for fact in smooth_on(region, law_text, scale, slope, kinks=kinks):
+                    is_last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
+                    is_at_end = fact.status == "unmet" and is_last and "no limit" in fact.detail
+                    text = f"{law_text} has a pole at the range, s = {self.place(self.cut.end):g}"
+                    yield Fact("unmet", text, fact.witness) if is_at_end else fact
 
     def _clear(self, region: Region) -> tuple[fmpq, bool]:
         """Return the start of the checked range near contact, and whether the formula is analytic before."""
@@ -155,22 +155,22 @@ class _NumericFormula:
     def _joints(self) -> Iterator[Fact]:
         """Yield jumps at the joints of pieces."""
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
-        slopes = self._main_pieces if forces else [sp.diff(each, self._y) for each in self._main_pieces]
+        slopes = self._main_pieces if forces else [sp.diff(main_piece, self._y) for main_piece in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
         rows += [] if forces else [(self._main_pieces, "the potential", energy)]
         for k, mark in enumerate(self._marks[1:-1]):
-            place = self.place(self.cut.marks[k + 1])
+            position = self.place(self.cut.marks[k + 1])
             for row, name, scale in rows:
                 gap = (row[k] - row[k + 1]).subs(self._y, mark)
-                yield from self._vanishes(gap, scale, place, f"{name} jumps at s = {place:g}")
+                yield from self._vanishes(gap, scale, position, f"{name} jumps at s = {position:g}")
 
     def _end(self) -> Iterator[Fact]:
         """Yield a fault if the force or the adjacency does not vanish at the range."""
-        main, place = self._main_pieces[-1], self.place(self.cut.end)
+        main, position = self._main_pieces[-1], self.place(self.cut.end)
         force = main if self.cut.formula.forces else sp.diff(main, self._y)
         for what, name, scale in ((force, "force", self.strength), (self._weights[-1], "adjacency", self.tallest)):
-            text = f"the {name} does not vanish at the range, s = {place:g}"
-            yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, place, text)
+            text = f"the {name} does not vanish at the range, s = {position:g}"
+            yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, position, text)
 
     def _vanishes(self, number: sp.Expr, scale: float, place: float, fault: str) -> Iterator[Fact]:
         """Yield a fault if a number is certainly nonzero, beyond rounding of the parameters."""
@@ -181,16 +181,16 @@ class _NumericFormula:
         text = f"open is whether {fault}"
         if zero is False:
             with precision(_BITS):
-                size = abs(_value(number.xreplace(self._numbers)))
-            text = f"{fault} by {float(size):.2g}, as by rounding of a parameter"
-            if size > _SMALL * scale:
+                width_text = abs(_value(number.xreplace(self._numbers)))
+            text = f"{fault} by {float(width_text):.2g}, as by rounding of a parameter"
+            if width_text > _SMALL * scale:
                 status, text = "unmet", fault
         yield Fact(status, text, (place, place))
 
     def _signs(self) -> tuple[Fact, Fact]:
         """Return facts whether the adjacency is nonnegative, and positive below the range."""
         signs = []
-        for region in self._regions([_factored(each, self._y) for each in self._weights]):
+        for region in self._regions([_factored(weight, self._y) for weight in self._weights]):
             if region.left == 0 and self._limit(region.exact) is None:
                 fact, width = self._sign_near(region)
                 signs.append((fact, fact))
@@ -199,25 +199,25 @@ class _NumericFormula:
                 region = region._replace(left=width)
             signs.append(sign_on(region, "the adjacency"))
             signs += [(Fact("met"), fact) for fact in self._zeros(region)]
-        weights, insides = zip(*signs, strict=True)
+        weights, inside_facts = zip(*signs, strict=True)
         text = "its sign is enclosed at every distance"
-        return conjunction(weights, text), conjunction(insides, f"{text} below the range")
+        return conjunction(weights, text), conjunction(inside_facts, f"{text} below the range")
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
         """Yield ends of a region, except contact and range, at which the adjacency may vanish."""
-        for end, at in zip(region.ends, (region.left, region.right), strict=True):
+        for end, zero_place in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
-                place = self.place(at)
+                position = self.place(zero_place)
                 status: FactStatus = "unmet" if zero else "assumed"
-                yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
+                yield Fact(status, f"the adjacency vanishes at s = {position:.6g}", (position, position))
 
     def _sign_near(self, region: Region) -> tuple[Fact, fmpq]:
         """Return the sign near contact of a formula without a value there, and its validity width."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
-                start, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
+                start, falls = (germ(item, self._y, width) for item in (region.exact, sp.diff(region.exact, self._y)))
                 end = region.enclosed.series(arb(width))
             fault = Fact("unmet", "the adjacency is negative near contact", (0.0, self.place(width)))
             if start is not None and not start.factor.contains(0):
@@ -230,11 +230,11 @@ class _NumericFormula:
 
     def _limit(self, formula: sp.Expr) -> arb | None:
         """Return the value at contact of a formula analytic there."""
-        enclosed = Enclosed(formula, self._y)
+        enclosed_formula = Enclosed(formula, self._y)
         with precision(_BITS, 2):
-            if enclosed.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
+            if enclosed_formula.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
                 return None
-            values = enclosed.series(arb(0))
+            values = enclosed_formula.series(arb(0))
         return None if values is None else values[0]
 
     def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -243,11 +243,11 @@ class _NumericFormula:
         if self.cut.formula.forces:
             regions = list(self._regions(self._main_pieces))
             return least_of_integral(regions, self._point(self._declared("d"), 0), scale)
-        first, *rest = regions = list(self._regions(self._main_pieces))
-        contact, minimum, left = self._contact(first)
-        minima = [minimum, *(least_on(region, scale) for region in (first._replace(left=left), *rest))]
-        low, high = min(each.low for each in minima), min(each.high for each in minima)
-        return self._sharpened(regions, low, high), contact
+        first_region, *region_minima = regions = list(self._regions(self._main_pieces))
+        contact_value, minimum, left = self._contact(first_region)
+        minima = [minimum, *(least_on(region, scale) for region in (first_region._replace(left=left), *region_minima))]
+        low, high = min(item.low for item in minima), min(item.high for item in minima)
+        return self._sharpened(regions, low, high), contact_value
 
     def _sharpened(self, regions: list[Region], low: float, high: float) -> tuple[float, float]:
         """Return the bounds, exact if the least value is at a declared distance."""
@@ -258,7 +258,7 @@ class _NumericFormula:
             if series is None or not abs(float(series[0]) - high) <= 1e-9 * max(abs(high), scale):
                 continue
             rest = [region._replace(expression=_factored(region.expression - value, self._y)) for region in regions]
-            if all(sign_on(each, "")[0].status == "met" for each in rest):
+            if all(sign_on(item, "")[0].status == "met" for item in rest):
                 return down(series[0]), up(series[0])
         return low, high
 
@@ -277,14 +277,14 @@ class _NumericFormula:
                 end = Enclosed(formula, y).series(arb(width))
             if falls is None or end is None or falls.factor.contains(0):
                 continue
-            at_width = Least(down(end[0]), up(end[0]), self.place(width))
+            least_at_width = Least(down(end[0]), up(end[0]), self.place(width))
             if falls.power <= -1:
                 level = inf if falls.factor < 0 else -inf
-                return (level, level), at_width if level > 0 else Least(-inf, -inf, 0.0), width
+                return (level, level), least_at_width if level > 0 else Least(-inf, -inf, 0.0), width
             limit = self._close(formula, falls) or (None if germ_s is None else _bounds(germ_s))
             if limit is None:
                 continue
-            return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
+            return limit, least_at_width if falls.factor < 0 else Least(*limit, 0.0), width
         if (
             germ_s is not None and (limit := _bounds(germ_s)) is not None
         ):  # of the narrowest, whose slope has no sign known
@@ -302,8 +302,8 @@ class _NumericFormula:
             power = arb(rational(slope.power)) + 1
             if end is None or not power > 0:
                 return None
-            way = slope.factor * (arb(width).log() * power).exp() / power
-            limit = end[0] - arb(0).union(way)
+            closed_form = slope.factor * (arb(width).log() * power).exp() / power
+            limit = end[0] - arb(0).union(closed_form)
             return down(limit), up(limit)
 
 
@@ -321,8 +321,8 @@ def _bounds(own: Germ) -> tuple[float, float] | None:
 
 def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
     """Return a polynomial as a product with visible double zeros."""
-    small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
-    return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
+    is_short = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
+    return sp.factor(formula) if is_short and sp.degree(formula, y) <= 16 else formula
 
 
 def slope_bounds(
@@ -331,26 +331,26 @@ def slope_bounds(
     """Yield ends of parts of the range, also split at the cuts, with bounds of |dF/ds| and |da/ds|."""
     numbers = exact_numbers(cut.numbers, eps)
     root = sp.sqrt(1 + EPS * S**2)
-    norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
+    norm, inner_slope = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
     edges = sorted({r * k / parts for k in range(parts)} | {*places, r})
     for left, right in pairwise(edges):
-        middle = 0.5 * (left + right)
-        at = middle * middle / ((1.0 + eps * middle * middle) ** 0.5 + 1.0) if eps else middle
-        main, weight = (cut.chosen(each, at).subs(Z, norm) for each in (cut.formula.main, cut.formula.adjacency))
-        force, order = (main * along, 1) if cut.formula.forces else (main, 2)
+        midpoint = 0.5 * (left + right)
+        at = midpoint * midpoint / ((1.0 + eps * midpoint * midpoint) ** 0.5 + 1.0) if eps else midpoint
+        main, weight = (cut.chosen(item, at).subs(Z, norm) for item in (cut.formula.main, cut.formula.adjacency))
+        force, order = (main * inner_slope, 1) if cut.formula.forces else (main, 2)
         rows = (Enclosed(force.xreplace(numbers), S), order), (Enclosed(weight.xreplace(numbers), S), 1)
-        ends = fmpq(*left.as_integer_ratio()), fmpq(*right.as_integer_ratio())
-        force_slope, fading = (order * _most(of, order, *ends, 0) for of, order in rows)
-        yield left, right, force_slope, fading
+        rational_ends = fmpq(*left.as_integer_ratio()), fmpq(*right.as_integer_ratio())
+        force_slope, adjacency_slope = (order * _most(of, order, *rational_ends, 0) for of, order in rows)
+        yield left, right, force_slope, adjacency_slope
 
 
 def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:
     """Return a bound of a Taylor coefficient on an interval."""
-    middle = (left + right) / 2
+    midpoint = (left + right) / 2
     with precision(_SLOPE_BITS, order + 1):
-        series, at = of.series(interval(left, right)), of.series(arb(middle))
+        series, at = of.series(interval(left, right)), of.series(arb(midpoint))
         if series is not None and at is not None and series[order].abs_upper() <= 2 * at[order].abs_upper():
             return up(series[order].abs_upper())
     if depth >= _SLOPE_HALVINGS:
         return inf if series is None else up(series[order].abs_upper())
-    return max(_most(of, order, *ends, depth + 1) for ends in ((left, middle), (middle, right)))
+    return max(_most(of, order, *interval_ends, depth + 1) for interval_ends in ((left, midpoint), (midpoint, right)))

@@ -51,25 +51,25 @@ def read_pair(potential: str, force: str, adjacency: str, names: Iterable[str]) 
 
 @lru_cache(maxsize=_KEPT)
 def _read_pair(potential: str, force: str, adjacency: str, names: tuple[str, ...]) -> PairFormula:
-    bad = sorted(RESERVED & {*names}) or [name for name in names if not name.isidentifier()]
-    if bad:
-        raise ArgumentError(f"parameter {bad[0]!r}: expected a name that has no meaning of its own, such as 'k'")
+    bad_names = sorted(RESERVED & {*names}) or [name for name in names if not name.isidentifier()]
+    if bad_names:
+        raise ArgumentError(f"parameter {bad_names[0]!r}: expected a name that has no meaning of its own, such as 'k'")
     symbols: dict[str, sp.Symbol] = {"s": S, "z": Z} | {name: sp.Symbol(name, positive=True) for name in OWN}
     symbols |= {name: EPS if name == "eps" else sp.Symbol(name, real=True) for name in names}
-    main = read_formula(force or potential, symbols, where="force" if force else "potential")
+    main_formula = read_formula(force or potential, symbols, where="force" if force else "potential")
     weight = read_formula(adjacency, symbols, where="adjacency")
-    symbols_used = main.free_symbols | weight.free_symbols
+    symbols_used = main_formula.free_symbols | weight.free_symbols
     if {S, Z} <= symbols_used:
         raise ArgumentError("the formula is in s and in z: expected the distance s alone, or the σ-norm z alone")
-    in_norm = Z in symbols_used
-    if in_norm and "eps" not in names:
+    is_in_norm = Z in symbols_used
+    if is_in_norm and "eps" not in names:
         raise ArgumentError("a formula in the σ-norm z needs parameters['eps'], the ε of the norm")
-    if not in_norm and {symbols["r_z"], symbols["d_z"]} & symbols_used:
+    if not is_in_norm and {symbols["r_z"], symbols["d_z"]} & symbols_used:
         raise ArgumentError("r_z and d_z are σ-norms: expected a formula in z, or r and d")
-    idle = sorted(name for name in names if symbols[name] not in symbols_used and not (in_norm and name == "eps"))
+    idle = sorted(name for name in names if symbols[name] not in symbols_used and not (is_in_norm and name == "eps"))
     if idle:
         raise ArgumentError(f"parameter {idle[0]!r} is in no formula: leave it out, or use it")
-    return PairFormula(main, weight, Z if in_norm else S, bool(force))
+    return PairFormula(main_formula, weight, Z if is_in_norm else S, bool(force))
 
 
 def _without_overflow(expression: sp.Expr) -> sp.Expr:
@@ -104,14 +104,14 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
     if distance == Z:
         force = main if forces else sp.diff(main, Z)
         weight, slope = force / ROOT, (sp.diff(force, Z) - EPS * force / ROOT) / (2 * ROOT**2)
-        fading = sp.diff(adjacency, Z) / (2 * ROOT)
+        adjacency_slope = sp.diff(adjacency, Z) / (2 * ROOT)
     else:
-        at = sp.sqrt(SQUARE)
-        main, adjacency = main.subs(S, at), adjacency.subs(S, at)
-        weight = main / at if forces else 2 * sp.diff(main, SQUARE)
-        force = main if forces else weight * at
-        slope, fading = sp.diff(weight, SQUARE), sp.diff(adjacency, SQUARE)
-    return Piece(None if forces else main, force, weight, slope, adjacency, fading)
+        distance_symbol = sp.sqrt(SQUARE)
+        main, adjacency = main.subs(S, distance_symbol), adjacency.subs(S, distance_symbol)
+        weight = main / distance_symbol if forces else 2 * sp.diff(main, SQUARE)
+        force = main if forces else weight * distance_symbol
+        slope, adjacency_slope = sp.diff(weight, SQUARE), sp.diff(adjacency, SQUARE)
+    return Piece(None if forces else main, force, weight, slope, adjacency, adjacency_slope)
 
 
 def _ensure_derived(derivative: sp.Expr, most: int) -> None:
@@ -140,12 +140,12 @@ class PiecewiseFormula:
 
     @cached_property
     def _meetings(self) -> dict[float, sp.Expr]:
-        both = sp.Tuple(self.formula.main, self.formula.adjacency)
-        meet = {float(self.value(at)): at for at in map(self._meeting, _conditions(both))}
-        inside = {x: meet[x] for x in sorted(meet) if 0.0 < x < self.end}
-        if len(inside) > _CUTS:
-            raise ArgumentError(f"the formula has {len(inside) + 1} pieces: expected at most {_CUTS + 1}")
-        return inside
+        expression_pair = sp.Tuple(self.formula.main, self.formula.adjacency)
+        meeting_points = {float(self.value(at)): at for at in map(self._meeting, _conditions(expression_pair))}
+        inner_meetings = {x: meeting_points[x] for x in sorted(meeting_points) if 0.0 < x < self.end}
+        if len(inner_meetings) > _CUTS:
+            raise ArgumentError(f"the formula has {len(inner_meetings) + 1} pieces: expected at most {_CUTS + 1}")
+        return inner_meetings
 
     def _meeting(self, condition: Any) -> sp.Expr:
         """Return the distance at which a condition changes its truth value."""
@@ -153,20 +153,20 @@ class PiecewiseFormula:
         if not isinstance(condition, sp.core.relational.Relational):
             raise ArgumentError(f"the condition {condition} is not one comparison: expected one such as {y} < r/2")
         gap = condition.lhs - condition.rhs
-        steep = sp.diff(gap, y)
-        if gap.has(sp.Piecewise) or y in steep.free_symbols:
+        gap_slope = sp.diff(gap, y)
+        if gap.has(sp.Piecewise) or y in gap_slope.free_symbols:
             raise ArgumentError(f"the condition {condition} is not linear in {y}: expected one such as {y} < r/2")
         if y not in gap.free_symbols:
             return sp.Integer(-1)  # it holds everywhere, or nowhere
-        return -gap.subs(y, 0) / steep
+        return -gap.subs(y, 0) / gap_slope
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Derived expressions between consecutive marks."""
         formula, parts = self.formula, []
-        for middle in (0.5 * (left + right) for left, right in pairwise(self.marks)):
-            main, weight = (self.chosen(part, middle) for part in (formula.main, formula.adjacency))
-            parts.append(derive_piece(main, weight, formula.distance, forces=formula.forces))
+        for midpoint in (0.5 * (left + right) for left, right in pairwise(self.marks)):
+            main_formula, weight = (self.chosen(component, midpoint) for component in (formula.main, formula.adjacency))
+            parts.append(derive_piece(main_formula, weight, formula.distance, forces=formula.forces))
             _ensure_derived(parts[-1].slope, _CURVATURE)
         return tuple(parts)
 
@@ -179,7 +179,7 @@ class PiecewiseFormula:
             raise ArgumentError(f"no piece holds at {self.formula.distance} = {at:g}: end Piecewise with (0, True)")
         if not expression.args or not expression.has(sp.Piecewise):
             return expression
-        return expression.func(*(self.chosen(each, at) for each in expression.args))
+        return expression.func(*(self.chosen(arg, at) for arg in expression.args))
 
     def _holds(self, condition: Any, at: float) -> bool:
         sign = self.value((condition.lhs - condition.rhs).subs(self.formula.distance, sp.Rational(at)))
@@ -212,10 +212,10 @@ class PiecewiseFormula:
 def _compiled(expression: sp.Expr, y: sp.Symbol, symbols: tuple[sp.Symbol, ...]) -> Callable[..., Any]:
     """Return an expression as a function of y and of its parameters, for mpmath."""
     expression = expression.subs(ROOT, 1 + EPS * Z)
-    bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
+    is_bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
     symbols_given = {symbol: sp.Dummy() for symbol in symbols}  # a parameter may be named like a function of mpmath
     compiled: Callable[..., Any] = sp.lambdify(
-        [y, *symbols_given.values()], bounded.xreplace(symbols_given), [_BOUNDED, "mpmath"], dummify=True
+        [y, *symbols_given.values()], is_bounded.xreplace(symbols_given), [_BOUNDED, "mpmath"], dummify=True
     )
     return compiled
 
@@ -249,23 +249,23 @@ def _conditions(expression: sp.Basic) -> Iterator[Any]:
 def pair_derivation(formula: PairFormula) -> Derivation:
     """Derive the consequences of a formula, with the residuals of all checkable equations."""
     y = formula.distance
-    psi, named = sp.Function("psi")(y), "s" if y == S else "z"
+    psi, symbol_name = sp.Function("psi")(y), "s" if y == S else "z"
     derivative = formula.derivative
     weight = derivative / y if y == S else derivative / (1 + EPS * Z)
     potential = sp.Integral(formula.main, y) if formula.forces else formula.main
-    square = sp.Symbol("x", positive=True)
-    at = sp.sqrt(square) if y == S else (sp.sqrt(1 + EPS * square) - 1) / EPS
-    residuals = () if formula.forces else (2 * sp.diff(formula.main.subs(y, at), square) - weight.subs(y, at),)
+    squared_value = sp.Symbol("x", positive=True)
+    at = sp.sqrt(squared_value) if y == S else (sp.sqrt(1 + EPS * squared_value) - 1) / EPS
+    residuals = () if formula.forces else (2 * sp.diff(formula.main.subs(y, at), squared_value) - weight.subs(y, at),)
     steps = (
-        Step(f"The potential of a pair, in ${named}$,", sp.Eq(psi, potential, evaluate=False)),
+        Step(f"The potential of a pair, in ${symbol_name}$,", sp.Eq(psi, potential, evaluate=False)),
         Step("its derivative, negative where the pair repels,", sp.Eq(psi.diff(y), derivative, evaluate=False)),
         Step(r"the force on $i$ is $w\,(q_j - q_i)$ with", sp.Eq(sp.Symbol("w"), weight, evaluate=False)),
         Step("and velocities are averaged with", sp.Eq(sp.Symbol("a_ij"), formula.adjacency, evaluate=False)),
     )
-    return Derivation("The pair law", steps, weight, tuple(sp.simplify(each) for each in residuals))
+    return Derivation("The pair law", steps, weight, tuple(sp.simplify(residual) for residual in residuals))
 
 
 def alpha_steps() -> tuple[Step, ...]:
     """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
-    first = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
-    return first, Step("and its adjacency", adjacency(Z))
+    first_text = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
+    return first_text, Step("and its adjacency", adjacency(Z))

@@ -68,28 +68,28 @@ class _Potential:
 
     def expression(self, z: sp.Expr) -> sp.Expr:
         """Return all pieces in one Piecewise; numeric parameters select one case."""
-        on_plateau = sp.Ge(self.edge, self.zero)
+        plateau_condition = sp.Ge(self.edge, self.zero)
         branches: list[tuple[sp.Expr, sp.Basic]] = []
-        for place, case in ((True, on_plateau), (False, sp.Not(on_plateau))):
+        for is_plateau, case in ((True, plateau_condition), (False, sp.Not(plateau_condition))):
             bounds = sp.Le(z, self.edge), sp.Le(z, self.cutoff), sp.true
-            pieces = self.pieces(place)
+            pieces = self.pieces(is_plateau)
             branches += [(piece(z), sp.And(case, bound)) for piece, bound in zip(pieces, bounds, strict=True)]
         return sp.Piecewise(*branches)
 
     def residuals(self, zero_on_plateau: bool) -> tuple[sp.Expr, ...]:
         """Return residuals that must be 0: derivative less force, jumps, and the value at the zero."""
-        near, middle, far = self.pieces(zero_on_plateau)
-        at_zero = near if zero_on_plateau else middle
-        computed = (
+        inner_piece, middle_piece, outer_piece = self.pieces(zero_on_plateau)
+        zero_piece = inner_piece if zero_on_plateau else middle_piece
+        computed_value = (
             sp.diff(self.closed(Z), Z) - self.smooth(Z),
-            sp.diff(near(Z), Z) - self.smooth(Z),
-            sp.diff(middle(Z), Z) - self.tapered(Z),
-            sp.diff(far(Z), Z),
-            near(self.edge) - middle(self.edge),
-            middle(self.cutoff) - far(self.cutoff),
-            at_zero(self.zero),
+            sp.diff(inner_piece(Z), Z) - self.smooth(Z),
+            sp.diff(middle_piece(Z), Z) - self.tapered(Z),
+            sp.diff(outer_piece(Z), Z),
+            inner_piece(self.edge) - middle_piece(self.edge),
+            middle_piece(self.cutoff) - outer_piece(self.cutoff),
+            zero_piece(self.zero),
         )
-        return tuple(sp.expand(residual) for residual in computed)
+        return tuple(sp.expand(residual) for residual in computed_value)
 
 
 @check_kinds
@@ -113,8 +113,8 @@ def alpha_potential(alpha: AlphaSymbols) -> _Potential:
 
 def _beta(beta: BetaSymbols) -> _Potential:
     """Return the pieces of psi_beta, which is 0 at its cut-off."""
-    smooth, closed = (lambda z, of=of: written(of(z, beta)) for of in (beta_smooth, beta_closed))
-    return _Potential(smooth, closed, beta.d_beta, beta.d_beta, beta.h)
+    smooth_form, closed_form = (lambda z, of=of: written(of(z, beta)) for of in (beta_smooth, beta_closed))
+    return _Potential(smooth_form, closed_form, beta.d_beta, beta.d_beta, beta.h)
 
 
 @check_kinds
@@ -160,9 +160,9 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     0
     """
     potential = _beta(beta)
-    near, middle, _ = potential.pieces(zero_on_plateau=False)
+    inner_piece, middle_piece, _ = potential.pieces(zero_on_plateau=False)
     z = sp.sympify(z)
-    return sp.Piecewise((near(z), z <= potential.edge), (middle(z), z <= potential.cutoff), (0, True))
+    return sp.Piecewise((inner_piece(z), z <= potential.edge), (middle_piece(z), z <= potential.cutoff), (0, True))
 
 
 def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
@@ -175,8 +175,8 @@ def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: 
         ("Beyond the cut-off: constant.", sp.Ge(Z, cutoff)),
     )
     return tuple(
-        Step(text, sp.Eq(psi, piece(Z), evaluate=False), sp.And(case, where))
-        for (text, where), piece in zip(rows, pieces, strict=True)
+        Step(text, sp.Eq(psi, piece(Z), evaluate=False), sp.And(case, condition))
+        for (text, condition), piece in zip(rows, pieces, strict=True)
     )
 
 
@@ -223,6 +223,6 @@ def derive_psi_beta() -> Derivation:
     """
     potential = _beta(BETA_NAMED)
     closed = sp.Eq(sp.Derivative(potential.closed(Z), Z), sp.diff(potential.closed(Z), Z), evaluate=False)
-    first = r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:"
-    steps = (Step(first, closed, sp.Lt(Z, potential.edge)), *_piece_steps("psi_beta", potential, False, sp.true))
+    first_text = r"A closed antiderivative of $\phi_\beta(z) = \sigma_1(z - d_\beta) - 1$ where the bump is 1:"
+    steps = (Step(first_text, closed, sp.Lt(Z, potential.edge)), *_piece_steps("psi_beta", potential, False, sp.true))
     return Derivation(r"The potential $\psi_\beta$", steps, psi_beta(Z, beta=BETA_NAMED), potential.residuals(False))

@@ -22,7 +22,7 @@ def sum_over(summand: sp.Expr, *limits: tuple[sp.Symbol, sp.Expr, sp.Expr]) -> s
     """Return a sum term by term, factors that do not depend on the indices in front."""
     indices = [index for index, _, _ in limits]
     terms = (term.as_independent(*indices) for term in sp.Add.make_args(summand))
-    return sp.Add(*(front * sp.Sum(rest, *limits) for front, rest in terms if front != 0))
+    return sp.Add(*(factor * sp.Sum(rest, *limits) for factor, rest in terms if factor != 0))
 
 
 @check_kinds
@@ -44,9 +44,9 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
 
     def terms(total: sp.Sum) -> sp.Expr:
         *inner, (index, low, high) = total.limits
-        rest = sp.Sum(total.function, *inner) if inner else total.function
-        each = (rest.subs(index, value) for value in range(low, high + 1))
-        return sp.Add(*(terms(term) if inner else term for term in each))
+        rest_ratio = sp.Sum(total.function, *inner) if inner else total.function
+        item = (rest_ratio.subs(index, value) for value in range(low, high + 1))
+        return sp.Add(*(terms(term) if inner else term for term in item))
 
     return generic.subs({N: n, M: m}).replace(lambda e: isinstance(e, sp.Sum), terms)
 
@@ -68,8 +68,8 @@ def over_agents(summand: sp.Expr) -> sp.Expr:
 
 def sigma_distance(base: sp.IndexedBase = Q, m: sp.Expr = M) -> sp.Basic:
     """Return the definition of z_ij, the sigma-distance of agents i and j."""
-    square = sp.Sum((base[I_, K_] - base[J_, K_]) ** 2, (K_, 1, m))
-    return sp.Eq(Z[I_, J_], (sp.sqrt(1 + EPS * square) - 1) / EPS, evaluate=False)
+    squared_value = sp.Sum((base[I_, K_] - base[J_, K_]) ** 2, (K_, 1, m))
+    return sp.Eq(Z[I_, J_], (sp.sqrt(1 + EPS * squared_value) - 1) / EPS, evaluate=False)
 
 
 def collective_potential(gains: GainSymbols = GAINS) -> sp.Expr:

@@ -86,10 +86,10 @@ def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tupl
     """Return squared moduli of numerator and denominator of G(jω), polynomials in ω²."""
 
     def modulus(polynomial: sp.Expr) -> sp.Expr:
-        even, odd = ((polynomial + sign * polynomial.subs(S, -S)) / 2 for sign in (1, -1))
-        return sp.expand(sp.expand(even**2 - odd**2).subs(S, sp.I * sp.sqrt(square)))
+        even_part, odd_part = ((polynomial + sign * polynomial.subs(S, -S)) / 2 for sign in (1, -1))
+        return sp.expand(sp.expand(even_part**2 - odd_part**2).subs(S, sp.I * sp.sqrt(square)))
 
-    return tuple(modulus(part) for part in sp.fraction(transfer_function(scale, gains=gains)))
+    return tuple(modulus(component) for component in sp.fraction(transfer_function(scale, gains=gains)))
 
 
 def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square: sp.Expr = SQUARE) -> sp.Expr:
@@ -121,15 +121,15 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     pair = GenericPair(m, (X, V))
     (x_i, x_j), (v_i, v_j) = pair.q, pair.p
     q_c, p_c = vector("q_c", m), vector("p_c", m)
-    on_i, on_j = pair.forces(gains)
-    ends, centres = sp.Matrix.vstack(x_i, x_j, v_i, v_j), sp.Matrix.vstack(q_c, q_c, p_c, p_c)
-    shift = {s: s + c for s, c in zip(ends, centres, strict=True)}
+    on_i, force_on_j = pair.forces(gains)
+    pair_state, centres = sp.Matrix.vstack(x_i, x_j, v_i, v_j), sp.Matrix.vstack(q_c, q_c, p_c, p_c)
+    shift = {s: s + c for s, c in zip(pair_state, centres, strict=True)}
     own_part, translational = relative_feedback(x_i, v_i, gains)
-    stated = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
+    stated_form = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
     gradient = pair_potential(x_i, x_j, gains=gains).diff(x_i)
     consensus = gains.c2_alpha * ADJACENCY(sigma_norm(x_j - x_i)) * (v_j - v_i)
-    between = (*(on_i + on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
-    residuals = (*map(pair.tidy, between), *(own_part - stated).expand())
+    state_differences = (*(on_i + force_on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
+    residuals = (*map(pair.tidy, state_differences), *(own_part - stated_form).expand())
     f_ij, f_ji = sp.symbols("f_ij f_ji")
     relative = sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i)))
     steps = (

@@ -77,7 +77,7 @@ class ConcreteFlock(Printed):
     @cached_property
     def moving(self) -> tuple[tuple[sp.Matrix, ...], tuple[sp.Matrix, ...]]:
         """State (x, v) relative to the centre of mass."""
-        x, v = (tuple(each - sum(rows[1:], rows[0]) / self.n for each in rows) for rows in (self.q, self.p))
+        x, v = (tuple(row - sum(rows[1:], rows[0]) / self.n for row in rows) for rows in (self.q, self.p))
         return x, v
 
     @cached_property
@@ -88,8 +88,8 @@ class ConcreteFlock(Printed):
             u_i = sp.zeros(self.m, 1)
             if self.law == "algorithm2":
                 u_i += own_force(*own_p, *self.target, gains=self.gains)
-            for other in agents[:i] + agents[i + 1 :]:
-                u_i += pair_force(*own_p, *other, gains=self.gains)
+            for neighbour in agents[:i] + agents[i + 1 :]:
+                u_i += pair_force(*own_p, *neighbour, gains=self.gains)
             total.append(sp.ImmutableMatrix(u_i))
         return tuple(total)
 
@@ -98,14 +98,14 @@ class ConcreteFlock(Printed):
         """H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2 as a function of q and p."""
         x, v = self.moving if self.law == "algorithm2" else (self.q, self.p)
         potential = sp.Add(*(pair_potential(x_i, x_j, gains=self.gains) for x_i, x_j in combinations(x, 2)))
-        inertia, kinetic = (sp.Add(*(each.dot(each) for each in rows)) for rows in (x, v))
+        inertia, kinetic = (sp.Add(*(row.dot(row) for row in rows)) for rows in (x, v))
         pull = self.gains.c1_gamma * HALF * inertia if self.law == "algorithm2" else sp.S.Zero
         return potential + pull + self.kinetic_factor * kinetic
 
     @cached_property
     def rate(self) -> sp.Expr:
         """Time derivative of the energy along the flow, by the chain rule over all agents."""
-        q, p, u = ([s for rows in part for s in rows] for part in (self.q, self.p, self.acceleration))
+        q, p, u = ([s for rows in component for s in rows] for component in (self.q, self.p, self.acceleration))
         return along_flow(self.energy, q, p, u)
 
     @cached_property
@@ -132,8 +132,8 @@ class ConcreteFlock(Printed):
         """Return rate - claimed, in roots sqrt(1 + eps |q_j - q_i|^2) of each pair: 0 for a theorem."""
         roots = {}
         for i, j in combinations(range(self.n), 2):
-            square = (1 + EPS * sigma_norm(self.q[j] - self.q[i])) ** 2
-            roots[square] = sp.Symbol(f"w_{i + 1}{j + 1}", positive=True) ** 2
+            squared_value = (1 + EPS * sigma_norm(self.q[j] - self.q[i])) ** 2
+            roots[squared_value] = sp.Symbol(f"w_{i + 1}{j + 1}", positive=True) ** 2
         return sp.expand((self.rate - self.claimed).xreplace(roots))
 
     def expand(self, generic: sp.Expr) -> sp.Expr:
@@ -156,8 +156,8 @@ class ConcreteFlock(Printed):
             i, k = (int(index) - 1 for index in indexed.indices)
             return sigma_norm(self.q[k] - self.q[i]) if indexed.base == sums.Z else rows[indexed.base][i][k]
 
-        written = sums.write_out(generic, self.n, self.m)
-        return written.xreplace({indexed: entry(indexed) for indexed in written.atoms(sp.Indexed)})
+        written_sum = sums.write_out(generic, self.n, self.m)
+        return written_sum.xreplace({indexed: entry(indexed) for indexed in written_sum.atoms(sp.Indexed)})
 
     def latex(self) -> str:
         """Return acceleration, energy, rate and closed form as LaTeX."""
@@ -203,8 +203,8 @@ class NumericLaw:
 
     def acceleration(self, q: npt.ArrayLike, p: npt.ArrayLike) -> FloatArray:
         """Return u, shape (n, m)."""
-        flat = [float(u) for u in self._evaluate(0, q, p)]
-        return np.array(flat).reshape(self.flock.n, self.flock.m)
+        input_values = [float(u) for u in self._evaluate(0, q, p)]
+        return np.array(input_values).reshape(self.flock.n, self.flock.m)
 
     def energy(self, q: npt.ArrayLike, p: npt.ArrayLike) -> float:
         """Return H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2."""
@@ -252,16 +252,16 @@ def numeric_law(
     """
     flock = ConcreteFlock(law, n, m, gains)
     values: dict[sp.Expr, sp.Expr] = {EPS: alpha.eps}
-    for name, symbols, given in zip(("q_r", "p_r"), flock.target, (q_r, p_r), strict=True):
-        components = ensure_vector(name, np.zeros(m) if given is None else given, m)
+    for name, symbols, given_value in zip(("q_r", "p_r"), flock.target, (q_r, p_r), strict=True):
+        components = ensure_vector(name, np.zeros(m) if given_value is None else given_value, m)
         values |= {symbol: sp.Rational(float(x)) for symbol, x in zip(symbols, components, strict=True)}
-    state = [symbol for part in (flock.q, flock.p) for row in part for symbol in row]
-    numbers = _numbers(alpha)
+    state = [symbol for component in (flock.q, flock.p) for row in component for symbol in row]
+    parameter_values = _numbers(alpha)
     accelerations = [u.xreplace(values) for row in flock.acceleration for u in row]
     expressions = [accelerations, flock.energy.xreplace(values), flock.rate.xreplace(values)]
-    missing = sp.Tuple(*numbers, *sp.flatten(expressions)).free_symbols - set(state)
+    missing = sp.Tuple(*parameter_values, *sp.flatten(expressions)).free_symbols - set(state)
     if missing:
         raise ArgumentError(f"parameters {sorted(map(str, missing))} are symbols: expected a number for each")
     scalars = {"phi_alpha": phi_alpha, "psi_alpha": psi_alpha, "a": adjacency}
-    modules = [{name: _compile(scalar, numbers) for name, scalar in scalars.items()}, "mpmath"]
-    return NumericLaw(flock, tuple(sp.lambdify(state, each, modules, cse=True) for each in expressions))
+    modules = [{name: _compile(scalar, parameter_values) for name, scalar in scalars.items()}, "mpmath"]
+    return NumericLaw(flock, tuple(sp.lambdify(state, expression, modules, cse=True) for expression in expressions))

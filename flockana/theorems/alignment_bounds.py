@@ -56,9 +56,9 @@ class AlignmentRate:
         power = self.weight.decay - 0.5
         if power <= 0.0:
             return inf
-        y, whole = self.stretch * abs(start) / self.weight.length, float(beta(power, 0.5))
-        tail = 0.5 * whole * float(betainc(power, 0.5, 1.0 / (1.0 + y * y)))
-        return self._unit * (tail if start >= 0.0 else whole - tail)
+        y, threshold = self.stretch * abs(start) / self.weight.length, float(beta(power, 0.5))
+        tail = 0.5 * threshold * float(betainc(power, 0.5, 1.0 / (1.0 + y * y)))
+        return self._unit * (tail if start >= 0.0 else threshold - tail)
 
     def reached(self, start: float, speed: float) -> float:
         """Return the x_M at which ∫φ from `start` equals the speed; infinite without one."""
@@ -137,24 +137,24 @@ class Guarantee:
 
     def _falls(self, needs: list[Hypothesis]) -> Claim:
         """Return the claim that v falls at the guaranteed rate, at each sample at which v exceeds its error."""
-        seen, v, name, rate = self.seen, self.v, self.names[1], self.bound.falling(np.vectorize(self.phi))
-        count = seen.known_samples(v.lo > 0.0)
+        observation, v, name, rate = self.seen, self.v, self.names[1], self.bound.falling(np.vectorize(self.phi))
+        count = observation.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:
             return undecided("rate", "no fall above the error of the run", needs, proof=self.proof)
-        t = seen.t[1:count] - seen.t[0]
+        t = observation.t[1:count] - observation.t[0]
         fall = (v[0] / v[1:count]).log() / t
         margin = fall / rate - 1.0
         k = margin.worst_index
         return judged("rate", margin, needs, proof=self.proof, computed=float(fall.mid[k])).described(
             stated=f"{name.format('(t)')} <= {name.format('(0)')} exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
-            witness={"time": float(t[k] + seen.t[0])},
+            witness={"time": float(t[k] + observation.t[0])},
             detail=f"from the start to any sample {self.names[1].format('')} falls at a mean rate of {fall.mid[k]:.6g} "
-            f"at least, {seen.until(count)}",
+            f"at least, {observation.until(count)}",
         )
 
     def _limit(self, what: str, needs: list[Hypothesis]) -> Claim:
         v, x_m = self.v.mid, float(self.bound.mid)
-        x_name, name = (each.format("") for each in self.names)
+        x_name, name = (item.format("") for item in self.names)
         text = (
             f"{x_name} never exceeds {x_m:.6g}, so {name} falls exponentially"
             if x_m < inf

@@ -91,10 +91,10 @@ def start_of(law: Any, q0: Any, p0: Any, t0: float) -> Observed:
         u = law.acceleration(t0, q0)
     else:
         u = np.zeros(np.shape(q0)) if law.is_map or wrappers_of(law) else law.acceleration(t0, q0, p0)
-    extra = {name: np.asarray(value)[None] for name, value in law.start(q0, p0).items()} if law.is_map else {}
-    series = extra or {"work": np.zeros(1)}
-    alone = Observed.alone(Trajectory(np.array([t0]), q0[None], p0[None], np.asarray(u)[None], law, series))
-    return replace(alone, doubt="")  # of its motion nothing is asked
+    extra_series = {name: np.asarray(value)[None] for name, value in law.start(q0, p0).items()} if law.is_map else {}
+    series = extra_series or {"work": np.zeros(1)}
+    start_observation = Observed.alone(Trajectory(np.array([t0]), q0[None], p0[None], np.asarray(u)[None], law, series))
+    return replace(start_observation, doubt="")  # of its motion nothing is asked
 
 
 def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, ...]]:
@@ -104,28 +104,28 @@ def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, .
     if item.on_motion:
         return [_row(item, name, "needs a run") for name in item.claims]
     try:
-        needs, claims = item.examine(start, used)
+        requirements, claims = item.examine(start, used)
     except FlockanaError as why:  # of a start alone it has no answer
         return [_row(item, name, "needs a run", detail=str(why)) for name in item.claims]
-    need_shown = next((need for need in needs if need.on_motion and need.status != "met"), None)
+    need_shown = next((need for need in requirements if need.on_motion and need.status != "met"), None)
     return [_judge(item, claim, need_shown) for claim in claims]
 
 
 def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tuple[Any, ...]:
     """Return the row of one claim: decided by the first unmet requirement, else by proof or disproof."""
     for missing in ("unmet", "assumed"):
-        for each in claim.needs:
-            if each.status == missing and not each.on_motion:
-                return _row(item, claim.name, missing, each, proof=claim.proof, by=claim.by)
+        for entry in claim.needs:
+            if entry.status == missing and not entry.on_motion:
+                return _row(item, claim.name, missing, entry, proof=claim.proof, by=claim.by)
     if shown is not None:
-        unsure = "assumed" if shown.status == "assumed" else "needs a run"
-        return _row(item, claim.name, unsure, shown, proof=claim.proof, by=claim.by)
-    is_known = not any(need.on_motion for need in claim.needs)
-    proved, disproved = claim.status == "verified" and claim.proof, claim.status == "refuted" and claim.disproof
-    status = "needs a run" if not is_known else "met" if proved else "disproved" if disproved else "needs a run"
+        is_doubtful = "assumed" if shown.status == "assumed" else "needs a run"
+        return _row(item, claim.name, is_doubtful, shown, proof=claim.proof, by=claim.by)
+    is_known = not any(requirement.on_motion for requirement in claim.needs)
+    proved, is_disproved = claim.status == "verified" and claim.proof, claim.status == "refuted" and claim.disproof
+    status = "needs a run" if not is_known else "met" if proved else "disproved" if is_disproved else "needs a run"
     margins = {float(x.margin): x for x in claim.needs if x.margin is not None}
-    need = margins[min(margins)] if margins else None
-    return _row(item, claim.name, status, need, proof=claim.proof or claim.disproof, by=claim.by)
+    requirement = margins[min(margins)] if margins else None
+    return _row(item, claim.name, status, requirement, proof=claim.proof or claim.disproof, by=claim.by)
 
 
 def _row(

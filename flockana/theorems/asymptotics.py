@@ -38,17 +38,17 @@ def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name:
     except SolverError as why:
         return undecided(name, str(why), about="limit")
     caught = final_basin(seen)
-    pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0
-    room, is_certain = tolerances.lattice - limit_strain(seen, end, caught), caught.certificate.certain
+    is_pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0
+    margin, is_certain = tolerances.lattice - limit_strain(seen, end, caught), caught.certificate.certain
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
-    decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if is_certain and not pressed else []
-    strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if is_certain else None
-    return limit_claim(name, needs, decides, escape=strained, computed=end.strain).described(
+    decides = [Certificate(float(margin.lo), caught.certificate.text, 0.0)] if is_certain and not is_pressed else []
+    strain_certificate = Certificate(float(-margin.hi), caught.certificate.text, 0.0) if is_certain else None
+    return limit_claim(name, needs, decides, escape=strain_certificate, computed=end.strain).described(
         stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
         witness={"force": end.force, "links": end.links, "curvature": end.curvature},
         detail=f"at the end: {kind}, links {end.shortest:.6g} to {end.longest:.6g}, residual force {end.force:.2g}"
         + ("" if is_certain else f"; {caught.certificate.text}")
-        + ("; λJ compresses every link" if pressed else ""),
+        + ("; λJ compresses every link" if is_pressed else ""),
     )
 
 

@@ -29,8 +29,8 @@ def attraction(
         return basins.ALONE
     if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
         return basins.Basin()
-    everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
-    if not (everywhere or law.gains.c2_alpha > 0.0):
+    is_global = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
+    if not (is_global or law.gains.c2_alpha > 0.0):
         return basins.Basin()
     force, stiffness = _force(law, q), law.stiffness(q)
     curvature, stiffest = basins.curvatures(stiffness, rigid_motions(q))
@@ -39,8 +39,8 @@ def attraction(
         translations = np.tile(np.eye(q.shape[1]), (len(q), 1)) / sqrt(len(q))
         curvature, stiffest = basins.curvatures(stiffness, translations)
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
-    connected = everywhere or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
-    if distance + off == inf or not connected:
+    connected_claim = is_global or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
+    if distance + off == inf or not connected_claim:
         return basins.Basin(inf, 0.0, distance, curvature)
     windows = law.alpha.length * basins.WINDOWS
     leaving, lipschitz = basins.barrier(curvature, distance, windows, lambda w: lipschitz_within(law, q, w), off=off)
@@ -51,15 +51,15 @@ def attraction(
 def final_basin(seen: Observed) -> basins.Basin:
     """Return the basin near the last state of a run, with its error; cached with the run."""
     q, p, q_error, p_error = seen.end
-    off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
-    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
+    error_bars, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
+    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=error_bars, p_off=p_off))
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     """Return ‖∇U(x)‖ over all coordinates, plus a bound of its rounding."""
-    near = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
+    link_counts = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
-    rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (near + 1.0) + 16.0 * EPS * pull
+    rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (link_counts + 1.0) + 16.0 * EPS * pull
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * rounding
 
 
@@ -78,10 +78,10 @@ def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatA
     s = Enclosure.between(ends[:-1], ends[1:])
     root = (1.0 + alpha.eps * s.square()).sqrt()
     slant, steep = s / root, 1.0 / (root * root * root)
-    phi, slope, bend = _action(alpha, (root - 1.0) / alpha.eps)
-    bowed = 3.0 * (slope * slant - alpha.eps * s * phi / root.square()) * steep
+    phi, slope, second_slope = _action(alpha, (root - 1.0) / alpha.eps)
+    bowed_term = 3.0 * (slope * slant - alpha.eps * s * phi / root.square()) * steep
     across = slope * slant / root - alpha.eps * s * phi * steep
-    return (abs(bend * slant * slant * slant + bowed) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
+    return (abs(second_slope * slant * slant * slant + bowed_term) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
 
 
 def _action(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
@@ -106,8 +106,8 @@ def _bump(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, 
     peak = (inside.lo <= 0.5 * pi) & (inside.hi >= 0.5 * pi)
     ends = np.sin(inside.lo), np.sin(inside.hi)
     sine = Enclosure(np.minimum(*ends), np.sin(inside.mid), np.where(peak, 1.0, np.maximum(*ends))).widened(4.0 * EPS)
-    within = 1.0 - ((angle.hi < 0.0) | (angle.lo > pi))
+    in_support = 1.0 - ((angle.hi < 0.0) | (angle.lo > pi))
     partly = (angle.lo < 0.0) | (angle.hi > pi)
     bend = -0.5 * (pi / width) ** 2 * cosine
     low, high = np.where(partly, np.minimum(bend.lo, 0.0), bend.lo), np.where(partly, np.maximum(bend.hi, 0.0), bend.hi)
-    return 0.5 * (1.0 + cosine), -0.5 * pi / width * sine * within, Enclosure(low, bend.mid, high) * within
+    return 0.5 * (1.0 + cosine), -0.5 * pi / width * sine * in_support, Enclosure(low, bend.mid, high) * in_support

@@ -69,10 +69,10 @@ ALONE = Basin(0.0, inf, 0.0, inf)  # of one agent, which has no relative motion
 
 def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
     """Return the least eigenvalue off rigid motions, less its rounding, and the largest; NaN and 0 without any."""
-    free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
-    if free.shape[1] == 0:
+    free_directions = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
+    if free_directions.shape[1] == 0:
         return nan, 0.0
-    values = np.linalg.eigvalsh(free.T @ (stiffness @ free))
+    values = np.linalg.eigvalsh(free_directions.T @ (stiffness @ free_directions))
     largest = float(np.abs(values).max())
     return float(values[0]) - 64.0 * len(rigid) * EPS * largest, largest
 
@@ -89,11 +89,11 @@ def gyration(q: FloatArray) -> float:
     turns = []
     for a in range(m):
         for b in range(a):
-            turn = np.zeros_like(x)
-            turn[:, a], turn[:, b] = x[:, b], -x[:, a]
-            turns.append(turn.ravel())
-    sizes = np.linalg.svd(np.array(turns), compute_uv=False) if turns else np.empty(0)
-    return float(np.min(sizes[sizes > _SYMMETRIC * sizes.max(initial=0.0)], initial=inf))
+            quarter_turn = np.zeros_like(x)
+            quarter_turn[:, a], quarter_turn[:, b] = x[:, b], -x[:, a]
+            turns.append(quarter_turn.ravel())
+    singular_values = np.linalg.svd(np.array(turns), compute_uv=False) if turns else np.empty(0)
+    return float(np.min(singular_values[singular_values > _SYMMETRIC * singular_values.max(initial=0.0)], initial=inf))
 
 
 def connected_within(q: FloatArray, reach: float) -> bool:
@@ -112,19 +112,19 @@ def barrier(
     """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ without one."""
     # A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when
     # even with L = 0 they were no better.
-    best, constant = 0.0, inf
+    best_level, constant = 0.0, inf
     for window in sorted(windows, reverse=True):
         reach = window - distance
-        if reach <= 0.0 or reach**2 * (0.5 * curvature) <= best:
+        if reach <= 0.0 or reach**2 * (0.5 * curvature) <= best_level:
             break
         lipschitz = lipschitz_within(float(window))
         if lipschitz > 0.0:
             reach = min(reach, 0.5 * curvature / lipschitz)
         inner = curvature - lipschitz * distance  # 7/8 of the curvature at least, if the distance is reach/4 at most
         height = reach**2 * (0.5 * inner - lipschitz * reach / 6.0)
-        if reach > max(4.0 * distance, distance + off) and height > best:
-            best, constant = float(height), lipschitz
-    return best, constant
+        if reach > max(4.0 * distance, distance + off) and height > best_level:
+            best_level, constant = float(height), lipschitz
+    return best_level, constant
 
 
 def excess(
@@ -142,5 +142,5 @@ def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
     # by T, which is at most the largest sum of the weights at both ends of a link.
     if not len(pairs):
         return 0.0
-    ends = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)
-    return sqrt(2.0) * float((ends[pairs[:, 0]] + ends[pairs[:, 1]]).max())
+    third_sums = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)
+    return sqrt(2.0) * float((third_sums[pairs[:, 0]] + third_sums[pairs[:, 1]]).max())

@@ -21,9 +21,9 @@ from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Traj
 def _motion(seen: Observed) -> FloatArray:
     """Return the largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and the paths' error, shape (3, T − 1)."""
     bounds = []
-    for h, points, off in polygons(seen.run):
+    for h, points, path_error in polygons(seen.run):
         legs = _legs(h, points - points.mean(axis=0))
-        bounds.append([lengths(legs).max(), lengths(4.0 / h * np.diff(legs, axis=1)).max(), off.max()])
+        bounds.append([lengths(legs).max(), lengths(4.0 / h * np.diff(legs, axis=1)).max(), path_error.max()])
     motion = seen.run.over_intervals(np.maximum, np.reshape(bounds, (-1, 3)).T)
     motion[0] += seen.between_speed_error
     motion[2] += seen.between_error
@@ -46,8 +46,8 @@ def mismatch_over(seen: Observed) -> Enclosure:
         sizes, slack = np.array([np.sqrt(np.sum(square, axis=(0, 2)).max()) for square in squares]), seen.run.path.slack
         if slack is not None:  # of steps that were not kept it is known where they went, and not how fast
             sizes[slack.max(axis=1) > 0.0] = np.inf
-        size: FloatArray = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
-        return size**2 / (2.0 * seen.n)
+        magnitude: FloatArray = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
+        return magnitude**2 / (2.0 * seen.n)
 
     return _over(seen, seen.mismatch, bound)
 
@@ -56,10 +56,10 @@ def stretch_between(seen: Observed) -> FloatArray:
     """Return bounds of how far distances may leave the range of their end values, shape (T − 1,)."""
     if seen.is_map:
         return np.zeros(len(seen.t) - 1)
-    (speed, force, off), h, min_distance = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
+    (speed, force, path_error), h, min_distance = _motion(seen), np.diff(seen.t), seen.run.metric("min_distance")
     low = np.maximum(np.minimum(min_distance[:-1], min_distance[1:]), np.finfo(float).tiny)
     with np.errstate(over="ignore"):
-        stretch: FloatArray = _slack(low, low, h, 2.0 * speed, 2.0 * force) + 2.0 * off
+        stretch: FloatArray = _slack(low, low, h, 2.0 * speed, 2.0 * force) + 2.0 * path_error
     return stretch
 
 
@@ -72,9 +72,9 @@ def spread_over(seen: Observed) -> Enclosure:
     """Return the largest √Σ‖q_i − q_c‖² over each interval between samples, shape (T − 1,)."""
 
     def bound() -> FloatArray:
-        steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
-        sizes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
-        return seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
+        steps = ((points - points.mean(axis=0), path_error) for _, points, path_error in polygons(seen.run))
+        magnitudes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(path_error) for x, path_error in steps]
+        return seen.run.over_intervals(np.maximum, np.array(magnitudes)) + np.sqrt(seen.n) * seen.between_error
 
     return _over(seen, seen.spread, bound)
 
@@ -89,18 +89,18 @@ def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]
 
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
     """Return an enclosure of the least distance of given pairs over the run, also between samples."""
-    at_samples = seen.distances(i, j).min()
+    sample_distances = seen.distances(i, j).min()
     if seen.is_map or len(seen.t) == 1:
-        return at_samples
+        return sample_distances
     distances = []
-    for _, points, off in polygons(seen.run):
-        apart = points[j] - points[i]
-        ways = apart.mean(axis=1, keepdims=True)
-        ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), np.finfo(float).tiny)
-        distances.append((np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min())
-    between = seen.run.over_intervals(np.minimum, np.array(distances)) - 2.0 * seen.between_error
-    low = max(min(float(between.min()), float(at_samples.lo)), 0.0)
-    return Enclosure(low, at_samples.mid, at_samples.hi)
+    for _, points, path_error in polygons(seen.run):
+        is_separate = points[j] - points[i]
+        path_means = is_separate.mean(axis=1, keepdims=True)
+        path_means /= np.maximum(np.linalg.norm(path_means, axis=2, keepdims=True), np.finfo(float).tiny)
+        distances.append((np.sum(is_separate * path_means, axis=2).min(axis=1) - path_error[i] - path_error[j]).min())
+    interval_distances = seen.run.over_intervals(np.minimum, np.array(distances)) - 2.0 * seen.between_error
+    low = max(min(float(interval_distances.min()), float(sample_distances.lo)), 0.0)
+    return Enclosure(low, sample_distances.mid, sample_distances.hi)
 
 
 def polygons(run: Trajectory, steps: Iterable[int] | None = None) -> Iterator[tuple[float, FloatArray, FloatArray]]:
@@ -162,9 +162,9 @@ def _nets_between(seen: Observed) -> Nets:
     if seen.doubt:
         return _unknown_nets(seen, len(seen.t) - 1)
     run, r, rounding, rows = seen.run, reach(seen), _rounding(seen), []
-    h, (speed, force, off), first = np.diff(run.t), _motion(seen), np.searchsorted(run.path.t, run.t)
+    h, (speed, force, path_error), first = np.diff(run.t), _motion(seen), np.searchsorted(run.path.t, run.t)
     for k in range(len(run.t) - 1):
-        error = 2.0 * float(off[k]) + rounding
+        error = 2.0 * float(path_error[k]) + rounding
         pairs = links(run.q[k], r + 4.0 * float(speed[k] * h[k]) + 2.0 * error)
         ends = np.stack([link_lengths(run.q[k], pairs), link_lengths(run.q[k + 1], pairs)])
         low, high = ends.min(axis=0), ends.max(axis=0)
@@ -186,17 +186,17 @@ def _unknown_nets(seen: Observed, count: int) -> Nets:
 
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
     """Return how far a distance may exceed its end values, given relative speeds and accelerations."""
-    straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
-    return np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
+    straight_part, curved_part = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
+    return np.where(low - straight_part >= 0.5 * r, np.minimum(straight_part, curved_part), straight_part)
 
 
 def _relative(run: Trajectory, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest relative speed and acceleration of given pairs over given steps."""
     speed, force = np.zeros((2, len(pairs)))
     for h, points, _ in polygons(run, steps):
-        legs = _legs(h, points[pairs[:, 1]] - points[pairs[:, 0]])
-        speed = np.maximum(speed, lengths(legs).max(axis=1))
-        force = np.maximum(force, lengths(4.0 / h * np.diff(legs, axis=1)).max(axis=1))
+        control_legs = _legs(h, points[pairs[:, 1]] - points[pairs[:, 0]])
+        speed = np.maximum(speed, lengths(control_legs).max(axis=1))
+        force = np.maximum(force, lengths(4.0 / h * np.diff(control_legs, axis=1)).max(axis=1))
     return speed, force
 
 
@@ -210,10 +210,10 @@ def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool
     count = int(certain.sum())
     if count == len(pairs):
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
-        giant = run.n * float(run.metric("giant_share")[k])
-        return round(number), round(number), round(giant), round(giant), count, 0
-    fewest, most = (np.bincount(components(run.n, linked)) for linked in (pairs[certain], pairs))
-    return fewest.size, most.size, int(fewest.max()), int(most.max()), count, len(pairs) - count
+        giant_size = run.n * float(run.metric("giant_share")[k])
+        return round(number), round(number), round(giant_size), round(giant_size), count, 0
+    fewest, maximum = (np.bincount(components(run.n, link_mask)) for link_mask in (pairs[certain], pairs))
+    return fewest.size, maximum.size, int(fewest.max()), int(maximum.max()), count, len(pairs) - count
 
 
 def _nets(rows: list[tuple[float, ...]]) -> Nets:

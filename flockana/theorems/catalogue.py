@@ -78,6 +78,6 @@ def _printed_as(name: str) -> Theorem:
     if len(matches) == 1:
         return matches[0]
     if matches:
-        listed = "; ".join(f"{x.id} ({x.source})" for x in matches)
-        raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
+        listing = "; ".join(f"{x.id} ({x.source})" for x in matches)
+        raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listing}")
     raise UnknownNameError("theorem", name, theorems())

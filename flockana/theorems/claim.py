@@ -123,9 +123,9 @@ class Claim(ShortRepr):
             raise ArgumentError(f"claim {self.name!r} has error = {self.error:g}: expected none below 0")
         if self.status not in ("verified", "refuted"):
             return
-        weak = self.status == "refuted" or self.about != "run"
-        barred = {"unmet", "assumed"} if weak else {"unmet"}
-        if (need := next((need for need in self.needs if need.status in barred), None)) is not None:
+        weak_claim = self.status == "refuted" or self.about != "run"
+        barred_statuses = {"unmet", "assumed"} if weak_claim else {"unmet"}
+        if (need := next((need for need in self.needs if need.status in barred_statuses), None)) is not None:
             raise ArgumentError(
                 f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "
                 "inconclusive"
@@ -151,10 +151,10 @@ class Claim(ShortRepr):
     @property
     def explanation(self) -> str:
         """Explanation of the claim: its detail, preceded by the unmet hypothesis if vacuous."""
-        missed = unmet(self.needs) if self.status == "vacuous" else None
-        if missed is None or self.detail.startswith(does_not_hold(missed.name)):
+        unmet_hypothesis = unmet(self.needs) if self.status == "vacuous" else None
+        if unmet_hypothesis is None or self.detail.startswith(does_not_hold(unmet_hypothesis.name)):
             return self.detail
-        return f"{does_not_hold(missed.name)}; {self.detail}"
+        return f"{does_not_hold(unmet_hypothesis.name)}; {self.detail}"
 
     @property
     def cited(self) -> str:
@@ -188,8 +188,8 @@ def with_alarm(claims: Iterable[Claim]) -> tuple[Claim, ...]:
     if alarm is None:
         return claims
     doubt = max(alarm.needs, key=lambda need: _DECIDED.index(need.decided), default=None)
-    which = f": doubt first that {doubt.name} ({doubt.decided})" if doubt else ""
-    text = f"nothing is decided, as the numbers of {alarm.name} contradict the proof {alarm.contradicts!r}{which}"
+    alarm_text = f": doubt first that {doubt.name} ({doubt.decided})" if doubt else ""
+    text = f"nothing is decided, as the numbers of {alarm.name} contradict the proof {alarm.contradicts!r}{alarm_text}"
 
     def judged(claim: Claim) -> Claim:
         if not (claim is alarm or (claim.needs and claim.status in ("verified", "refuted"))):

@@ -74,17 +74,17 @@ def conclude(
         The margin that decided, a scalar.
     """
     needs = tuple(needs)
-    status, how, contradicts = with_needs(by_numbers, needs, about), rigour, ""
-    cites: tuple[str, ...] = ()
+    status, how, is_contradicting = with_needs(by_numbers, needs, about), rigour, ""
+    cited_names: tuple[str, ...] = ()
     proved: Status = "verified" if proof else "refuted"
-    if (key := proof or disproof) and all(need.status == "met" for need in needs):
+    if (key := proof or disproof) and all(requirement.status == "met" for requirement in needs):
         if by_numbers in ("verified", "refuted") and by_numbers != proved:
-            status, contradicts = "inconclusive", key
+            status, is_contradicting = "inconclusive", key
             detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
         else:
-            status, how, cites = proved, RIGOUR[key], CITES.get(key, ())
-    ends = (float(end) for end in (margin.mid, margin.lo, margin.hi))
-    best = next((end for end in ends if np.isfinite(end)), 0.0)  # finite, so that a search can compare margins
+            status, how, cited_names = proved, RIGOUR[key], CITES.get(key, ())
+    margin_ends = (float(end) for end in (margin.mid, margin.lo, margin.hi))
+    best = next((end for end in margin_ends if np.isfinite(end)), 0.0)  # finite, so that a search can compare margins
     return Claim(
         name,
         status,
@@ -96,8 +96,8 @@ def conclude(
         detail=detail.lstrip("; "),
         needs=needs,
         about=about,
-        contradicts=contradicts,
-        cites=cites,
+        contradicts=is_contradicting,
+        cites=cited_names,
         **fields,
     )
 
@@ -119,7 +119,7 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
     status : str
         Status by numbers or certificates alone.
     """
-    statuses = {need.status for need in needs}
+    statuses = {requirement.status for requirement in needs}
     if "unmet" in statuses:
         return "vacuous"
     return status if "assumed" not in statuses or (status == "verified" and about == "run") else "inconclusive"
@@ -208,11 +208,11 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
     >>> equal("corrected", 0).computed, equal("printed", [0, 1]).status
     ('residual 0', 'refuted')
     """
-    several = isinstance(residual, list | tuple)
-    holds = all(row == 0 for row in residual) if several else bool(residual == 0)
-    computed = "residual 0" if holds else "a residual that is not 0"
-    witness = [str(row) for row in residual] if several else str(residual)
-    return exact(name, holds, computed=computed, witness=witness, **fields)
+    has_several = isinstance(residual, list | tuple)
+    is_equal = all(row == 0 for row in residual) if has_several else bool(residual == 0)
+    computed_value = "residual 0" if is_equal else "a residual that is not 0"
+    witness = [str(row) for row in residual] if has_several else str(residual)
+    return exact(name, is_equal, computed=computed_value, witness=witness, **fields)
 
 
 def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
@@ -229,8 +229,8 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
     'c1α > 0 does not hold: c1α = 0'
     """
     if isinstance(reason, Hypothesis):
-        why = f"{does_not_hold(reason.name)}: {reason.detail}".removesuffix(": ")
-        return Claim(name, "vacuous", detail=why, needs=(reason,), **fields)
+        reason_text = f"{does_not_hold(reason.name)}: {reason.detail}".removesuffix(": ")
+        return Claim(name, "vacuous", detail=reason_text, needs=(reason,), **fields)
     return Claim(name, "vacuous", detail=reason, **fields)
 
 

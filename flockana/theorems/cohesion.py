@@ -28,35 +28,35 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     """Return an enclosure of the largest distance of each agent from a point over a run, shape (n,)."""
     run = seen.run
     error = seen.shape_error + seen.centre_error[:, None]
-    at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
-    most = at_samples.hi.copy()
-    there = np.zeros(3)  # paths have three components in every dimension
-    there[: run.m] = place
-    off = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
+    sample_distances = Enclosure.around(lengths(run.q - place), error).max(axis=0)
+    maximum = sample_distances.hi.copy()
+    origin_point = np.zeros(3)  # paths have three components in every dimension
+    origin_point[: run.m] = place
+    deviation = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
     for _, points, allowance in polygons(run):
-        most = np.maximum(most, lengths(points - there).max(axis=1) + allowance + off)
-    return Enclosure(at_samples.lo, at_samples.mid, most)
+        maximum = np.maximum(maximum, lengths(points - origin_point).max(axis=1) + allowance + deviation)
+    return Enclosure(sample_distances.lo, sample_distances.mid, maximum)
 
 
 def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound", proof: str | None = None) -> Claim:
     """Return the claim that each pulled agent stays within the distance allowed by the initial energy."""
     law, gains = seen.law, gains_of(seen)
-    unit, pulled = law.term(Navigation).unit, np.flatnonzero(gains > 0.0)
+    unit, pulled_agents = law.term(Navigation).unit, np.flatnonzero(gains > 0.0)
     energy = seen.energy[0] - (0.0 if law.alpha is None else meeting(seen).floor)
-    allowed = stacked([bound(energy, gain, unit) for gain in gains[pulled]])
+    distance_bounds = stacked([bound(energy, gain, unit) for gain in gains[pulled_agents]])
     if law.moving:
-        distance = seen.distances_from_centre.max(axis=0)[pulled]
+        distance = seen.distances_from_centre.max(axis=0)[pulled_agents]
         distance = Enclosure(distance.lo, distance.mid, np.maximum(distance.hi, radius_over(seen).hi.max()))
     else:
-        distance = farthest(seen, law.target.position(float(seen.t[0])))[pulled]
-    margin = allowed - distance
-    worst, whose = margin.worst_index, "the centre of mass" if law.moving else "the γ-agent"
-    agent = int(pulled[worst])
+        distance = farthest(seen, law.target.position(float(seen.t[0])))[pulled_agents]
+    margin = distance_bounds - distance
+    worst, centre_text = margin.worst_index, "the centre of mass" if law.moving else "the γ-agent"
+    agent = int(pulled_agents[worst])
     return judged(name, margin, needs, proof=proof, computed=float(distance.mid[worst])).described(
-        stated=f"agent {agent} stays within {allowed.mid[worst]:.5g} of {whose}",
+        stated=f"agent {agent} stays within {distance_bounds.mid[worst]:.5g} of {centre_text}",
         witness={"agent": agent},
-        detail=f"of {pulled.size} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "
-        f"{distance.mid[worst]:.4g} from {whose}, and H(0) allows {allowed.mid[worst]:.4g}",
+        detail=f"of {pulled_agents.size} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "
+        f"{distance.mid[worst]:.4g} from {centre_text}, and H(0) allows {distance_bounds.mid[worst]:.4g}",
     )
 
 

@@ -41,15 +41,15 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
     noise = _noise(seen, tolerances)
     if seen.doubt:
         return depths
-    off = float(2.0 * seen.shape_error.max())
+    deviation = float(2.0 * seen.shape_error.max())
     path = seen.run.path.q
     for contact in contacts_of(seen.run, tolerances):
-        apart = path[:, contact.j] - path[:, contact.i]
-        moving = np.flatnonzero((apart != 0.0).any(axis=0))
+        displacement = path[:, contact.j] - path[:, contact.i]
+        moving = np.flatnonzero((displacement != 0.0).any(axis=0))
         if moving.size == 1:
-            depth = float(min(apart[:, moving[0]].max(), -apart[:, moving[0]].min()))
-            if depth > noise + off:
-                depths[contact.i, contact.j] = depth - off
+            depth = float(min(displacement[:, moving[0]].max(), -displacement[:, moving[0]].min()))
+            if depth > noise + deviation:
+                depths[contact.i, contact.j] = depth - deviation
     return depths
 
 
@@ -60,29 +60,29 @@ def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
 
 
 def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
-    everyone = set(combinations(range(run.n), 2)) if not np.isfinite(noises).all() else set()
-    pairs = [set() if np.isfinite(noise) else everyone for noise in noises]
+    all_pairs = set(combinations(range(run.n), 2)) if not np.isfinite(noises).all() else set()
+    pairs = [set() if np.isfinite(noise) else all_pairs for noise in noises]
     t, *states, slack = run.path
-    intervals, of_sample = _intervals(run, noises)
+    intervals, sample_indices = _intervals(run, noises)
     for k in intervals:
-        noise = float(noises[of_sample[k]])
+        noise = float(noises[sample_indices[k]])
         if not np.isfinite(noise):
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
-        within = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
-        for i, j in pair_blocks(states[0][k], within + 2.0 * float(reach.max())):
-            at = np.empty(i.size)
-            touching_pairs(points, reach, i, j, within, at)
-            i, j = i[at >= 0.0], j[at >= 0.0]
-            pairs[of_sample[k]].update(zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), strict=True))
+        contact_limits = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
+        for i, j in pair_blocks(states[0][k], contact_limits + 2.0 * float(reach.max())):
+            path_rows = np.empty(i.size)
+            touching_pairs(points, reach, i, j, contact_limits, path_rows)
+            i, j = i[path_rows >= 0.0], j[path_rows >= 0.0]
+            pairs[sample_indices[k]].update(zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), strict=True))
     return pairs
 
 
 def _intervals(run: Trajectory, distance: FloatArray | float) -> tuple[IndexArray, IndexArray]:
     """Return path intervals in which a pair may come into contact, and the neighbouring samples."""
     lower = run.closest_approach().lower_by_interval
-    of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
-    return np.flatnonzero(~(lower > distance)[of_sample]), of_sample
+    sample_indices = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
+    return np.flatnonzero(~(lower > distance)[sample_indices]), sample_indices
 
 
 def _noise(seen: Observed, tolerances: Tolerances) -> float:
@@ -119,29 +119,29 @@ def energy_within_accuracy(seen: Observed, k: int) -> float:
     law, run, place, speed = seen.law, seen.run, seen.shape_error[k], seen.speed_error[k]
     if not (np.isfinite(place).all() and np.isfinite(speed).all()):
         return float("inf")
-    away, drift = (lengths(x - x.mean(axis=0)) for x in (run.q[k], run.p[k]))
+    centre_distances, drift = (lengths(x - x.mean(axis=0)) for x in (run.q[k], run.p[k]))
     off = float(np.sum(drift * speed + 0.5 * speed**2))
     if law.target is not None:
-        off += float(np.max(law.gains.c1_gamma)) * float(np.sum(away * place + 0.5 * place**2))
+        off += float(np.max(law.gains.c1_gamma)) * float(np.sum(centre_distances * place + 0.5 * place**2))
     if law.alpha is not None and law.gains.c1_alpha:
         i, j = np.triu_indices(seen.n, 1)
-        apart, width = lengths(run.q[k][j] - run.q[k][i]), place[i] + place[j]
-        where = np.maximum(apart + width * np.linspace(-1.0, 1.0, 33)[:, None], 0.0)
-        best = law.alpha.energy(apart)
-        energy_excess = np.abs(law.alpha.energy(np.full_like(apart, law.alpha.length)) - best)
-        change = np.abs(law.alpha.energy(where.ravel()).reshape(where.shape) - best).max(axis=0)
-        holds_least = np.abs(apart - law.alpha.length) <= width
+        distances, width = lengths(run.q[k][j] - run.q[k][i]), place[i] + place[j]
+        where = np.maximum(distances + width * np.linspace(-1.0, 1.0, 33)[:, None], 0.0)
+        best_energy = law.alpha.energy(distances)
+        energy_excess = np.abs(law.alpha.energy(np.full_like(distances, law.alpha.length)) - best_energy)
+        change = np.abs(law.alpha.energy(where.ravel()).reshape(where.shape) - best_energy).max(axis=0)
+        holds_least = np.abs(distances - law.alpha.length) <= width
         off += float(law.gains.c1_alpha) * float(np.where(holds_least, np.maximum(change, energy_excess), change).sum())
     return off if np.isfinite(off) else float("inf")
 
 
 def energy_at_end(seen: Observed) -> Enclosure:
     """Return the energy of the last state in the moving frame, enclosed by both runs."""
-    best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
-    rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
+    best_energy, other_energy = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
+    rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best_energy]))[0]
     allowed = energy_within_accuracy(seen, -1)
-    allowance = DOUBT * abs(best - other) + seen.floors.work + rounding + allowed
-    return Enclosure.around(best, np.inf if seen.doubt else allowance)
+    allowance = DOUBT * abs(best_energy - other_energy) + seen.floors.work + rounding + allowed
+    return Enclosure.around(best_energy, np.inf if seen.doubt else allowance)
 
 
 def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
@@ -177,11 +177,11 @@ def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: 
     if not margin.lo > 0.0:
         margin = Enclosure(-np.inf, margin.mid, np.inf)  # in the plane nearness is no contact
         text = f"the least distance is between {distance.lo:.4g} and {distance.hi:.4g}"
-        if certain := passed(seen, tolerances):
-            pair = max(certain, key=lambda each: certain[each])
-            margin = Enclosure.of(-certain[pair])
-            by = f"passing each other by at least {certain[pair]:.4g}"
-            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
+        if certain_meetings := passed(seen, tolerances):
+            pair = max(certain_meetings, key=lambda each: certain_meetings[each])
+            margin = Enclosure.of(-certain_meetings[pair])
+            distance_text = f"passing each other by at least {certain_meetings[pair]:.4g}"
+            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {distance_text}"
     return judged(name, margin, needs, proof=proof, computed=float(distance.mid)).described(
         stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
@@ -194,19 +194,19 @@ def distinct_pairs(
 ) -> Claim:
     """Return the printed claim that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
     c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
-    fewest, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
+    fewest, maximum = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
     bites = condition("k < n(n-1)/2", fewest < pairs, float(pairs - fewest - 1))
     certain, possible = passed(seen, tolerances), set().union(*near(seen, tolerances))
-    refuted = len(certain) > most
-    counted_ones = set(certain) if refuted else possible
-    first = [c for c in contacts_of(seen.run, tolerances) if (c.i, c.j) in counted_ones]
+    refuted = len(certain) > maximum
+    counted_pairs = set(certain) if refuted else possible
+    first = [c for c in contacts_of(seen.run, tolerances) if (c.i, c.j) in counted_pairs]
     return counted(
         name,
-        most if refuted else fewest,
+        maximum if refuted else fewest,
         len(certain),
         pairs if seen.doubt else max(len(possible), len(certain)),
         [*needs, bites],
-        computed=len(counted_ones),
+        computed=len(counted_pairs),
         stated=f"at most {fewest} of {pairs} pairs collide, as H(0) = {energy.mid / c_star:.4g} c*",
         witness=[f"agents {c.i} and {c.j} at t = {c.time:.6g}{' (order changed)' if c.crossed else ''}" for c in first],
         disproof=disproof,
@@ -222,19 +222,19 @@ def pairs_at_one_instant(
     # Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
     # than the contact distance at a sample, as coincident there.
     c_star, above = meeting(seen).c_star, above_least(seen, seen.energy)
-    allowed, at_most = np.floor(above.lo / c_star), np.floor(above.hi / c_star)
-    together = np.array([len(pairs) for pairs in near(seen, tolerances)])
+    pair_limit, upper_count = np.floor(above.lo / c_star), np.floor(above.hi / c_star)
+    barrier_energy = np.array([len(pairs) for pairs in near(seen, tolerances)])
     exactly = _at_one_place(seen.run.q)  # nothing else is certain at an instant
-    spare = np.minimum(allowed[:-1], allowed[1:]) - together
-    worst, broken = (int(np.argmin(spare)) if spare.size else 0), int(np.argmin(at_most - exactly))
-    high = float((at_most - exactly)[broken]) + 0.5
-    low = float(spare.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
+    pair_margin = np.minimum(pair_limit[:-1], pair_limit[1:]) - barrier_energy
+    worst, broken = (int(np.argmin(pair_margin)) if pair_margin.size else 0), int(np.argmin(upper_count - exactly))
+    high = float((upper_count - exactly)[broken]) + 0.5
+    low = float(pair_margin.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
     refuted = high < 0.0 and not seen.doubt
     margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
-    return judged(name, margin, needs, proof=proof, computed=int(together.max(initial=0))).described(
+    return judged(name, margin, needs, proof=proof, computed=int(barrier_energy.max(initial=0))).described(
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
-        witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(allowed[worst])},
-        detail=_instant_text(int(together.max(initial=0)), float(allowed.min())),
+        witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(pair_limit[worst])},
+        detail=_instant_text(int(barrier_energy.max(initial=0)), float(pair_limit.min())),
     )
 
 
@@ -249,7 +249,7 @@ def _instant_text(together: int, allowed: float) -> str:
 def _at_one_place(q: FloatArray) -> IndexArray:
     """Return the number of exactly coincident pairs at each instant."""
     pairs = np.zeros(len(q), dtype=np.intp)
-    ties = (np.diff(np.sort(q[:, :, 0], axis=1), axis=1) == 0.0).any(axis=1)
-    for k in np.flatnonzero(ties):
+    is_tied = (np.diff(np.sort(q[:, :, 0], axis=1), axis=1) == 0.0).any(axis=1)
+    for k in np.flatnonzero(is_tied):
         pairs[k] = pairs_at_one_place(q[k])
     return pairs

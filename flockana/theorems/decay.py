@@ -84,9 +84,9 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
 
 def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     """Return the claim about the deviation's exponent: the first neglected term is quadratic about a lattice."""
-    exponents = [each.exponent for each in ranges.values()]
+    exponents = [item.exponent for item in ranges.values()]
     margin = _EXPONENT - max(abs(exponent - 2.0) for exponent in exponents)
-    error = max(each.exponent_error for each in ranges.values())
+    error = max(item.exponent_error for item in ranges.values())
     bend = sqrt(1.0 + alpha.eps * alpha.d**2) / alpha.d**2  # σ₁'s argument is 1 where ‖q_ij‖_σ is off by 1
     limits = [f"{name}: 1 % at {x.limit(0.01):.2g} d, 10 % at {x.limit(0.1):.2g} d" for name, x in ranges.items()]
     return spectral("range", margin, error).described(
@@ -94,7 +94,7 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
             name: {key.replace("_", " "): getattr(x, key) for key in _RANGE_FIELDS} for name, x in ranges.items()
         },
         stated="a run leaves its linear prediction by a distance that grows as the square of the amplitude",
-        witness={"σ₁ bends at": bend, "a link reaches r at": {name: each.margin for name, each in ranges.items()}},
+        witness={"σ₁ bends at": bend, "a link reaches r at": {name: item.margin for name, item in ranges.items()}},
         detail=f"exponents {', '.join(f'{exponent:.3f}' for exponent in exponents)}; deviation of "
         f"{'; '.join(limits)}. σ₁ saturates where a link is off by {bend:.2g} d, and that ends the linear range, long "
         "before a link reaches r",
@@ -111,8 +111,8 @@ def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
     if law.target is not None:
         law = replace(law, target=StaticTarget(law.target.position(float(seen.t[-1]))))
     try:
-        beside = find_equilibrium(law, seen.end.q, method="descent", max_iter=_STEPS)
-        linear = linearise(law, beside)
+        side_state = find_equilibrium(law, seen.end.q, method="descent", max_iter=_STEPS)
+        linear = linearise(law, side_state)
     except FlockanaError as error:
         return None, str(error)
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
@@ -152,14 +152,14 @@ def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
     dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method). Checked at the equilibrium that the run's
     last state is near to.
     """
-    name, known = "an equilibrium near the last state is stable", seen.accuracy_of_end
-    if known > _KNOWN * seen.scales.length:
-        need = Hypothesis(name, "assumed", detail=f"the last state is known to {known:.2g} only")
-        return [need], [undecided(each, need.detail, [need]) for each in _NAMES]
-    linear, why = _terminal(seen)
-    stable = linear is not None and bool(linear.modes) and linear.stable
-    conditions = [condition(name, stable, detail=why, decided="enclosed")]
-    if linear is None or not stable:
+    name, known_run = "an equilibrium near the last state is stable", seen.accuracy_of_end
+    if known_run > _KNOWN * seen.scales.length:
+        requirement = Hypothesis(name, "assumed", detail=f"the last state is known to {known_run:.2g} only")
+        return [requirement], [undecided(item, requirement.detail, [requirement]) for item in _NAMES]
+    linear, reason_text = _terminal(seen)
+    is_stable = linear is not None and bool(linear.modes) and linear.stable
+    conditions = [condition(name, is_stable, detail=reason_text, decided="enclosed")]
+    if linear is None or not is_stable:
         return conditions, []
     try:
         rates = decay(linear, name=f"n = {seen.n}, last state")

@@ -22,13 +22,13 @@ def _pair(law: Algorithm1) -> Claim:
     """Return the claim that the sweep finds the closed-form delay of two agents on a line."""
     system = delay_system(law, find_equilibrium(law, [[0.0], [law.alpha.length]]).q, delayed="all")
     stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
-    swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
-    off = abs(swept - exact) / exact
-    return spectral("pair", _ALIKE - off, 64.0 * EPS, proof="second-order-modes").described(
-        computed={"sweep": swept, "closed form": exact},
+    swept_delay, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
+    deviation = abs(swept_delay - exact) / exact
+    return spectral("pair", _ALIKE - deviation, 64.0 * EPS, proof="second-order-modes").described(
+        computed={"sweep": swept_delay, "closed form": exact},
         stated="τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²))",
         detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}; a sweep over frequency finds it to "
-        f"{off:.1g} of its value",
+        f"{deviation:.1g} of its value",
     )
 
 
@@ -38,14 +38,14 @@ def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
     system = delay_system(law, q, delayed=delayed)
     critical = delay_margin(system)
     below, error_below = _rightmost(system, (1.0 - _AROUND) * critical.delay)
-    above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
-    return spectral(f"algorithm-{kind}-{delayed}", *min((-below, error_below), (above, error_above))).described(
+    root_above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
+    return spectral(f"algorithm-{kind}-{delayed}", *min((-below, error_below), (root_above, error_above))).described(
         computed={"n": len(q), "delay": critical.delay, "frequency": critical.frequency},
         stated="the rightmost root has Re s < 0 just below the margin and Re s > 0 just above",
-        witness={"Re s below": below, "Re s above": above},
+        witness={"Re s below": below, "Re s above": root_above},
         detail=f"hexagon of {len(q)}, Algorithm {kind}, {_WHAT[delayed]}: stable up to τ* = "
         f"{critical.delay:.5g}, then a swing at {critical.frequency:.4g} rad per time unit; Re s = {below:.2g} "
-        f"at 0.98 τ*, {above:+.2g} at 1.02 τ*",
+        f"at 0.98 τ*, {root_above:+.2g} at 1.02 τ*",
     )
 
 
@@ -59,7 +59,9 @@ def _rightmost(system: DelaySystem, delay: float) -> tuple[float, float]:
     "delay-margin",
     title="The delay at which a flock loses stability",
     source="ours",
-    expected={"verified": " ".join(["pair", *(f"algorithm-{kind}-{delayed}" for kind in (1, 2) for delayed in _WHAT)])},
+    expected={
+        "verified": " ".join(["pair", *(f"algorithm-{kind}-{delay_kind}" for kind in (1, 2) for delay_kind in _WHAT)])
+    },
     author="flockana",
 )
 def theorem(tolerances: Tolerances) -> list[Claim]:
@@ -68,4 +70,4 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     discretisation of the delayed state (Breda, Maset, Vermiglio). For two agents on a line τ* has a closed form.
     """
     laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
-    return [*(_delay(law, delayed) for law in laws for delayed in _WHAT), _pair(laws[0])]
+    return [*(_delay(law, delay_kind) for law in laws for delay_kind in _WHAT), _pair(laws[0])]

@@ -44,8 +44,8 @@ def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
     """Return a bound of √Σ‖d_i − mean‖² at all times, for a disturbance d without noise."""
     parts = [(part,) for part in (law.force, law.swing) if part is not None]  # each at the times when it is largest
     parts += [] if law.table is None else [law.table]  # linear between its rows
-    sizes = (max(np.linalg.norm(moving_frame(np.broadcast_to(row, shape))) for row in part) for part in parts)
-    return float(sum(sizes)) * (1.0 + _SLACK)
+    magnitudes = (max(np.linalg.norm(moving_frame(np.broadcast_to(row, shape))) for row in part) for part in parts)
+    return float(sum(magnitudes)) * (1.0 + _SLACK)
 
 
 def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
@@ -66,8 +66,8 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
     except FlockanaError as error:
         return condition(name, False, detail=f"no basin: {error}", decided="enclosed"), None
     largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
-    margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
-    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{rounded}"
+    margin, unit_text = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
+    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{unit_text}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
         return condition(name, False, margin, text, decided="enclosed"), None
@@ -77,10 +77,10 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
 def _stays(seen: Observed, case: _Case) -> Claim:
     """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
-    radius, apart = unit * float(basin.radius), unit * float(basin.distance)
+    radius, start_distance = unit * float(basin.radius), unit * float(basin.distance)
     claim = _nearer(seen, case, "stays", 0, radius)
     return claim.described(
-        stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {apart:.4g}",
+        stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {start_distance:.4g}",
         detail=f"proved by the Lyapunov function of the basin; at the samples at most {claim.computed:.3g} away",
     )
 
@@ -94,31 +94,31 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
 
     bound, run, basin = case.bound, seen.given, case.bound.basin
     distance, speed = case.unit * float(bound.distance), case.unit * float(bound.speed)
-    first = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
+    first_index = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
     with ctx.workdps(DIGITS):
         excess = max(basin.above(case.q, case.p)[1], arb(0))
-        since = ball(float(run.t[first]) - float(run.t[0]))
-        start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
-        allowed = case.unit * float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
-    claim = _nearer(seen, case, "ultimate", first, allowed)
+        elapsed_time = ball(float(run.t[first_index]) - float(run.t[0]))
+        start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * elapsed_time).exp()
+        distance_limit = case.unit * float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
+    claim = _nearer(seen, case, "ultimate", first_index, distance_limit)
     return claim.described(
         stated=f"in the end at most {distance:.4g} from the orbit, with speeds of at most {speed:.4g}",
-        witness={"allowed by then": allowed},
+        witness={"allowed by then": distance_limit},
         detail=f"in the last fifth of the run at most {claim.computed:.3g} from the orbit; proved are "
-        f"{distance:.4g} in the end, and {allowed:.4g} by then",
+        f"{distance:.4g} in the end, and {distance_limit:.4g} by then",
     )
 
 
 def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float) -> Claim:
     """Return a proved claim that the flock is nearer to the orbit than a bound, with samples for comparison."""
     basin, run, unit = case.bound.basin, seen.given, case.unit
-    some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
-    distances = [basin.above(run.q[k] / unit, run.p[k] / unit)[0] for k in some]  # upper bounds
+    sample_indices = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
+    distances = [basin.above(run.q[k] / unit, run.p[k] / unit)[0] for k in sample_indices]  # upper bounds
     distance = unit * max(map(float, distances))
-    error = float(np.linalg.norm(seen.shape_error[some], axis=1).max())
+    error = float(np.linalg.norm(seen.shape_error[sample_indices], axis=1).max())
     margin = Enclosure(allowed - distance - error, allowed - distance, np.maximum(allowed, allowed - distance))
-    by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"
-    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=distance)
+    sample_claim: Status = "verified" if margin.lo > 0.0 else "inconclusive"
+    return conclude(name, sample_claim, margin, about="all", proof=_PROOF, computed=distance)
 
 
 @run_theorem(
@@ -137,5 +137,5 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin falls at the rate α wherever it is
     larger than (W c/α)².
     """
-    need, case = _case(seen)
-    return [need], [] if case is None else [_stays(seen, case), _ultimate(seen, case)]
+    requirement, case = _case(seen)
+    return [requirement], [] if case is None else [_stays(seen, case), _ultimate(seen, case)]

@@ -32,12 +32,12 @@ class Enclosure:
     __array_ufunc__ = None  # a numpy array on the left leaves the operation to this class
 
     def __post_init__(self) -> None:
-        mid = np.asarray(self.mid, dtype=np.float64)
-        lo, hi = (np.broadcast_to(np.asarray(end, dtype=np.float64), mid.shape) for end in (self.lo, self.hi))
+        midpoint = np.asarray(self.mid, dtype=np.float64)
+        lo, hi = (np.broadcast_to(np.asarray(end, dtype=np.float64), midpoint.shape) for end in (self.lo, self.hi))
         lo, hi = np.where(np.isnan(lo), -np.inf, lo), np.where(np.isnan(hi), np.inf, hi)
         if (lo > hi).any():
             raise ArgumentError(f"lo = {lo[lo > hi][0]:g} above hi = {hi[lo > hi][0]:g}: expected lo <= hi")
-        for name, value in (("lo", lo), ("mid", mid), ("hi", hi)):
+        for name, value in (("lo", lo), ("mid", midpoint), ("hi", hi)):
             object.__setattr__(self, name, value)
 
     @classmethod
@@ -57,8 +57,8 @@ class Enclosure:
         """Return the enclosure with given ends, with the middle or a finite end as best value."""
         lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
         with np.errstate(invalid="ignore"):
-            middle = np.where(np.isinf(lo), hi, np.where(np.isinf(hi), lo, 0.5 * lo + 0.5 * hi))
-        return cls(lo, middle, hi)
+            midpoint = np.where(np.isinf(lo), hi, np.where(np.isinf(hi), lo, 0.5 * lo + 0.5 * hi))
+        return cls(lo, midpoint, hi)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -106,9 +106,9 @@ class Enclosure:
 
     def __mul__(self, other: Real) -> Enclosure:
         x = Enclosure.of(other)
-        ends = [_product(a, b) for a in (self.lo, self.hi) for b in (x.lo, x.hi)]
+        end_products = [_product(a, b) for a in (self.lo, self.hi) for b in (x.lo, x.hi)]
         exact = ((self.lo == 0.0) & (self.hi == 0.0)) | ((x.lo == 0.0) & (x.hi == 0.0))
-        lo, hi = np.minimum.reduce(ends), np.maximum.reduce(ends)
+        lo, hi = np.minimum.reduce(end_products), np.maximum.reduce(end_products)
         sign = ((self.lo >= 0.0) & (x.lo >= 0.0)) | ((self.hi <= 0.0) & (x.hi <= 0.0))
         product = _outward(lo, _product(self.mid, x.mid), hi, exact=exact, keep_zero=False)
         return Enclosure(np.where(sign, np.maximum(product.lo, 0.0), product.lo), product.mid, product.hi)
@@ -117,15 +117,15 @@ class Enclosure:
 
     def __truediv__(self, other: Real) -> Enclosure:
         x = Enclosure.of(other)
-        crosses = (x.lo <= 0.0) & (x.hi >= 0.0)
+        contains_zero = (x.lo <= 0.0) & (x.hi >= 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             inverse = _outward(
-                np.where(crosses & (x.lo < 0.0), -np.inf, 1.0 / x.hi),
+                np.where(contains_zero & (x.lo < 0.0), -np.inf, 1.0 / x.hi),
                 1.0 / x.mid,
-                np.where(crosses & (x.hi > 0.0), np.inf, 1.0 / x.lo),
+                np.where(contains_zero & (x.hi > 0.0), np.inf, 1.0 / x.lo),
             )
-            quotient, mid = self * inverse, np.divide(self.mid, x.mid)
-        return Enclosure(quotient.lo, mid, quotient.hi)
+            quotient, midpoint = self * inverse, np.divide(self.mid, x.mid)
+        return Enclosure(quotient.lo, midpoint, quotient.hi)
 
     def __rtruediv__(self, other: Real) -> Enclosure:
         return Enclosure.of(other) / self
@@ -136,8 +136,8 @@ class Enclosure:
 
     def square(self) -> Enclosure:
         """Return x², at least 0."""
-        size = abs(self)
-        return size * size
+        magnitude = abs(self)
+        return magnitude * magnitude
 
     def sqrt(self) -> Enclosure:
         """Return √x of the nonnegative part of the enclosure."""
@@ -154,8 +154,8 @@ class Enclosure:
     def rising(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
         """Return a nondecreasing function of the enclosure, with ends rounded outwards."""
         with np.errstate(all="ignore"):
-            lo, mid, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
-        return _outward(lo, mid, hi, ulps=ulps)
+            lo, midpoint, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
+        return _outward(lo, midpoint, hi, ulps=ulps)
 
     def falling(self, function: Callable[[FloatArray], Any]) -> Enclosure:
         """Return a nonincreasing function of the enclosure, with ends rounded outwards."""
@@ -188,10 +188,10 @@ class Enclosure:
     def sum(self, axis: int | None = None) -> Enclosure:
         """Return the sum of all entries, widened by the rounding of its terms."""
         terms = self.mid.size if axis is None else self.mid.shape[axis]
-        sizes = np.maximum(np.abs(self.lo), np.abs(self.hi)).sum(axis=axis)
+        magnitudes = np.maximum(np.abs(self.lo), np.abs(self.hi)).sum(axis=axis)
         with np.errstate(invalid="ignore", over="ignore"):
             total = Enclosure(*(end.sum(axis=axis) for end in (self.lo, self.mid, self.hi)))
-            return total.widened(terms * np.finfo(float).eps * sizes)
+            return total.widened(terms * np.finfo(float).eps * magnitudes)
 
     def largest_so_far(self) -> Enclosure:
         """Return the running maximum along the first axis."""
@@ -214,9 +214,9 @@ def _product(a: FloatArray, b: FloatArray) -> FloatArray:
 def _outward(lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True) -> Enclosure:
     """Return computed ends moved outwards by their rounding; exact ends are kept."""
     lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
-    down, up = lo, hi
+    lower_end, upper_end = lo, hi
     for _ in range(ulps):
-        down, up = np.nextafter(down, -np.inf), np.nextafter(up, np.inf)
-    stay: npt.NDArray[np.bool_] = np.asarray(exact, dtype=np.bool_)
-    low_stays, high_stays = (stay | (end == 0.0) if keep_zero else stay for end in (lo, hi))
-    return Enclosure(np.where(low_stays, lo, down), mid, np.where(high_stays, hi, up))
+        lower_end, upper_end = np.nextafter(lower_end, -np.inf), np.nextafter(upper_end, np.inf)
+    is_exact: npt.NDArray[np.bool_] = np.asarray(exact, dtype=np.bool_)
+    low_stays, high_stays = (is_exact | (end == 0.0) if keep_zero else is_exact for end in (lo, hi))
+    return Enclosure(np.where(low_stays, lo, lower_end), mid, np.where(high_stays, hi, upper_end))

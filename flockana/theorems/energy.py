@@ -51,19 +51,19 @@ def cancelling(run: Trajectory) -> FloatArray:
     if law.moving or (law.target is None and not law.obstacles):
         return np.zeros(len(p))
     speed = lengths(p)
-    size: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
+    dimension: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
     if law.target is not None:
         any_p_r = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
-        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*any_p_r, strict=True))
-        size += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
-        size += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
-    return size
+        q_r, p_r, rate = (np.array(item)[:, None] for item in zip(*any_p_r, strict=True))
+        dimension += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
+        dimension += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
+    return dimension
 
 
 def _damps_only(run: Trajectory) -> bool:
     """Return whether dH/dt is a sum of squares outside of obstacles, with a resting or absent γ-agent."""
     # ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
-    target, is_known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
+    target, is_known = run.law.target, all(type(obstacle) in (Sphere, Wall, Capsule) for obstacle in run.law.obstacles)
     return is_known and (
         target is None or not any(np.any(target.state(t)[1]) or np.any(target.rate(t)) for t in run.t.tolist())
     )
@@ -81,8 +81,8 @@ def falling_share(
 
     def share(run: Trajectory) -> FloatArray:
         falls = -rate(run)
-        size = np.abs(falls) + 2.0 * cancels(run)
-        return np.divide(falls, size, out=np.ones_like(falls), where=size > 0.0)
+        magnitude = np.abs(falls) + 2.0 * cancels(run)
+        return np.divide(falls, magnitude, out=np.ones_like(falls), where=magnitude > 0.0)
 
     rounding = (seen.n**2 + 64) * EPS
     if not cancels(seen.run).any():  # a sum of terms of one sign keeps it in floating point
@@ -109,26 +109,26 @@ def never_rises(
     cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
     one_sign = cancels is cancelling and _damps_only(seen.run)
     share = falling_share(seen, rate, cancels, one_sign=one_sign)
-    stop, until = len(seen.t), ""
+    stop, end_text = len(seen.t), ""
     if cancels(seen.run).any() and not one_sign:
         speeds = Enclosure.around(lengths(seen.run.p), seen.speed_error + seen.drift_error[:, None])
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
-        until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
+        end_text = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
     if stop <= since:
         return undecided(name, "the motion is not known well enough to determine the sign of dH/dt", needs, proof=proof)
     share = share[since:stop]
     worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
     claim = judged(name, share, needs, proof=proof)
-    signed = formula and (one_sign or not cancels(seen.run).any())  # by a formula of squares
-    if claim.status == "verified" and claim.rigour == "numeric" and not signed:
-        until += "; between samples nothing bounds it, and no formula decides its sign"
+    signed_forces = formula and (one_sign or not cancels(seen.run).any())  # by a formula of squares
+    if claim.status == "verified" and claim.rigour == "numeric" and not signed_forces:
+        end_text += "; between samples nothing bounds it, and no formula decides its sign"
         claim = replace(claim, status="inconclusive")
     return claim.described(
         computed=highest,
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for {seen.t[since]:.6g} <= t <= {seen.t[-1]:.6g}",
         witness={"time": float(seen.t[since + worst])},
         detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
-        f"{share.mid.min():.2g} times the sum of its terms' sizes{until}",
+        f"{share.mid.min():.2g} times the sum of its terms' sizes{end_text}",
     )
 
 
@@ -149,12 +149,12 @@ def stays_outside(run: Observed) -> Hypothesis:
 
 def smooth_where_needed(run: Observed) -> list[Hypothesis]:
     """Return the hypothesis that the pair law is C¹; empty if proved."""
-    return [need for need in [smooth_pair(run)] if need.status != "met"]
+    return [requirement for requirement in [smooth_pair(run)] if requirement.status != "met"]
 
 
 def pairs_dissipate(run: Observed) -> list[Hypothesis]:
     """Return the unproved hypotheses under which pairs add no energy: a C¹ potential, no negative adjacency."""
-    return [need for need in (smooth_pair(run), weight_nonnegative(run)) if need.status != "met"]
+    return [requirement for requirement in (smooth_pair(run), weight_nonnegative(run)) if requirement.status != "met"]
 
 
 def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
@@ -196,10 +196,10 @@ def _rates(run: Trajectory) -> FloatArray:
 def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
     """Return the two claims about a user's law: no term adds energy, and the energy balances."""
     rates = _rates(seen.run)
-    most, largest = float(rates.max(initial=0.0)), float(np.abs(rates).max(initial=0.0))
-    status: HypothesisStatus = "unmet" if most > (seen.n**2 + 64) * EPS * largest else "assumed"
+    maximum, largest = float(rates.max(initial=0.0)), float(np.abs(rates).max(initial=0.0))
+    status: HypothesisStatus = "unmet" if maximum > (seen.n**2 + 64) * EPS * largest else "assumed"
     name = "no term adds energy"
-    falls = Hypothesis(name, status, -most, f"at the samples a term adds {max(most, 0.0):.3g} per time at most")
+    falls = Hypothesis(name, status, -maximum, f"at the samples a term adds {max(maximum, 0.0):.3g} per time at most")
     claims = [balance(seen, smooth_where_needed(seen), tolerances)]
     if status != "unmet":
         claims.insert(0, never_rises(seen, [falls], cancels=lambda run: np.abs(_rates(run)).sum(axis=1), formula=False))
@@ -223,9 +223,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     if is_own(seen.law):
         return _own_terms(seen, tolerances)
-    rest, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
-    balanced = balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof)
-    return [*rest, *rates], [never_rises(seen, rest, proof=proof), balanced]
+    dissipation_claim, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
+    balance_claim = balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof)
+    return [*dissipation_claim, *rates], [never_rises(seen, dissipation_claim, proof=proof), balance_claim]
 
 
 STEPS = {

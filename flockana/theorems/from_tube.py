@@ -62,8 +62,8 @@ def enclosed_by(name: str, module: str) -> Callable[..., Checked]:
     """Return a deciding function for tubes from a module, imported at its first call."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-        decide = getattr(import_module(module), name)
-        return decide(tube, basin, tolerances)
+        decide_claim = getattr(import_module(module), name)
+        return decide_claim(tube, basin, tolerances)
 
     return check
 
@@ -77,11 +77,11 @@ def ends(ball: arb) -> Enclosure:
 
 def decided(name: str, margin: arb, needs: Needs = (), *, detail: str = "", **fields: Any) -> Claim:
     """Return a claim that holds for a certainly nonnegative margin, and fails for a certainly negative one."""
-    room = ends(margin)
-    if room.lo < 0.0 <= room.hi:
-        wide = f"the enclosure alone is too wide to tell: the margin is between {room.lo:.3g} and {room.hi:.3g}"
+    slack = ends(margin)
+    if slack.lo < 0.0 <= slack.hi:
+        wide = f"the enclosure alone is too wide to tell: the margin is between {slack.lo:.3g} and {slack.hi:.3g}"
         detail = f"{detail}; {wide}".lstrip("; ")
-    return judged(name, room, needs, rigour="interval", detail=detail, **fields)
+    return judged(name, slack, needs, rigour="interval", detail=detail, **fields)
 
 
 def below(name: str, energy: arb, bound: arb) -> Hypothesis:
@@ -95,12 +95,12 @@ def met(tube: Tube) -> dict[Pair, float]:
     times: dict[Pair, float] = {}
     if tube.m > 1:
         return times
-    first = [row[0] for row in tube.state(0)[0]]
+    first_positions = [row[0] for row in tube.state(0)[0]]
     for k, t in enumerate(tube.t):
         q = [row[0] for row in tube.state(k)[0]]
         for i, j in tube.pairs:
-            before, now = first[j] - first[i], q[j] - q[i]
-            if (before > 0 and now < 0) or (before < 0 and now > 0):
+            previous_gap, current_gap = first_positions[j] - first_positions[i], q[j] - q[i]
+            if (previous_gap > 0 and current_gap < 0) or (previous_gap < 0 and current_gap > 0):
                 times.setdefault((i, j), t)
     return times
 
@@ -110,22 +110,22 @@ def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | No
     from flint import arb
 
     tube = case.tube
-    distance, certain = tube.min_distance(), met(tube)
+    distance, certain_meetings = tube.min_distance(), met(tube)
     pair, margin = distance.pair, arb(min(distance.lower, 1e300)) if distance.lower > 0.0 else arb(0, 1)
     if tube.status != "complete":
         margin = arb(0, 1)  # of what comes after its end nothing is known
     text = f"no two agents come nearer than {distance.lower:.6g}, {case.until}"
-    if certain:
-        pair = min(certain, key=lambda each: certain[each])
-        margin, text = arb(-1), f"agents {pair[0]} and {pair[1]} certainly meet before t = {certain[pair]:.6g}"
-    when = "always" if case.basin is not None else f"from t = {tube.t[0]:g} to {tube.t[-1]:g}"
+    if certain_meetings:
+        pair = min(certain_meetings, key=lambda each: certain_meetings[each])
+        margin, text = arb(-1), f"agents {pair[0]} and {pair[1]} certainly meet before t = {certain_meetings[pair]:.6g}"
+    time_text = "always" if case.basin is not None else f"from t = {tube.t[0]:g} to {tube.t[-1]:g}"
     return decided(
         name,
         margin,
         list(needs),
         computed=distance.lower,
-        stated=f"no two agents meet, {when}",
-        witness={"pair": pair, "time": certain.get(pair, distance.time)},
+        stated=f"no two agents meet, {time_text}",
+        witness={"pair": pair, "time": certain_meetings.get(pair, distance.time)},
         proof=proof,
         detail=text,
     )
@@ -135,16 +135,16 @@ def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *,
     """Return a limit claim for every start of a tube, by a margin of the basin at its end."""
     if case.basin is None:
         return limit_claim(name, needs, [Certificate(-1.0, case.doubt)], rigour="interval", **fields)
-    room = Enclosure.of(1.0) if margin is None else ends(margin)
-    escape = Certificate(float(-room.hi), "", 0.0)
-    return limit_claim(name, needs, [Certificate(float(room.lo), "", 0.0)], escape=escape, rigour="interval", **fields)
+    slack = Enclosure.of(1.0) if margin is None else ends(margin)
+    escape = Certificate(float(-slack.hi), "", 0.0)
+    return limit_claim(name, needs, [Certificate(float(slack.lo), "", 0.0)], escape=escape, rigour="interval", **fields)
 
 
 def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: str, proof: str | None = None) -> Claim:
     """Return the claim that every start of the tube converges to the basin's orbit, or by a proof."""
     last = case.tube.t[-1]
-    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""
-    return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught, proof=proof)
+    basin_text = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""
+    return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=basin_text, proof=proof)
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:
@@ -168,10 +168,10 @@ def rest_strain(basin: BasinLike, alpha: Any) -> arb:
     from flockana.certified.balls import exact
 
     d, r = arb(exact(alpha.d)), arb(exact(alpha.r))
-    lengths = [s.sqrt() for *_, s in basin.proof.structure.pairs(basin.proof.rest) if not s >= r * r]
+    link_lengths = [s.sqrt() for *_, s in basin.proof.structure.pairs(basin.proof.rest) if not s >= r * r]
     strain = arb(0)
-    for length in lengths:
-        off = abs(length - d) / d
-        strain = strain.max(off if length < r else off.union(arb(0)))  # a pair at r may be no link
-    certain = any(length < r for length in lengths)
-    return strain if certain else strain.union(arb(1)) if lengths else arb(1)
+    for distance in link_lengths:
+        deviation = abs(distance - d) / d
+        strain = strain.max(deviation if distance < r else deviation.union(arb(0)))  # a pair at r may be no link
+    has_link = any(distance < r for distance in link_lengths)
+    return strain if has_link else strain.union(arb(1)) if link_lengths else arb(1)

@@ -41,15 +41,15 @@ def _sample_times(run: Trajectory) -> FloatArray:
 def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
     """Return whether nothing can hide between sample times, by closed form or by the declared time scale."""
     target = run.law.target
-    slow = target.feature is not None and len(times) > 1
-    return _is_closed(target) or bool(slow and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE)
+    has_feature = target.feature is not None and len(times) > 1
+    return _is_closed(target) or bool(has_feature and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE)
 
 
 def _between(t: FloatArray) -> FloatArray:
     """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
-    middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
-    halves = np.stack([middle - half, middle + half], axis=1)
-    return halves[:, :, None] + half[:, None, None] * _NODES
+    midpoint, half_width = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
+    halves = np.stack([midpoint - half_width, midpoint + half_width], axis=1)
+    return halves[:, :, None] + half_width[:, None, None] * _NODES
 
 
 def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
@@ -77,10 +77,10 @@ def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
 
 def _describe_rest(moves: bool, any_p_r: bool, p_r: FloatArray) -> str:
     if moves:
-        outside = "it moves, which is outside the theorem"
-        return outside if any_p_r else "it moves, or reports a velocity: it does work on the flock, of either sign"
-    though = " though q_r does not move, as printed" if p_r.any() else ""
-    return f"q_r is fixed, p_r = {p_r.tolist()}{though}"
+        outside_text = "it moves, which is outside the theorem"
+        return outside_text if any_p_r else "it moves, or reports a velocity: it does work on the flock, of either sign"
+    printed_remark = " though q_r does not move, as printed" if p_r.any() else ""
+    return f"q_r is fixed, p_r = {p_r.tolist()}{printed_remark}"
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> tuple[float, float]:
@@ -91,13 +91,13 @@ def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> tuple[floa
         return 0.0, float("inf")
     q_r = np.array([target.state(float(time))[0] for time in t])
     nodes = _between(t)
-    coarse = (0.5 * (t[:-1] + t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
-    fine, rough = _mean(velocity, nodes).mean(axis=1), _mean(velocity, coarse)
-    off = np.linalg.norm(np.diff(q_r, axis=0) / h[:, None] - fine, axis=1)
-    rounding = 4.0 * EPS * np.abs(q_r).max() / h + 8.0 * EPS * np.abs(fine).max()
-    error = np.linalg.norm(fine - rough, axis=1) + rounding
-    worst = int(np.argmax(off - error))
-    return float(off[worst]), float(error[worst])
+    coarse_times = (0.5 * (t[:-1] + t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
+    fine_means, rough_means = _mean(velocity, nodes).mean(axis=1), _mean(velocity, coarse_times)
+    deviation = np.linalg.norm(np.diff(q_r, axis=0) / h[:, None] - fine_means, axis=1)
+    rounding = 4.0 * EPS * np.abs(q_r).max() / h + 8.0 * EPS * np.abs(fine_means).max()
+    error = np.linalg.norm(fine_means - rough_means, axis=1) + rounding
+    worst = int(np.argmax(deviation - error))
+    return float(deviation[worst]), float(error[worst])
 
 
 def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
@@ -125,13 +125,13 @@ def declared_rate_is_true(run: Trajectory) -> Hypothesis:
 
 
 def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], FloatArray]) -> Hypothesis:
-    (off, error), allowed = slip(run, velocity), _CONSISTENT * run.scales.speed
-    if off + error <= allowed:
+    (deviation, error), slip_limit = slip(run, velocity), _CONSISTENT * run.scales.speed
+    if deviation + error <= slip_limit:
         times = _sample_times(run)
         if _seen_everywhere(run, times):
-            return Hypothesis(name, "met", -off, "as its user states how slowly it changes", error, "assumed")
+            return Hypothesis(name, "met", -deviation, "as its user states how slowly it changes", error, "assumed")
         detail = f"so at {times.size} times; nobody states how slowly it changes (changes_slower_than)"
-        return Hypothesis(name, "assumed", -off, detail, error)
-    if off - error <= allowed:
-        return Hypothesis(name, "assumed", -off, "the samples are too sparse to decide", error)
-    return Hypothesis(name, "unmet", -off, f"{what} is off by up to {off:.3g}", error, decided="enclosed")
+        return Hypothesis(name, "assumed", -deviation, detail, error)
+    if deviation - error <= slip_limit:
+        return Hypothesis(name, "assumed", -deviation, "the samples are too sparse to decide", error)
+    return Hypothesis(name, "unmet", -deviation, f"{what} is off by up to {deviation:.3g}", error, decided="enclosed")

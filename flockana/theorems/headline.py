@@ -14,8 +14,8 @@ def headline(
     status: Status, claims: tuple[Claim, ...], further: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]
 ) -> str:
     """Return the counts of the author's claims by status, then each correction and extension with its status."""
-    others = sorted(further, key=lambda claim: claim.by)
-    texts = (f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))
+    other_claims = sorted(further, key=lambda claim: claim.by)
+    texts = (f"{BYLINES[author]}: {_listed(group)}" for author, group in groupby(other_claims, lambda c: c.by))
     return "; ".join([_counts(status, claims, hypotheses), *texts])
 
 
@@ -24,27 +24,27 @@ def _counts(status: Status, claims: tuple[Claim, ...], hypotheses: tuple[Hypothe
     if not claims:
         return "no claim"
     order = dict.fromkeys((status, "refuted", "inconclusive", "verified", "vacuous"))
-    counts = {each: sum(claim.status == each for claim in claims) for each in order}
-    of = {status: f" of {len(claims)}"}
-    texts = [f"{count}{of.get(each, '')} {each}" for each, count in counts.items() if count]
+    counts = {item: sum(claim.status == item for claim in claims) for item in order}
+    suffixes = {status: f" of {len(claims)}"}
+    texts = [f"{count}{suffixes.get(item, '')} {item}" for item, count in counts.items() if count]
     return ", ".join(texts) + (_reason(claims, hypotheses) if counts["vacuous"] else "")
 
 
 def _reason(claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
     """Return why claims are vacuous: the first unmet hypothesis, or the claim's own detail."""
     silent = [claim for claim in claims if claim.status == "vacuous"]
-    needs = [need for claim in silent for need in (*claim.needs, *hypotheses) if need.status == "unmet"]
-    if not needs:
+    requirements = [need for claim in silent for need in (*claim.needs, *hypotheses) if need.status == "unmet"]
+    if not requirements:
         return f": {silent[0].detail}" if silent[0].detail else ""
-    return f": {does_not_hold(needs[0].name)}"
+    return f": {does_not_hold(requirements[0].name)}"
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
     """Return claims with their names; adjacent vacuous ones with equal reasons are merged."""
 
     def reason(claim: Claim) -> tuple[str, str]:
-        silent = claim.status == "vacuous" and claim.computed is None
-        return claim.by, claim.detail if silent else claim.name
+        is_silent = claim.status == "vacuous" and claim.computed is None
+        return claim.by, claim.detail if is_silent else claim.name
 
     groups = (list(group) for _, group in groupby(claims, reason))
     return [(", ".join(claim.name for claim in group), group[0]) for group in groups]
@@ -53,8 +53,8 @@ def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
 def _listed(claims: Iterable[Claim]) -> str:
     """Return each claim in short with its status; vacuous claims only if all are."""
     claims_given = tuple(claims)
-    counted = [claim for claim in claims_given if claim.status != "vacuous"] or list(claims_given[:1])
-    return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted))
+    counted_claims = [claim for claim in claims_given if claim.status != "vacuous"] or list(claims_given[:1])
+    return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted_claims))
 
 
 def _short(claim: Claim) -> str:

@@ -78,11 +78,11 @@ def law_is(
             terms = ", ".join(type(term).__name__ for term in run.law.terms)
             return condition("a composition of terms is applied", True, detail=terms)
         law, is_known = run.law, type(run.law) in laws
-        welcome = (FormulaInteraction,) if formulas or composed else ()
+        accepted_kinds = (FormulaInteraction,) if formulas or composed else ()
         other = [
             f"{member} is {type(getattr(law, member)).__name__}"
             for member, kind in _MEMBERS.items()
-            if hasattr(law, member) and type(getattr(law, member)) not in (kind, *welcome)
+            if hasattr(law, member) and type(getattr(law, member)) not in (kind, *accepted_kinds)
         ]
         detail = ", ".join([law.title, *(other if is_known else [])])
         if one_gain and is_known and not other and law.gains.per_agent:
@@ -151,10 +151,10 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
 
 def common_gains(run: Observed | Tube) -> Hypothesis:
     """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple."""
-    several = run.law.gains.per_agent
-    detail = "gains are given per agent" if several else ""
+    has_several = run.law.gains.per_agent
+    detail = "gains are given per agent" if has_several else ""
     remedy = "give all agents one c1γ and one c2γ"
-    return condition("one c1γ and one c2γ for all agents", not several, detail=detail, remedy=remedy)
+    return condition("one c1γ and one c2γ for all agents", not has_several, detail=detail, remedy=remedy)
 
 
 def has_lattice(run: Observed) -> Hypothesis:

@@ -45,8 +45,8 @@ def best_of(certificates: Iterable[Certificate]) -> Certificate:
 def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
     """Return in words the decay of an amplitude from its maximum to the last eighth of a run."""
     times, values = np.asarray(t, dtype=np.float64), np.maximum(np.asarray(amplitude, dtype=np.float64), _LEAST)
-    late = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
-    factor = float(values.max() / late)
+    late_maximum = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
+    factor = float(values.max() / late_maximum)
     return f"in this run {name} falls by a factor of {factor:.2g}" if factor > 2.0 else f"{name} does not fall"
 
 
@@ -62,17 +62,17 @@ def limit_claim(
     **fields: Any,
 ) -> Claim:
     """Return a claim about a limit: verified by a certificate or a proof, refuted by an escape, else inconclusive."""
-    best = best_of(certificates)
-    by_numbers: Status = "verified" if best.certain else "inconclusive"
-    margin = Enclosure.around(best.margin, best.error)
+    best_certificate = best_of(certificates)
+    numeric_status: Status = "verified" if best_certificate.certain else "inconclusive"
+    margin = Enclosure.around(best_certificate.margin, best_certificate.error)
     if escape is not None and escape.certain:
-        best, by_numbers, margin = escape, "refuted", Enclosure.around(-escape.margin, escape.error)
-    claim = conclude(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
-    proved = claim.status == "verified" and not best.certain
+        best_certificate, numeric_status, margin = escape, "refuted", Enclosure.around(-escape.margin, escape.error)
+    claim = conclude(name, numeric_status, margin, needs, about="limit", proof=proof, **fields)
+    proved = claim.status == "verified" and not best_certificate.certain
     if proved:  # no number of this run says how far it holds
         detail = "; ".join(filter(None, (detail, "proved for every start")))
         return replace(claim, margin=None, error=None, detail=detail)
-    parts = (detail, best.text, "" if best.certain else evidence)
+    parts = (detail, best_certificate.text, "" if best_certificate.certain else evidence)
     return replace(claim, detail="; ".join(filter(None, parts)))
 
 
@@ -104,5 +104,5 @@ def without_assumed(needs: Needs, make: Callable[[list[Hypothesis]], Claim]) -> 
     A certificate of the limit itself does not rest on what is only assumed; a refutation would.
     """
     needs = list(needs)
-    sure = make([need for need in needs if need.status != "assumed"])
-    return sure if sure.status == "verified" else make(needs)
+    sure_claim = make([requirement for requirement in needs if requirement.status != "assumed"])
+    return sure_claim if sure_claim.status == "verified" else make(needs)

@@ -34,8 +34,8 @@ def ensure_steps_of_map(run: Trajectory) -> None:
 
 def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
     """Raise unless the map leads from sample k to the next, within rounding grown over several steps."""
-    for name, off, difference in _differences(run, k, steps):
-        if not (off <= SAME or (steps > 1 and off <= SAME + SLACK * _growth(run, k, steps, name))):
+    for name, deviation, difference in _differences(run, k, steps):
+        if not (deviation <= SAME or (steps > 1 and deviation <= SAME + SLACK * _growth(run, k, steps, name))):
             raise ArgumentError(
                 f"{name} at t = {run.t[k + 1]:g} is off by {difference:.3g} from where {type(run.law).__name__} leads "
                 f"from the sample at t = {run.t[k]:g}: expected a law that is the same function each time"
@@ -48,17 +48,17 @@ def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, flo
     floors = {"q": scales.length, "p": scales.speed, "u": scales.force}
     for name, values in _recompute(run, k, steps, 0.0).items():
         sample = (getattr(run, name) if name in floors else run.extra[name])[k + 1]
-        size = floors.get(name, 0.0) + float(np.abs(values).max(initial=0.0))
-        same = (sample == values) | (np.isnan(sample) & np.isnan(values))
-        difference = float(np.abs(sample - values).max(where=~same, initial=0.0))
-        yield name, difference / size if size else difference, difference
+        magnitude = floors.get(name, 0.0) + float(np.abs(values).max(initial=0.0))
+        is_same = (sample == values) | (np.isnan(sample) & np.isnan(values))
+        difference = float(np.abs(sample - values).max(where=~is_same, initial=0.0))
+        yield name, difference / magnitude if magnitude else difference, difference
 
 
 def _growth(run: Trajectory, k: int, steps: int, name: str) -> float:
     """Return the relative change of a series over the interval when the positions of sample k are perturbed."""
-    exact, nudged = (_recompute(run, k, steps, nudge)[name] for nudge in (0.0, _NUDGE))
-    size = float(np.abs(exact).max(initial=0.0))
-    return float(np.abs(nudged - exact).max(initial=0.0)) / size if size else 0.0
+    exact, nudged_result = (_recompute(run, k, steps, nudge)[name] for nudge in (0.0, _NUDGE))
+    magnitude = float(np.abs(exact).max(initial=0.0))
+    return float(np.abs(nudged_result - exact).max(initial=0.0)) / magnitude if magnitude else 0.0
 
 
 def paired_orbit(run: Trajectory) -> Pair:
@@ -77,9 +77,9 @@ def paired_orbit(run: Trajectory) -> Pair:
         is_known = np.arange(len(steps)) < balls.known
         q, p = (np.where(is_known[:, None, None], x, y) for x, y in ((balls.q, run.q), (balls.p, run.p)))
         off = [np.where(is_known[:, None], lengths(x), np.inf) for x in (balls.q_off, balls.p_off)]
-        best = replace(run, q=q, p=p)
+        best_run = replace(run, q=q, p=p)
         beside = replace(run, q=np.nextafter(q, np.inf), p=np.nextafter(p, np.inf))
-        pairs.append(Pair(best, beside, _known_errors(run.t, off[0], off[1]), enclosed=balls.known == len(steps)))
+        pairs.append(Pair(best_run, beside, _known_errors(run.t, off[0], off[1]), enclosed=balls.known == len(steps)))
     return max(pairs, key=lambda each: (int(np.isfinite(each.errors.shape).all(axis=1).sum()), each.enclosed))
 
 
@@ -92,13 +92,13 @@ def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
         for way in (1.0, -1.0):
             q = run.q[0] + way * _NUDGE * max(float(np.abs(run.q[0]).max()), scales.length) * signs[0]
             p = run.p[0] + way * _NUDGE * max(float(np.abs(run.p[0]).max()), scales.speed) * signs[1]
-            memory_before = run.law.start(q, p) if begins else {key: run.extra[key][0].copy() for key in memory}
+            previous_memory = run.law.start(q, p) if begins else {key: run.extra[key][0].copy() for key in memory}
             states = _visited(
-                run.law, float(run.t[0]) + run.law.dt * np.arange(float(steps[-1])), q, p, memory_before, steps[1:]
+                run.law, float(run.t[0]) + run.law.dt * np.arange(float(steps[-1])), q, p, previous_memory, steps[1:]
             )
-            extra = {key: np.concatenate([run.extra[key][:1], states[3][key]]) for key in run.extra}
+            extra_series = {key: np.concatenate([run.extra[key][:1], states[3][key]]) for key in run.extra}
             qs, ps, us = (np.concatenate([getattr(run, x)[:1], y]) for x, y in zip("qpu", states[:3], strict=True))
-            orbits.append(replace(run, q=qs, p=ps, u=us, extra=extra))
+            orbits.append(replace(run, q=qs, p=ps, u=us, extra=extra_series))
         q, p = (
             DOUBT * np.max([lengths(getattr(each, name) - getattr(run, name)) for each in orbits], axis=0)
             for name in "qp"
@@ -112,19 +112,19 @@ def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, 
     for first in range(0, len(times), law.steps_at_once):
         rows = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
         count = min(law.steps_at_once, len(times) - first)
-        *samples, after = law.visit(times[first : first + count], q, p, memory, np.union1d(rows, [count]))
-        q, p, memory = samples[0][-1], samples[1][-1], {name: each[-1].copy() for name, each in after.items()}
+        *samples, next_state = law.visit(times[first : first + count], q, p, memory, np.union1d(rows, [count]))
+        q, p, memory = samples[0][-1], samples[1][-1], {name: each[-1].copy() for name, each in next_state.items()}
         blocks.append(
-            [*(each[: len(rows)] for each in samples), {name: each[: len(rows)] for name, each in after.items()}]
+            [*(each[: len(rows)] for each in samples), {name: each[: len(rows)] for name, each in next_state.items()}]
         )
-    joined = [np.concatenate([block[k] for block in blocks]) for k in range(3)]
-    return (*joined, {name: np.concatenate([block[3][name] for block in blocks]) for name in memory})
+    joined_claim = [np.concatenate([block[k] for block in blocks]) for k in range(3)]
+    return (*joined_claim, {name: np.concatenate([block[3][name] for block in blocks]) for name in memory})
 
 
 def _known_errors(t: FloatArray, q: FloatArray, p: FloatArray, length: float = 1.0, speed: float = 1.0) -> Errors:
     """Return half widths over the run, infinite from the first separation of the orbits on."""
-    together = ((q <= _PARTED * length) & (p <= _PARTED * speed)).all(axis=1)
-    unknown = ~np.logical_and.accumulate(together)
+    is_close = ((q <= _PARTED * length) & (p <= _PARTED * speed)).all(axis=1)
+    unknown = ~np.logical_and.accumulate(is_close)
     q, p = (np.where(unknown[:, None], np.inf, x) for x in (q, p))
     q_c, p_c = q.max(axis=1), p.max(axis=1)
     return Errors(t, q + q_c[:, None], p + p_c[:, None], q_c, p_c)

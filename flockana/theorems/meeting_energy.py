@@ -21,21 +21,21 @@ def meeting(run: Trajectory | Observed) -> PairEnergies:
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
     if gain == 0.0:
         return PairEnergies(0.0, 0.0)
-    (lowest, _), (top, most) = _potential_bounds(pair)
-    if most == -np.inf:
+    (energy_floor, _), (top, maximum) = _potential_bounds(pair)
+    if maximum == -np.inf:
         return PairEnergies(0.0, -np.inf)  # a pair that meets has less energy than any bound
-    return PairEnergies(gain * (top - lowest), gain * lowest * (run.n * (run.n - 1) // 2))
+    return PairEnergies(gain * (top - energy_floor), gain * energy_floor * (run.n * (run.n - 1) // 2))
 
 
 def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return bounds of the least potential and of the potential at contact; values if unproved."""
-    lowest, contact = pair.facts.least, pair.facts.contact
-    if np.isfinite(lowest[0]) and contact[0] > -np.inf:
-        return lowest, contact
+    energy_floor, contact = pair.facts.least, pair.facts.contact
+    if np.isfinite(energy_floor[0]) and contact[0] > -np.inf:
+        return energy_floor, contact
     with np.errstate(all="ignore"):
         ends = pair.energy(np.array([0.0, pair.length]))
     top = contact[0] if contact[0] > -np.inf or contact[1] == -np.inf else float(np.nan_to_num(ends[0], nan=-np.inf))
-    floor = lowest[0] if np.isfinite(lowest[0]) else float(min(pair.far_potential, np.nanmin(ends)))
+    floor = energy_floor[0] if np.isfinite(energy_floor[0]) else float(min(pair.far_potential, np.nanmin(ends)))
     return (floor, floor), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
 
 

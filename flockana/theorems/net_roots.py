@@ -15,16 +15,16 @@ def unheard_groups(weights: Any) -> list[list[int]]:
     # There is a root exactly if there is one group; a net is strongly connected exactly if that is all agents.
     import networkx
 
-    hears = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)
-    return sorted(sorted(group) for group in networkx.attracting_components(hears))
+    hearing_graph = networkx.from_numpy_array(np.asarray(weights), create_using=networkx.DiGraph)
+    return sorted(sorted(group) for group in networkx.attracting_components(hearing_graph))
 
 
 def describe_groups(groups: list[list[int]]) -> str:
     """Return in words the root of a net, or the groups that hear nobody outside."""
     if len(groups) == 1:
         return f"root {groups[0][0]}"
-    listed = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])
-    return f"{len(groups)} groups hear nobody outside: {' and '.join(listed)}"
+    listing = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])
+    return f"{len(groups)} groups hear nobody outside: {' and '.join(listing)}"
 
 
 def has_root(weights: Any) -> Hypothesis:

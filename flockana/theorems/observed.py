@@ -62,8 +62,8 @@ class Observed(ResultCache):
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
         """Return a run with its second run; cached with the run."""
-        of_kind = paired_orbit if run.law.is_map else paired
-        return run.cached("observed", lambda: cls(run, *of_kind(run)))
+        pair_runs = paired_orbit if run.law.is_map else paired
+        return run.cached("observed", lambda: cls(run, *pair_runs(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
@@ -133,8 +133,8 @@ class Observed(ResultCache):
 
     def window(self, start: float, end: float) -> Observed:
         """Return the part of the run within given times, with its errors."""
-        given_run, run, other = (each.window(start, end) for each in (self.given, self.run, self.other))
-        return replace(self, given=given_run, run=run, other=other)
+        given_run, run, other_run = (item.window(start, end) for item in (self.given, self.run, self.other))
+        return replace(self, given=given_run, run=run, other=other_run)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return the largest half width within one law time of each interval; for a map, within the interval."""
@@ -145,8 +145,8 @@ class Observed(ResultCache):
     @cached_property
     def known(self) -> int:
         """Number of samples before a map's orbit becomes unknown."""
-        parted = ~np.isfinite(self.shape_error).all(axis=1)
-        return int(np.argmax(parted)) if self.is_map and parted.any() else len(self.t)
+        is_unknown = ~np.isfinite(self.shape_error).all(axis=1)
+        return int(np.argmax(is_unknown)) if self.is_map and is_unknown.any() else len(self.t)
 
     @property
     def known_until(self) -> int | None:
@@ -157,27 +157,27 @@ class Observed(ResultCache):
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
         """Return both runs in another frame that keeps all distances between agents."""
-        given_run, run, other = (change(each) for each in (self.given, self.run, self.other))
-        return replace(self, given=given_run, run=run, other=other)
+        given_run, run, other_run = (change(item) for item in (self.given, self.run, self.other))
+        return replace(self, given=given_run, run=run, other=other_run)
 
     # observables ---------------------------------------------------------------------------------------------------
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
         """Return an observable over time, enclosed by its difference between the two runs."""
-        best, loose = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
-        if self.doubt or len(best) != len(loose):
-            return Enclosure.around(best, np.inf)
+        best_series, length_claim = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
+        if self.doubt or len(best_series) != len(length_claim):
+            return Enclosure.around(best_series, np.inf)
         with np.errstate(invalid="ignore"):
-            apart = DOUBT * np.abs(best - loose)
+            difference = DOUBT * np.abs(best_series - length_claim)
         if self.is_map:
-            apart[self.known :] = np.inf
+            difference[self.known :] = np.inf
         else:
             unit = self.run.scales.time
-            first = np.searchsorted(self.t, self.t - unit)
-            apart = largest_over(apart, first, np.searchsorted(self.t, self.t + unit, side="right"))
+            first_index = np.searchsorted(self.t, self.t - unit)
+            difference = largest_over(difference, first_index, np.searchsorted(self.t, self.t + unit, side="right"))
             if self.begins_exactly:
-                apart[0] = 0.0
-        return Enclosure.around(best, apart + floor)
+                difference[0] = 0.0
+        return Enclosure.around(best_series, difference + floor)
 
     @property
     def accuracy_of_end(self) -> float:
@@ -203,8 +203,8 @@ class Observed(ResultCache):
     def residual(self) -> Enclosure:
         """Residual of the energy balance H − ∫ dH/dt at each sample, shape (T,)."""
         run = self.run
-        of_work = float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
-        rounding = 2.0 * energy_rounding(run) + of_work
+        work_rounding = float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
+        rounding = 2.0 * energy_rounding(run) + work_rounding
         return self.series(lambda run: run.energy_residual, floor=self.floors.work + rounding)
 
     @cached_property
@@ -239,8 +239,8 @@ class Observed(ResultCache):
 
     def distances(self, i: Any, j: Any) -> Enclosure:
         """Return distances of pairs of agents at each sample, shape (T, pairs)."""
-        apart = lengths(self.run.q[:, j] - self.run.q[:, i])
-        return Enclosure.around(apart, self.shape_error[:, i] + self.shape_error[:, j]).clip(0.0)
+        distances = lengths(self.run.q[:, j] - self.run.q[:, i])
+        return Enclosure.around(distances, self.shape_error[:, i] + self.shape_error[:, j]).clip(0.0)
 
     @cached_property
     def end(self) -> End:
@@ -253,9 +253,9 @@ class Observed(ResultCache):
         """Return the number of known samples before the first unknown one; 0 if they span less than a law time."""
         unknown = np.flatnonzero(~np.asarray(known))
         count = int(unknown[0]) if unknown.size else len(self.t)
-        whole = count == len(self.t) and count > 1
-        long_enough = count > 1 and self.t[count - 1] - self.t[0] >= self.run.scales.time
-        return count if whole or long_enough else 0
+        complete_recording = count == len(self.t) and count > 1
+        is_long_enough = count > 1 and self.t[count - 1] - self.t[0] >= self.run.scales.time
+        return count if complete_recording or is_long_enough else 0
 
     def until(self, count: int) -> str:
         """Return in words the time up to which the first `count` samples reach."""
@@ -273,11 +273,11 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
         claims = (_within_known_orbit(claim, seen) for claim in claims)
     if not seen.doubt:
         return tuple(claims)
-    failed = bool(failure(seen.given))
+    has_failed = bool(failure(seen.given))
     judged: list[Claim] = []
     for claim in claims:
-        decided = claim.status in ("verified", "refuted") and failed and claim.rigour != "symbolic"
-        status: Status = "inconclusive" if decided else claim.status
+        is_decided = claim.status in ("verified", "refuted") and has_failed and claim.rigour != "symbolic"
+        status: Status = "inconclusive" if is_decided else claim.status
         detail = f"{claim.detail}; {seen.doubt}" if status == "inconclusive" else claim.detail
         judged.append(replace(claim, status=status, detail=detail.lstrip("; ")))
     return tuple(judged)
@@ -304,8 +304,8 @@ def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) 
     claims = with_doubt(claims, seen)
     if not seen.unresolved:
         return tuple(hypotheses), claims
-    need = Hypothesis(NAME, "assumed", detail=seen.unresolved)
-    return (*hypotheses, need), tuple(with_hypothesis(claim, need) for claim in claims)
+    requirement = Hypothesis(NAME, "assumed", detail=seen.unresolved)
+    return (*hypotheses, requirement), tuple(with_hypothesis(claim, requirement) for claim in claims)
 
 
 def with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
@@ -321,15 +321,15 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     """Return a claim from a function of one run, with a margin enclosed by the two runs' difference."""
     # For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
     # made from enclosures of its parts instead.
-    best, *others = (check(run) for run in (seen.run, seen.other, *seen.allowed))
+    best, *other_claims = (check(run) for run in (seen.run, seen.other, *seen.allowed))
     if best.margin is None or best.status not in ("verified", "refuted"):
         return best
-    other = max(others, key=lambda each: (each.status != best.status, _apart(best, each)))
-    apart = _apart(best, other)
-    error = (best.error or 0.0) + (DOUBT * apart if best.margin != other.margin else 0.0)
-    if other.status == best.status and abs(best.margin) > error:
+    other_claim = max(other_claims, key=lambda each: (each.status != best.status, _apart(best, each)))
+    apart = _apart(best, other_claim)
+    error = (best.error or 0.0) + (DOUBT * apart if best.margin != other_claim.margin else 0.0)
+    if other_claim.status == best.status and abs(best.margin) > error:
         return replace(best, error=error)
-    detail = f"{best.detail}; by the second run it is {other.status}, with a margin that differs by {apart:.2g}"
+    detail = f"{best.detail}; by the second run it is {other_claim.status}, with a margin that differs by {apart:.2g}"
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
 
 
@@ -339,5 +339,5 @@ def _apart(one: Claim, other: Claim) -> float:
 
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
     """Return the norm over all agents of vectors with errors."""
-    sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
-    return sizes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)
+    magnitudes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
+    return magnitudes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)

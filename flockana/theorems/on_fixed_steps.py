@@ -53,16 +53,16 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     if item.id not in claims_on_steps() or len(seen.t) < 2:
         return (missed,), item.vacuous_claims(missed)
     flow = _of_law(seen, law)
-    needs, _ = item.check(flow, tolerances)
-    since = claims_on_steps()[item.id][1](flow)
-    return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, since, list(needs), tolerances))
+    requirements, _ = item.check(flow, tolerances)
+    step_claims = claims_on_steps()[item.id][1](flow)
+    return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, step_claims, list(requirements), tolerances))
 
 
 def _of_law(seen: Observed, law: FixedSteps) -> Observed:
     """Return the states of a fixed-step run as samples of its law, unknown in between."""
     run = seen.run
-    work = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here
-    return Observed.alone(Trajectory(run.t, run.q, run.p, run.u, law.law, work))
+    extra_series = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here
+    return Observed.alone(Trajectory(run.t, run.q, run.p, run.u, law.law, extra_series))
 
 
 def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerances: Tolerances) -> list[Claim]:
@@ -70,24 +70,24 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS
-    ends = [predicted(law, run.t, run.q, run.p, refine=refine) for refine in (_FINE, _FINE // 2)]
+    ends = [predicted(law, run.t, run.q, run.p, refine=refinement) for refinement in (_FINE, _FINE // 2)]
     t = run.t[1:].tolist()
     led, rough = (np.array([law.hamiltonian(*row) for row in zip(t, *end, strict=True)]) for end in ends)
     change, defect = np.diff(energy), energy[1:] - led
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
     text = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
-    rises, most = int((change > 0.0).sum()), max(float(change.max()), 0.0)
+    rises, maximum = int((change > 0.0).sum()), max(float(change.max()), 0.0)
     falls = judged("steps-fall", Enclosure.around(tolerances.energy - change / unit, rounding), needs).described(
         computed=float(change.max()) / unit,
         stated=f"H rises by no more than {tolerances.energy:g} of the largest |H| from sample to sample",
-        detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {text}",
+        detail=f"H rises at {rises} of {len(change)} samples, by {maximum:.3g} at most; {text}",
     )
     lost = energy[:-1] - led
-    within = judged(
+    energy_claim = judged(
         "steps-defect", Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit), needs
     ).described(
         computed=float(lost.min()) / unit,
         stated="H(t + dt) - H(t) <= the scheme's defect: H at the end of the step less H where the law's flow leads",
         detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {text}",
     )
-    return [replace(claim, by="flockana") for claim in (falls, within)]
+    return [replace(claim, by="flockana") for claim in (falls, energy_claim)]

@@ -45,12 +45,12 @@ class ObservedRecording(Observed):
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> FloatArray:
         """Return the variation of an observable between the solution and states within the accuracy."""
-        best = np.asarray(observable(self.run), dtype=np.float64)
-        widest = np.zeros(best.shape)
-        for other in self.allowed:
+        best_series = np.asarray(observable(self.run), dtype=np.float64)
+        widest = np.zeros(best_series.shape)
+        for allowed_run in self.allowed:
             with np.errstate(invalid="ignore"):
-                off = np.abs(np.asarray(observable(other), dtype=np.float64) - best)
-            widest = np.maximum(widest, DOUBT * np.where(np.isnan(off), np.inf, off))
+                deviation = np.abs(np.asarray(observable(allowed_run), dtype=np.float64) - best_series)
+            widest = np.maximum(widest, DOUBT * np.where(np.isnan(deviation), np.inf, deviation))
         return widest
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
@@ -69,20 +69,20 @@ class ObservedRecording(Observed):
 
     def _allowed(self) -> tuple[Trajectory, ...]:
         run, rng = self.run, np.random.default_rng(0)
-        off_q = (self.shape_error + self.centre_error[:, None])[:, :, None]
+        position_offset = (self.shape_error + self.centre_error[:, None])[:, :, None]
         off_p = (self.speed_error + self.drift_error[:, None])[:, :, None]
-        recorded = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
-        ways = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
-        ways.append((_unit(run.u), _unit(centred(run.p))))
-        if not (np.isfinite(off_q).all() and np.isfinite(off_p).all()):
-            return (recorded,)
-        signed = [(sign * off_q * a, sign * off_p * b) for a, b in ways for sign in (1.0, -1.0)]
-        return (recorded, *(replace(run, q=run.q + x, p=run.p + v, between=None) for x, v in signed))
+        recorded_run = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
+        directions = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
+        directions.append((_unit(run.u), _unit(centred(run.p))))
+        if not (np.isfinite(position_offset).all() and np.isfinite(off_p).all()):
+            return (recorded_run,)
+        signed_nudges = [(sign * position_offset * a, sign * off_p * b) for a, b in directions for sign in (1.0, -1.0)]
+        return (recorded_run, *(replace(run, q=run.q + x, p=run.p + v, between=None) for x, v in signed_nudges))
 
 
 def _unit(x: FloatArray) -> FloatArray:
-    sizes = lengths(x)[:, :, None]
-    return np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
+    magnitudes = lengths(x)[:, :, None]
+    return np.divide(x, magnitudes, out=np.zeros_like(x), where=magnitudes > 0.0)
 
 
 class RecordingEvidence(Evidence):
@@ -93,8 +93,8 @@ class RecordingEvidence(Evidence):
 
     def describe(self, subject: str) -> str:  # noqa: D102
         rec = self.rec.measured
-        source = f" ({rec.source})" if rec.source else ""
-        name = subject or f"a recording{source}"
+        source_note = f" ({rec.source})" if rec.source else ""
+        name = subject or f"a recording{source_note}"
         return (
             f"{name}: {rec.accuracy}" if self.law is not None else f"{name}, at its samples: {self._moving().accuracy}"
         )
@@ -123,8 +123,8 @@ class RecordingEvidence(Evidence):
         first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail, None, "enclosed")
         if follow.status == "unmet":
             return (first,), item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)
-        seen = rec.cached(f"observed under {id(law)}", lambda: observed_recording(rec, law, follow))
-        return _weighed(examine_observed(item, seen, tolerances), rec, first)
+        observation = rec.cached(f"observed under {id(law)}", lambda: observed_recording(rec, law, follow))
+        return _weighed(examine_observed(item, observation, tolerances), rec, first)
 
     def _moving(self) -> Recording:
         """Return the recording with velocities."""
@@ -142,25 +142,25 @@ class RecordingEvidence(Evidence):
             raise ArgumentError("no law, no d and no r: expected law=..., or the scale d and the range r of nets")
         rec = self._moving()
         run = rec.trajectory(d=self.d, r=self.r)
-        place, speed = _widths(rec)
-        errors = Errors(run.t, *_half_widths(place, speed))
+        position_error, speed = _widths(rec)
+        errors = Errors(run.t, *_half_widths(position_error, speed))
         doubt = "" if len(run.t) > 1 else "one sample shows no motion"
-        seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
+        observation = ObservedRecording(run, run, run, errors, doubt, place=float(position_error[-1].max()))
         status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
-        stated = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
-        return _weighed(with_resolution(*item.examine(seen, tolerances), seen), rec, stated)
+        stated_value = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
+        return _weighed(with_resolution(*item.examine(observation, tolerances), observation), rec, stated_value)
 
 
 def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:
     """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from the agents' half widths."""
-    means = place.mean(axis=1), speed.mean(axis=1)
-    return place + means[0][:, None], speed + means[1][:, None], *means
+    mean_widths = place.mean(axis=1), speed.mean(axis=1)
+    return place + mean_widths[0][:, None], speed + mean_widths[1][:, None], *mean_widths
 
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
     """Return the accuracy of positions and velocities, shape (T, n)."""
-    place, speed = (np.asarray(each, dtype=np.float64) for each in (rec.accuracy.place, rec.accuracy.speed))
-    return np.broadcast_to(place, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
+    position_error, speed = (np.asarray(item, dtype=np.float64) for item in (rec.accuracy.place, rec.accuracy.speed))
+    return np.broadcast_to(position_error, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
 
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
@@ -182,13 +182,13 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     off = [a + b for a, b in zip(differ, _half_widths(place, speed), strict=True)]
     times, end = seen.errors.t, float(place[-1].max())
     if law.is_map:
-        of_orbit = [x + y for x, y in zip(seen.errors[1:], off, strict=True)]
-        return ObservedRecording(trajectory, run, seen.other, Errors(rec.t, *of_orbit), place=end)
-    after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
+        orbit_errors = [x + y for x, y in zip(seen.errors[1:], off, strict=True)]
+        return ObservedRecording(trajectory, run, seen.other, Errors(rec.t, *orbit_errors), place=end)
+    next_samples = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
     before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)
-    widened = [x + np.maximum(y[before], y[after]) for x, y in zip(seen.errors[1:], off, strict=True)]
+    widened_errors = [x + np.maximum(y[before], y[next_samples]) for x, y in zip(seen.errors[1:], off, strict=True)]
     return ObservedRecording(
-        trajectory, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end
+        trajectory, run, seen.other, Errors(times, *widened_errors), unresolved=seen.unresolved, place=end
     )
 
 

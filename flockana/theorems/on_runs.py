@@ -48,17 +48,17 @@ def examine_observed(item: Theorem, seen: Observed, tolerances: Tolerances) -> K
 
 def claims_on_another_law(item: Theorem, law: Any) -> Known:
     """Return vacuous claims for a run of a wrapped law outside a theorem about the bare law."""
-    around = ", ".join(type(one).__name__ for one in wrappers_of(law))
-    detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
-    missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
-    return (missed,), item.vacuous_claims(missed)
+    wrapper_names = ", ".join(type(entry).__name__ for entry in wrappers_of(law))
+    detail = f"the law of the run is wrapped in {wrapper_names}; the theorem is about the law alone"
+    unmet_hypothesis = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
+    return (unmet_hypothesis,), item.vacuous_claims(unmet_hypothesis)
 
 
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
     """Return the ids of theorems whose law hypothesis a law meets; errata are left out."""
-    still = np.zeros(np.shape(q0))
-    seen = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), still[None], law))
-    return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, seen))
+    zero_velocities = np.zeros(np.shape(q0))
+    observation = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), zero_velocities[None], law))
+    return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, observation))
 
 
 def _is_about(item: Theorem, seen: Observed) -> bool:

@@ -18,7 +18,7 @@ class TubeEvidence(Evidence):
 
     def examine(self, item: Theorem, tolerances: Tolerances) -> Known:  # noqa: D102
         if item.enclosed is None:
-            able = ", ".join(name for name, one in catalogue().items() if one.enclosed is not None)
+            able = ", ".join(name for name, entry in catalogue().items() if entry.enclosed is not None)
             raise ArgumentError(f"{item.id} is not decided from a tube: expected a Trajectory, or one of {able}")
         self.tube.ensure_unedited()
         if self.basin is not None:

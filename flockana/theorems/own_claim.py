@@ -62,24 +62,24 @@ class OwnCheck:
         judged_claim = by_both_runs(seen, self.of_run)
         if seen.is_map or judged_claim.status != "verified":
             return [], [judged_claim]
-        need = Hypothesis(BETWEEN, "assumed", detail=f"{len(seen.t)} samples are judged")
-        return [need], [with_hypothesis(judged_claim, need)]
+        requirement = Hypothesis(BETWEEN, "assumed", detail=f"{len(seen.t)} samples are judged")
+        return [requirement], [with_hypothesis(judged_claim, requirement)]
 
     def of_run(self, run: Trajectory) -> Claim:
         """Return the claim by the least margin of one run."""
         margin = self.margin(run)
         try:
-            plain = np.asarray(margin)
-            values = np.atleast_1d(plain.astype(np.float64))
+            margin_array = np.asarray(margin)
+            values = np.atleast_1d(margin_array.astype(np.float64))
         except (TypeError, ValueError):
-            values = plain = np.array([np.nan])
-        if values.size == 0 or np.isnan(values).any() or plain.dtype == bool:
-            shown = "true or false" if plain.dtype == bool else format_value(margin)
-            text = f"the margin of {self.name!r} is {shown}: expected a number, or one for each sample"
+            values = margin_array = np.array([np.nan])
+        if values.size == 0 or np.isnan(values).any() or margin_array.dtype == bool:
+            value_text = "true or false" if margin_array.dtype == bool else format_value(margin)
+            text = f"the margin of {self.name!r} is {value_text}: expected a number, or one for each sample"
             raise ArgumentError(f"{text}, that is at least 0 where the claim holds, such as limit - value")
         if len(values) == len(run.t):  # also one for each agent or pair: the least at each sample
             values = values.reshape(len(run.t), -1).min(axis=1)
         k = int(np.argmin(values))
-        at = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
-        detail = f"{self.statement}: margin {values.flat[k]:.4g} {at}"
+        time_text = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
+        detail = f"{self.statement}: margin {values.flat[k]:.4g} {time_text}"
         return judged(self.name, Enclosure.around(float(values.flat[k]), 0.0), detail=detail)

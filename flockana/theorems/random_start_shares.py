@@ -32,13 +32,13 @@ def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, w
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
     """Return a claim by the share of starts with a property; None entries are undecided."""
-    count, size, unknown = sum(map(bool, holds)), len(holds), sum(each is None for each in holds)
-    low, high = interval(count, size, undecided=unknown)
+    count, case_count, unknown = sum(map(bool, holds)), len(holds), sum(hold is None for hold in holds)
+    low, high = interval(count, case_count, undecided=unknown)
     text = f", undecided in {unknown}" if unknown else ""
     return judged(
         name,
-        Enclosure(low, count / max(size, 1), high).widened(INTERVAL_ERROR) - least,
-        computed={"holds": count, "of": size, "share": (low, high)},
-        detail=f"{what} in {count} of {size} seeds{text}: a share of {low:.2f} to {high:.2f} ({CONFIDENCE:.0%})",
+        Enclosure(low, count / max(case_count, 1), high).widened(INTERVAL_ERROR) - least,
+        computed={"holds": count, "of": case_count, "share": (low, high)},
+        detail=f"{what} in {count} of {case_count} seeds{text}: a share of {low:.2f} to {high:.2f} ({CONFIDENCE:.0%})",
         **fields,
     )

@@ -28,9 +28,9 @@ def frame_error(x: FloatArray) -> float:
 
 def spread_error(x: FloatArray) -> FloatArray:
     """Return a bound of the rounding of ½ Σ‖x_i − x_c‖², by instant."""
-    size, off = x.shape[1] * x.shape[2], frame_error(x)
-    norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), size), axis=1)
-    return (size + 4) * EPS * norm**2 + sqrt(size) * off * norm + size * off**2
+    entry_count, off = x.shape[1] * x.shape[2], frame_error(x)
+    norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), entry_count), axis=1)
+    return (entry_count + 4) * EPS * norm**2 + sqrt(entry_count) * off * norm + entry_count * off**2
 
 
 def pair_force_error(alpha: AlphaInteraction) -> float:
@@ -51,18 +51,18 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     reach = float(np.abs(q).max())
     if pull:
         reach += float(np.abs(law.target.position(0.0)).max())
-    error, size = 0.0, np.abs(energy)
+    error, magnitude = 0.0, np.abs(energy)
     if alpha is not None:
         steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
-        deepest = deepest_of(alpha)
-        error += gains.c1_alpha * pairs * (_POTENTIAL * deepest + 8.0 * EPS * steepest * (alpha.range + reach))
+        obstacle_energy = deepest_of(alpha)
+        error += gains.c1_alpha * pairs * (_POTENTIAL * obstacle_energy + 8.0 * EPS * steepest * (alpha.range + reach))
         if not isinstance(alpha, AlphaInteraction):
-            size = size + 2.0 * gains.c1_alpha * pairs * deepest
+            magnitude = magnitude + 2.0 * gains.c1_alpha * pairs * obstacle_energy
     error += pull * (n + 8) * EPS * reach**2
     for _ in law.obstacles:
-        most, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
-        error += gains.c1_beta * n * (_POTENTIAL * most + 16.0 * EPS * steepest * (law.beta.r + reach))
-    return error + (pairs + n * m + 8) * EPS * size + 2.0 * spread_error(p)
+        maximum, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)
+        error += gains.c1_beta * n * (_POTENTIAL * maximum + 16.0 * EPS * steepest * (law.beta.r + reach))
+    return error + (pairs + n * m + 8) * EPS * magnitude + 2.0 * spread_error(p)
 
 
 def deepest_of(pair: PairInteraction) -> float:
@@ -71,8 +71,8 @@ def deepest_of(pair: PairInteraction) -> float:
     if isinstance(pair, AlphaInteraction):
         return float(pair.c_star)
     with np.errstate(all="ignore"):
-        sizes = np.abs(pair.energy(np.array([0.0, 0.1 * pair.length, pair.length])))
-    return float(np.max([abs(pair.far_potential), *sizes[np.isfinite(sizes)]]))
+        magnitudes = np.abs(pair.energy(np.array([0.0, 0.1 * pair.length, pair.length])))
+    return float(np.max([abs(pair.far_potential), *magnitudes[np.isfinite(magnitudes)]]))
 
 
 def energy_rounding(run: Trajectory) -> FloatArray:

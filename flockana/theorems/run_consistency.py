@@ -30,11 +30,11 @@ def _ensure_fits(run: Trajectory) -> bool:
     if run.status == "failed":  # where agents met the law has no input
         difference[~np.isfinite(run._flows[0]).all(axis=(1, 2))] = 0.0
     if isinstance(run.law, SwitchedLaw):
-        law, tiny = run.law, 1e-9 * run.scales.length  # at a jump of the force the input has two values
-        difference[[bool((law.margins(law.pieces(q), q).inside < tiny).any()) for q in run.q]] = 0.0
-    allowed = SAME_INPUT * max(float(np.abs(run.u).max()), run.scales.force)
-    for k in np.flatnonzero(~(difference <= allowed)).tolist():
-        if difference[k] <= allowed + _rounded_input(run, k):
+        law, tiny_distance = run.law, 1e-9 * run.scales.length  # at a jump of the force the input has two values
+        difference[[bool((law.margins(law.pieces(q), q).inside < tiny_distance).any()) for q in run.q]] = 0.0
+    input_tolerance = SAME_INPUT * max(float(np.abs(run.u).max()), run.scales.force)
+    for k in np.flatnonzero(~(difference <= input_tolerance)).tolist():
+        if difference[k] <= input_tolerance + _rounded_input(run, k):
             continue
         raise ArgumentError(
             f"u at t = {run.t[k]:g} is off by {difference[k]:.3g} from the input of {run.law.title} at that "

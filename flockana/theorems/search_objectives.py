@@ -19,8 +19,8 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
     i, j = np.triu_indices(run.n, 1)
     apart = lengths(run.q[:, i] - run.q[:, j]).min(axis=0)
     touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
-    others = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in touched]
-    return squash(min(others, default=0.0) / run.law.lattice[0])
+    separations = [x for x, a, b in zip(apart.tolist(), i.tolist(), j.tolist(), strict=True) if (a, b) not in touched]
+    return squash(min(separations, default=0.0) / run.law.lattice[0])
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
@@ -38,6 +38,6 @@ def strained(run: Trajectory, claim: Claim) -> float:
     (d, r), series = run.law.lattice, []
     for q in run.q:
         pairs = links(q, r)
-        lengths = np.linalg.norm(q[pairs[:, 0]] - q[pairs[:, 1]], axis=1)
-        series.append(float(np.abs(lengths / d - 1.0).max(initial=0.0)))
+        link_lengths = np.linalg.norm(q[pairs[:, 0]] - q[pairs[:, 1]], axis=1)
+        series.append(float(np.abs(link_lengths / d - 1.0).max(initial=0.0)))
     return 1.0 - float(np.trapezoid(np.minimum(series, 1.0), run.t)) / float(run.t[-1] - run.t[0])

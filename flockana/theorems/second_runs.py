@@ -62,25 +62,25 @@ def paired(run: Trajectory) -> Pair:
     if doubt:
         return Pair(run, run, unbounded_errors(run), doubt)
     steps, states = _common_steps(run)
-    tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
-    again = second_run(run, steps, TIGHTER if tight else 1.0 / TIGHTER, _longest_step(run))
-    if again.status != "complete" or len(again.t) != len(steps):
-        kind = "tighter" if tight else "looser"
-        doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
+    is_tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
+    repeated_run = second_run(run, steps, TIGHTER if is_tight else 1.0 / TIGHTER, _longest_step(run))
+    if repeated_run.status != "complete" or len(repeated_run.t) != len(steps):
+        kind = "tighter" if is_tight else "looser"
+        doubt = f"a {kind} second run ended at t = {repeated_run.t[-1]:.6g}: {repeated_run.message}"
         return Pair(run, run, unbounded_errors(run), doubt)
-    thinned = _at_samples_of(again, run.t)
-    first, second = (thinned, run) if tight else (run, thinned)
-    place, speed, _ = second.floors
-    errors = _errors(again, states)
-    errors = Errors(errors.t, *map(np.maximum, errors[1:], (place, speed, place, speed)))
-    return Pair(first, second, errors, unresolved=unresolved(again, place))
+    thinned_run = _at_samples_of(repeated_run, run.t)
+    first_run, second = (thinned_run, run) if is_tight else (run, thinned_run)
+    position_error, speed, _ = second.floors
+    errors = _errors(repeated_run, states)
+    errors = Errors(errors.t, *map(np.maximum, errors[1:], (position_error, speed, position_error, speed)))
+    return Pair(first_run, second, errors, unresolved=unresolved(repeated_run, position_error))
 
 
 def _longest_step(run: Trajectory) -> float | None:
     """Return the longest step of the second run; None without a limit."""
     steps, _ = steps_of(run)
-    most = max(_MOST_STEPS, _TIMES * len(steps))
-    longest = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / most)
+    step_limit = max(_MOST_STEPS, _TIMES * len(steps))
+    longest = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / step_limit)
     method, run_method = run.stats.get("method"), run.stats.get("max_step") or np.inf
     own_limit = np.inf if "rtol" not in run.stats or method in _LOW_ORDER else _SHARE * float(steps.max())
     bound = min(longest, own_limit, run_method)
@@ -139,15 +139,15 @@ def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatA
     """Return the comparison times of two runs, and the first run's states at these times."""
     path = run.path
     stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
-    keep = np.isin(path.t, run.t)
-    keep[::stride] = True
-    return path.t[keep], (path.q[keep], path.p[keep])
+    is_kept = np.isin(path.t, run.t)
+    is_kept[::stride] = True
+    return path.t[is_kept], (path.q[is_kept], path.p[is_kept])
 
 
 def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
     """Return half widths from the difference of two runs at their common times."""
-    apart = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
-    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
+    leader_targets = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
+    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in leader_targets)
     return Errors(again.t, shape, speed, centre, drift)
 
 
@@ -156,10 +156,10 @@ def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
     if len(t) == len(run.t):
         return run
     keep, path = np.isin(run.t, t), run.path
-    between = ~np.isin(path.t, t)
-    extra = {name: series[keep] for name, series in run.extra.items()}
-    steps = Between(path.t[between], path.q[between], path.p[between], path.u[between], path.slack)
-    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
+    is_between = ~np.isin(path.t, t)
+    extra_series = {name: series[keep] for name, series in run.extra.items()}
+    steps = Between(path.t[is_between], path.q[is_between], path.p[is_between], path.u[is_between], path.slack)
+    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra_series, between=steps)
 
 
 def centred(x: FloatArray) -> FloatArray:
@@ -172,10 +172,10 @@ def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:
     first, stop = np.asarray(first), np.minimum(stop, len(values))
     first = np.minimum(first, stop - 1)
     level = np.floor(np.log2(stop - first)).astype(int)
-    largest, table, size = np.empty((len(first), *values.shape[1:])), values, 1
+    largest, table, dimension = np.empty((len(first), *values.shape[1:])), values, 1
     for k in range(int(level.max(initial=0)) + 1):
-        here = np.flatnonzero(level == k)
-        largest[here] = np.maximum(table[first[here]], table[stop[here] - size])
-        table = np.maximum(table[:-size], table[size:]) if len(table) > size else table
-        size *= 2
+        level_rows = np.flatnonzero(level == k)
+        largest[level_rows] = np.maximum(table[first[level_rows]], table[stop[level_rows] - dimension])
+        table = np.maximum(table[:-dimension], table[dimension:]) if len(table) > dimension else table
+        dimension *= 2
     return largest

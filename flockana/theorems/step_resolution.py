@@ -63,29 +63,29 @@ def demand_of(run: Trajectory, place: float) -> NeededSteps:
     longest, part = np.full(len(t) - 1, np.inf), np.zeros(len(t) - 1, dtype=np.int64)
     for number, feature in enumerate(run.law.features()):
         if feature.of == "time":
-            allowed = np.full(len(step), np.inf if feature.width is None else feature.width)
+            step_limits = np.full(len(step), np.inf if feature.width is None else feature.width)
         else:
-            allowed = _allowed_by_lengths(run, feature, step, place)
-        part, longest = np.where(allowed < longest, number, part), np.minimum(longest, allowed)
+            step_limits = _allowed_by_lengths(run, feature, step, place)
+        part, longest = np.where(step_limits < longest, number, part), np.minimum(longest, step_limits)
     return NeededSteps(t, step, longest, part)
 
 
 def _allowed_by_lengths(run: Trajectory, feature: Feature, step: FloatArray, place: float) -> FloatArray:
     """Return the longest step over each interval allowed by a feature between agents."""
-    ways = _largest_speeds(run, pairs=feature.of == "pairs") * step
+    path_lengths = _largest_speeds(run, pairs=feature.of == "pairs") * step
     width = 0.0 if feature.width is None else feature.width
-    allowed = np.full(len(step), np.inf)
+    step_limits = np.full(len(step), np.inf)
     with np.errstate(divide="ignore", invalid="ignore"):
-        short = np.where(ways > width, step * width / ways, np.inf)
+        short = np.where(path_lengths > width, step * width / path_lengths, np.inf)
     if not _has_slopes(feature):
-        return short if feature.width is not None else allowed
+        return short if feature.width is not None else step_limits
     assert feature.function is not None  # it has slopes
-    fast = np.flatnonzero(ways > width)
+    fast_pairs = np.flatnonzero(path_lengths > width)
     rates = _in_blocks if feature.function.edges is not None or len(run.q[0]) <= _FEW else _one_by_one
-    worst = rates(run, feature.function, fast, step, place)
-    moved = fast[worst > 0.0]
-    allowed[moved] = np.maximum(RESOLVED / np.sqrt(worst[worst > 0.0]), short[moved])
-    return allowed
+    worst = rates(run, feature.function, fast_pairs, step, place)
+    moving_pairs = fast_pairs[worst > 0.0]
+    step_limits[moving_pairs] = np.maximum(RESOLVED / np.sqrt(worst[worst > 0.0]), short[moving_pairs])
+    return step_limits
 
 
 def _largest_speeds(run: Trajectory, *, pairs: bool) -> FloatArray:
@@ -103,8 +103,8 @@ def _one_by_one(run: Trajectory, function: LawFunction, at: Any, step: FloatArra
         points, reach, allowance = _control_points(run, k)
         near = function.function.range + 2.0 * float(reach.max())
         for i, j in pair_blocks(run.path.q[k], near) if np.isfinite(near) else [np.triu_indices(len(reach), 1)]:
-            apart, off = points[j] - points[i], allowance[i] + allowance[j]
-            worst[row] = max(worst[row], _largest(function, apart, off, span[k], step[k], place, len(reach)))
+            displacement, off = points[j] - points[i], allowance[i] + allowance[j]
+            worst[row] = max(worst[row], _largest(function, displacement, off, span[k], step[k], place, len(reach)))
     return worst
 
 
@@ -112,14 +112,14 @@ def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray
     """Return the results of `_one_by_one` for few pairs over many intervals at once."""
     n, span, worst = len(run.q[0]), np.diff(run.path.t), np.zeros(len(at))
     i, j = np.triu_indices(n, 1) if function.edges is None else np.array(function.edges, dtype=np.intp).reshape(-1, 2).T
-    size = max(1, _BLOCK // max(1, len(i)))
-    for first in range(0, len(at) if len(i) else 0, size):
-        rows = at[first : first + size]
-        each = [_control_points(run, k) for k in rows.tolist()]
-        points, allowance = np.array([one[0] for one in each]), np.array([one[2] for one in each])
-        time, long = span[rows, None], step[rows, None]
-        worst[first : first + size] = _largest(
-            function, points[:, j] - points[:, i], allowance[:, i] + allowance[:, j], time, long, place, n
+    block_length = max(1, _BLOCK // max(1, len(i)))
+    for start_index in range(0, len(at) if len(i) else 0, block_length):
+        rows = at[start_index : start_index + block_length]
+        item = [_control_points(run, k) for k in rows.tolist()]
+        points, allowance = np.array([entry[0] for entry in item]), np.array([entry[2] for entry in item])
+        time, step_lengths = span[rows, None], step[rows, None]
+        worst[start_index : start_index + block_length] = _largest(
+            function, points[:, j] - points[:, i], allowance[:, i] + allowance[:, j], time, step_lengths, place, n
         )
     return worst
 
@@ -128,10 +128,10 @@ def _largest(
     of: LawFunction, apart: FloatArray, off: FloatArray, span: Any, step: Any, place: float, n: int
 ) -> FloatArray:
     """Return the largest ω² along the last axis, of pairs that hide more than `place`."""
-    rate, way = _hidden(of, apart, off, span)
+    rate, hidden_path = _hidden(of, apart, off, span)
     rate = rate / n if of.mean else rate
-    hidden = rate * step * step * (way * step / span)
-    return np.asarray(rate.max(axis=-1, where=hidden > place, initial=0.0))
+    hidden_distance = rate * step * step * (hidden_path * step / span)
+    return np.asarray(rate.max(axis=-1, where=hidden_distance > place, initial=0.0))
 
 
 def _control_points(run: Trajectory, k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -144,28 +144,28 @@ def _control_points(run: Trajectory, k: int) -> tuple[FloatArray, FloatArray, Fl
 def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Return the lengths of a run's steps, and of the step that contains each interval of its path."""
     if run.between is not None:
-        ends = np.concatenate([run.t[:1], run.between.t, run.t[-1:]])
+        step_times = np.concatenate([run.t[:1], run.between.t, run.t[-1:]])
     else:  # as many samples as steps, or all samples within one step
-        ends = run.t if run.stats.get("steps", 0) >= len(run.t) - 1 else run.t[[0, -1]]
-    steps = np.diff(ends)
-    at = np.clip(np.searchsorted(ends, run.path.t[:-1], side="right") - 1, 0, len(steps) - 1)
-    return steps, steps[at]
+        step_times = run.t if run.stats.get("steps", 0) >= len(run.t) - 1 else run.t[[0, -1]]
+    steps = np.diff(step_times)
+    step_indices = np.clip(np.searchsorted(step_times, run.path.t[:-1], side="right") - 1, 0, len(steps) - 1)
+    return steps, steps[step_indices]
 
 
 def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any) -> tuple[FloatArray, FloatArray]:
     """Return ω² of each pair over an interval, from relative control points, and its distance change."""
     assert of.function is not None
-    sides, ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
-    middle, table = 0.5 * ends.sum(axis=-1), _table(of.function)
+    sides, link_ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
+    midpoint, table = 0.5 * link_ends.sum(axis=-1), _table(of.function)
     edges = table[0]
-    first = np.clip(np.searchsorted(edges, middle - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
-    last = np.clip(np.searchsorted(edges, middle + 0.5 * sides, side="left") - 1, first, len(edges) - 2)
-    force, adjacency = (most[first, last] for most in table[1:])
+    first_index = np.clip(np.searchsorted(edges, midpoint - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
+    last_index = np.clip(np.searchsorted(edges, midpoint + 0.5 * sides, side="left") - 1, first_index, len(edges) - 2)
+    force, adjacency = (maximum[first_index, last_index] for maximum in table[1:])
     speed = 2.0 * sides / time
     with np.errstate(invalid="ignore"):  # an unknown slope without a gain or a motion moves nothing
         parts = np.nan_to_num([of.stiffness * force, of.damping * adjacency * speed], nan=0.0, posinf=np.inf)
-    out = middle - 0.5 * sides >= of.function.range
-    return np.where(out, 0.0, 2.0 * parts.sum(axis=0)), sides
+    is_outside = midpoint - 0.5 * sides >= of.function.range
+    return np.where(is_outside, 0.0, 2.0 * parts.sum(axis=0)), sides
 
 
 @lru_cache(maxsize=64)
@@ -189,9 +189,9 @@ def unresolved(run: Trajectory, place: float) -> str:
     if unknown := unknown_parts(law):
         return f"how fast {unknown[0]} changes is not known, and so whether steps resolve it"
     demand = demand_of(run, place)
-    if not (missed := demand.missed).size:
+    if not (unmet_hypothesis := demand.missed).size:
         return ""
-    k = int(missed[np.argmin(demand.longest[missed])])
+    k = int(unmet_hypothesis[np.argmin(demand.longest[unmet_hypothesis])])
     feature = law.features()[demand.part[k]]
     where = f"at t = {demand.t[k]:.4g} a pair is at distances where"
     if feature.of == "time":

@@ -145,7 +145,7 @@ class Theorem:
         ['Algorithm 1 or 2 is applied', 'c1α > 0', 'H(0) < c*', 'H(0) < 2 c*']
         """
         hypotheses, claims = self.examine(start, Tolerances())
-        return tuple(dict.fromkeys((*hypotheses, *(need for claim in claims for need in claim.needs))))
+        return tuple(dict.fromkeys((*hypotheses, *(requirement for claim in claims for requirement in claim.needs))))
 
     def examine(self, *case: Any, check: Check | None = None) -> Known:
         """Return hypotheses and claims of one case; claims left out by `check` are vacuous.
@@ -161,12 +161,12 @@ class Theorem:
         claims: list[Claim] = []
         if unmet(hypotheses) is None:
             with np.errstate(over="ignore", invalid="ignore"):  # of runs that end beyond all numbers
-                further, stated = (check or self.check)(*case)
-                hypotheses, claims = [*hypotheses, *further], list(stated)
+                more_claims, stated_value = (check or self.check)(*case)
+                hypotheses, claims = [*hypotheses, *more_claims], list(stated_value)
         if (missed := unmet(hypotheses)) is not None:
             words = {"name": missed.name, "detail": missed.detail, "unmet": does_not_hold(missed.name)}
             text, names = self.reason.format(**words).removesuffix(": "), {claim.name for claim in claims}
-            left_out = (name for name in self.claims if name not in names)
-            claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
+            missing_claims = (name for name in self.claims if name not in names)
+            claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in missing_claims]
         owners = (self.by(claim.name) if claim.by == "source" else claim.by for claim in claims)
-        return tuple(hypotheses), tuple(replace(claim, by=by) for claim, by in zip(claims, owners, strict=True))
+        return tuple(hypotheses), tuple(replace(claim, by=author) for claim, author in zip(claims, owners, strict=True))

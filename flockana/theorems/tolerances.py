@@ -70,8 +70,8 @@ class Tolerances(ShortRepr):
 
     def __post_init__(self) -> None:
         for field_ in fields(self):
-            ensure = ensure_nonnegative if field_.name == "settle" else ensure_positive
-            value = ensure(f"tolerances.{field_.name}", getattr(self, field_.name))
+            ensure_number = ensure_nonnegative if field_.name == "settle" else ensure_positive
+            value = ensure_number(f"tolerances.{field_.name}", getattr(self, field_.name))
             if field_.name in ("giant", "settle") and value >= 1.0:
                 raise ArgumentError(f"tolerances.{field_.name} = {value:g}: expected a share below 1")
             object.__setattr__(self, field_.name, value)

@@ -78,8 +78,8 @@ class Verdict:
     @property
     def rigour(self) -> Rigour:
         """Weakest rigour among the claims that decide the status."""
-        deciding = [c.rigour for c in self.main_claims if c.status == self.status] or ["numeric"]
-        return min(deciding, key=RIGOURS.index)
+        deciding_rigours = [c.rigour for c in self.main_claims if c.status == self.status] or ["numeric"]
+        return min(deciding_rigours, key=RIGOURS.index)
 
     def claim(self, name: str) -> Claim:
         """Return the claim with a given name.
@@ -98,7 +98,7 @@ class Verdict:
         """Return plain data for JSON; infinities and NaN become text."""
         data: dict[str, Any] = plain(asdict(self))
         for claim in data["claims"]:
-            claim["needs"] = [need["name"] for need in claim["needs"]]
+            claim["needs"] = [requirement["name"] for requirement in claim["needs"]]
         head = {"theorem": data.pop("theorem"), "status": self.status, "summary": self.summary, "rigour": self.rigour}
         return head | data
 
@@ -112,15 +112,15 @@ class Verdict:
         lines = [self._head(), f"  {self.summary}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
         for name, c in merged((*self.main_claims, *self.further_claims)):
-            whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
-            lines.append(f"  {name:>14} {c.status:12} {whose}{c.explanation}{c.cited}")
+            author_text = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
+            lines.append(f"  {name:>14} {c.status:12} {author_text}{c.explanation}{c.cited}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         rows: list[tuple[str, ...]] = [(f"given: {h.name}", h.status, "", h.detail) for h in self.hypotheses]
         rows += [(self._named(c), c.status, number(c.margin), c.explanation + c.cited) for c in self.claims]
-        on = f" on {self.subject}" if self.subject else ""
-        caption = f"{self.theorem}: {MARKS[self.status]} {self.status} ({self.rigour}){on}; {self.summary}"
+        subject_text = f" on {self.subject}" if self.subject else ""
+        caption = f"{self.theorem}: {MARKS[self.status]} {self.status} ({self.rigour}){subject_text}; {self.summary}"
         return html_table(rows, ("claim", "status", "margin", "in words"), caption)
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -159,5 +159,5 @@ def _format_margin(margin: float | None, error: float | None) -> str:
     if margin is None:
         return ""
     texts = [f"{value:.3g}" for value in (margin, error or 0.0)]
-    plain = [f"{a} \\cdot 10^{{{int(b)}}}" if b else a for a, _, b in (text.partition("e") for text in texts)]
-    return f"${plain[0]}$" if not error else f"${plain[0]} \\pm {plain[1]}$"
+    number_texts = [f"{a} \\cdot 10^{{{int(b)}}}" if b else a for a, _, b in (text.partition("e") for text in texts)]
+    return f"${number_texts[0]}$" if not error else f"${number_texts[0]} \\pm {number_texts[1]}$"

@@ -63,18 +63,18 @@ class Verdicts(tuple[Verdict, ...]):
         from scipy.io import savemat
 
         table = self.to_dataframe()
-        numbers = {name: table[name].to_numpy(float) for name in ("margin", "error")}
-        texts = {name: table[name].fillna("").to_numpy(object) for name in table if name not in numbers}
-        with atomic_write(path) as temporary:
-            savemat(temporary, {"claims": texts | numbers})
+        numeric_columns = {name: table[name].to_numpy(float) for name in ("margin", "error")}
+        texts = {name: table[name].fillna("").to_numpy(object) for name in table if name not in numeric_columns}
+        with atomic_write(path) as temporary_path:
+            savemat(temporary_path, {"claims": texts | numeric_columns})
         return Path(path)
 
 
 def _deciding(verdict: Verdict) -> str:
     """Return the name of the first claim with the verdict's status, or the unmet hypothesis of a vacuous one."""
-    missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
-    if missed is not None:
-        return missed.name
+    unmet_hypothesis = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
+    if unmet_hypothesis is not None:
+        return unmet_hypothesis.name
     return next((c.name for c in verdict.main_claims if c.status == verdict.status), "")
 
 

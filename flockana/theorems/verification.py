@@ -102,11 +102,11 @@ def verify(
     """
     tol = ensure_tolerances(tolerances)
     if isinstance(name, Sequence) and not isinstance(name, str):
-        items = [theorem(each) for each in name]
+        items = [theorem(entry) for entry in name]
         if trajectory is None and law is not None:
             trajectory, law, q0, p0, t_span = _run(None, law, q0, p0, t_span), None, None, None, None
         parts: Any = {"basin": basin, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
-        return Verdicts(verify(each, trajectory, tolerances=tol, subject=subject, **parts) for each in items)
+        return Verdicts(verify(entry, trajectory, tolerances=tol, subject=subject, **parts) for entry in items)
     case = {"trajectory": trajectory, "law": law, "q0": q0, "p0": p0, "t_span": t_span, "q": q, "d": d, "r": r}
     item = None if name is None else theorem(name)
     evidence = _choose_evidence(item, case, basin)
@@ -126,7 +126,7 @@ def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> 
     if _is("recording", case["trajectory"]):
         from flockana.theorems.on_recordings import RecordingEvidence  # which loads what fits and smooths
 
-        if any(each is not None for each in (basin, *(case[name] for name in ("q0", "p0", "t_span", "q")))):
+        if any(entry is not None for entry in (basin, *(case[name] for name in ("q0", "p0", "t_span", "q")))):
             raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
         return RecordingEvidence(case["trajectory"], case["law"], case["d"], case["r"])
     motion = [case[name] for name in ("trajectory", "law", "q0", "p0", "t_span")]

@@ -36,8 +36,8 @@ class AlongVelocity(Term):
         return self.compiled(p.shape[1]).on_agents(t, q, p, u)
 
     def compiled(self, m: int) -> TermKernel:  # noqa: D102
-        numbers = np.array([float(self.moving), self.thrust, self.brake])
-        return TermKernel(kernel.act_along, no_energy, numbers, np.empty((0, 0)), 0.0)
+        kernel_parameters = np.array([float(self.moving), self.thrust, self.brake])
+        return TermKernel(kernel.act_along, no_energy, kernel_parameters, np.empty((0, 0)), 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         factor = self.thrust - self.brake * np.einsum("ij,ij->i", p, p)

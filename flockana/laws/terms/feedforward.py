@@ -42,8 +42,8 @@ class TargetFeedforward(Term):
         return self.compiled(p.shape[1]).on_agents(t, q, p, u)
 
     def compiled(self, m: int) -> TermKernel:  # noqa: D102
-        numbers = np.concatenate([[float(self.moving), self.path.omega], self.path.terms.ravel()])
-        return TermKernel(kernel.act_all, no_energy, numbers, np.empty((0, 0)), 0.0)
+        kernel_parameters = np.concatenate([[float(self.moving), self.path.omega], self.path.terms.ravel()])
+        return TermKernel(kernel.act_all, no_energy, kernel_parameters, np.empty((0, 0)), 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.hessian(t, q), self.hessian(t, q)

@@ -23,8 +23,8 @@ class LinkTerm(Term):
 
     @cached_property
     def _ends(self) -> tuple[np.ndarray, np.ndarray]:
-        ends = np.array(self.links, dtype=np.int32).reshape(-1, 2)
-        return np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
+        link_ends = np.array(self.links, dtype=np.int32).reshape(-1, 2)
+        return np.ascontiguousarray(link_ends[:, 0]), np.ascontiguousarray(link_ends[:, 1])
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
@@ -33,13 +33,13 @@ class LinkTerm(Term):
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         par = self.pair.par
-        forces_of = self.pair.kernels.sums(q.shape[1], par.size).forces_of
-        return -self.damping * float(forces_of(q, p, *self._ends, par, self.stiffness, self.damping, u))
+        force_kernel = self.pair.kernels.sums(q.shape[1], par.size).forces_of
+        return -self.damping * float(force_kernel(q, p, *self._ends, par, self.stiffness, self.damping, u))
 
     def compiled(self, m: int) -> TermKernel:  # noqa: D102
-        ends, sums = np.array(self.links, dtype=np.float64).ravel(), self.pair.kernels.sums(m, self.pair.par.size)
-        numbers = np.concatenate([[self.stiffness, self.damping, len(self.links)], ends, self.pair.par])
-        return TermKernel(sums.act_links, sums.energy_links, numbers, self.pair.panels, 0.0, numbered=True)
+        link_ends, sums = np.array(self.links, dtype=np.float64).ravel(), self.pair.kernels.sums(m, self.pair.par.size)
+        kernel_parameters = np.concatenate([[self.stiffness, self.damping, len(self.links)], link_ends, self.pair.par])
+        return TermKernel(sums.act_links, sums.energy_links, kernel_parameters, self.pair.panels, 0.0, numbered=True)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * float(self.pair.kernels.potential(q, *self._ends, self.pair.par, self.pair.panels))

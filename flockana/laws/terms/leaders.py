@@ -81,15 +81,15 @@ class Leaders(Term):
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
         q_l, p_l, a_l = self.led(t)
-        slip, power = p - p_l, 0.0
+        velocity_difference, power = p - p_l, 0.0
         for group in self.members:
-            matched, dissipation = self.pair.forces(q[group], p[group], stiffness=0.0, damping=self.damping)
-            u[group] += matched
+            leader_forces, dissipation = self.pair.forces(q[group], p[group], stiffness=0.0, damping=self.damping)
+            u[group] += leader_forces
             power -= self.damping * dissipation
-        u -= self._pins * (self.pull * (q - q_l) + self.drag * slip)
-        power -= self.drag * float(np.sum(self._pins * slip * slip))
+        u -= self._pins * (self.pull * (q - q_l) + self.drag * velocity_difference)
+        power -= self.drag * float(np.sum(self._pins * velocity_difference * velocity_difference))
         if not self.feedforward:
-            return power - float(np.sum(slip * a_l))
+            return power - float(np.sum(velocity_difference * a_l))
         u += a_l
         return power
 
@@ -98,9 +98,9 @@ class Leaders(Term):
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Derivatives:  # noqa: D102
         (i, j), group = pair_list(q, self.pair.range), np.array(self.group)
-        same_group = group[i] == group[j]
+        is_same_group = group[i] == group[j]
         by_position, by_velocity = self.pair.jacobian(
-            q, p, stiffness=0.0, damping=self.damping, pairs=[(i[same_group], j[same_group])]
+            q, p, stiffness=0.0, damping=self.damping, pairs=[(i[is_same_group], j[is_same_group])]
         )
         pins = block_diagonal(self._pins[:, :, None] * np.eye(q.shape[1]))
         return by_position - self.pull * pins, by_velocity - self.drag * pins

@@ -86,16 +86,16 @@ class Navigation(Term):
         form, path = self._form, self.target.harmonic
         if form is None or path is None or path.omega:  # only at rest or on a line it is exact to the last bit
             (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
-            still = np.zeros_like(rate)
-            t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, still, still, p_r]), factor=0.0))
+            zero_velocity = np.zeros_like(rate)
+            t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, zero_velocity, zero_velocity, p_r]), factor=0.0))
         return form.on_agents(t, q, p, u)
 
     def _along(self, path: Harmonic) -> TermKernel:
         """Return the compiled form for a harmonic path."""
         c1, c2 = self._gains
         head = [self.moving, self.unit or 0.0, c1.size, path.omega, path.factor]
-        numbers = np.concatenate([head, path.terms.ravel(), c1, c2])
-        return TermKernel(kernel.act, kernel.energy, numbers, np.empty((0, 0)), 0.0)
+        kernel_parameters = np.concatenate([head, path.terms.ravel(), c1, c2])
+        return TermKernel(kernel.act, kernel.energy, kernel_parameters, np.empty((0, 0)), 0.0)
 
     @cached_property
     def _form(self) -> TermKernel | None:

@@ -75,8 +75,8 @@ class ObstacleTerm(Term):
             return None
         beta, kernels = self.field.beta, []
         for kind in self.field.kinds:
-            numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind.arrays)
-            kernels.append(TermKernel(kind.kernels.act, kind.kernels.energy, numbers, beta.panels, 0.0))
+            kernel_parameters = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind.arrays)
+            kernels.append(TermKernel(kind.kernels.act, kind.kernels.energy, kernel_parameters, beta.panels, 0.0))
         return tuple(kernels)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

@@ -16,9 +16,9 @@ from flockana.laws.terms.term import Derivatives, Term, TermKernel
 def ensure_apart(q: FloatArray, why: str = "the pair force has no limit there") -> None:
     """Raise if two agents coincide; the message states the reason."""
     order = np.lexsort(q.T)
-    same = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
-    if same.size:
-        i, j = sorted(int(k) for k in order[same[0] : same[0] + 2])
+    coincident_pairs = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
+    if coincident_pairs.size:
+        i, j = sorted(int(k) for k in order[coincident_pairs[0] : coincident_pairs[0] + 2])
         raise ArgumentError(f"agents {i} and {j} coincide: {why}; expected distinct positions")
 
 
@@ -71,9 +71,9 @@ class PairTerm(Term):
             and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)
         ):
             return None
-        numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
+        kernel_parameters = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
         sums = pair.kernels.sums(m, pair.par.size)
-        return TermKernel(sums.act, sums.energy, numbers, pair.panels, pair.range)
+        return TermKernel(sums.act, sums.energy, kernel_parameters, pair.panels, pair.range)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * self.pair.potential_energy(q)

@@ -56,10 +56,10 @@ class TermKernel(NamedTuple):
             Accelerations, to which those of the term are added.
         """
         (n, m), none = q.shape, np.empty(0, np.uint32)
-        order, room = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
-        listed = Listed(np.zeros((2, m)), none, none, 0, _NO_PAIRS, order, room, np.empty((3, m)))
+        order, workspace = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
+        pair_storage = Listed(np.zeros((2, m)), none, none, 0, _NO_PAIRS, order, workspace, np.empty((3, m)))
         x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
-        return float(self.act(t, x, v, u, self.numbers, self.panels, listed))
+        return float(self.act(t, x, v, u, self.numbers, self.panels, pair_storage))
 
 
 class Compiled(NamedTuple):
@@ -98,9 +98,9 @@ class Compiled(NamedTuple):
         """
         reach, agents = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
         slabs = empty_cuts(n).size - 2
-        room = np.empty((2, m)), np.empty((2 * slabs, BLOCK), np.uint64), np.empty((3 * slabs, BLOCK))
+        workspace = np.empty((2, m)), np.empty((2 * slabs, BLOCK), np.uint64), np.empty((3 * slabs, BLOCK))
         return System(
-            *self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), agents, *room
+            *self.functions(), self.numbers, view, self.moving, reach, work_of(large=n >= LARGE), agents, *workspace
         )
 
     def in_threads(self, system: System) -> System:

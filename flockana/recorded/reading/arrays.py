@@ -59,36 +59,36 @@ def named_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p, u and read_as from arrays by name, or from the columns of a long table."""
     arrays = _without_shells(arrays)
-    stated = {} if columns is None else dict(columns)
-    if (frame := _long_table(arrays, stated, dt)) is not None:
+    stated_value = {} if columns is None else dict(columns)
+    if (frame := _long_table(arrays, stated_value, dt)) is not None:
         frame.attrs["where"] = where
-        return table_arrays(frame, stated or None, dt, clock, m, jitter)
+        return table_arrays(frame, stated_value or None, dt, clock, m, jitter)
     order = None if axes is None else order_of(axes)
-    arrays, joined = with_joined_axes(arrays, stated, order, where)
-    stated = {kind: name for kind, name in stated.items() if kind not in joined}
-    lower = {str(name).lower(): name for name in arrays if name not in stated.values()}
-    filed, read_as = dict[str, Any](), []
+    arrays, joined_arrays = with_joined_axes(arrays, stated_value, order, where)
+    stated_value = {kind: name for kind, name in stated_value.items() if kind not in joined_arrays}
+    lower = {str(name).lower(): name for name in arrays if name not in stated_value.values()}
+    filed, reading_remarks = dict[str, Any](), []
     for kind, names in _NAMES.items():
-        spellings = [lower[each] for each in names if each in lower]
-        if kind not in stated and len(spellings) > 1:
+        spellings = [lower[item] for item in names if item in lower]
+        if kind not in stated_value and len(spellings) > 1:
             raise ArgumentError(
                 f"{where}: {', '.join(map(repr, spellings))} may each be {kind}: expected columns={{{kind!r}: ...}}"
             )
-        name = stated.get(kind, spellings[0] if spellings else None)
-        if kind in stated and name not in list(arrays):
+        name = stated_value.get(kind, spellings[0] if spellings else None)
+        if kind in stated_value and name not in list(arrays):
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
             filed[kind] = real_array(arrays[name], kind, where)
             by_default = " as (time, agent, axis)" if filed[kind].ndim == 3 and order is None else ""
-            read_as.append(f"{kind} from {joined.get(name, repr(name))} {filed[kind].shape}{by_default}")
+            reading_remarks.append(f"{kind} from {joined_arrays.get(name, repr(name))} {filed[kind].shape}{by_default}")
     listing = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in filed:
         raise ArgumentError(
             f'{where} holds {listing}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
     if order is not None:
-        filed |= {k: turned(filed[k], order, k, where) for k in "qpu" if k in filed and k not in joined}
-        read_as.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
+        filed |= {k: turned(filed[k], order, k, where) for k in "qpu" if k in filed and k not in joined_arrays}
+        reading_remarks.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
     q = filed["q"]
     if q.ndim != 3:
         raise ArgumentError(
@@ -100,16 +100,16 @@ def named_arrays(
         raise ArgumentError(f"{where} holds {listing} and no times: expected t, or dt=, the interval between samples")
     if "t" in filed and dt is not None:
         raise ArgumentError(f"{where} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
-    sizes = {x: np.size(array) if rank(array) else 0 for x, array in arrays.items()}
-    frame = next((x for x in arrays if is_frame(words_of(x)[0]) and sizes[x] == len(q)), None)
+    magnitudes = {x: np.size(array) if rank(array) else 0 for x, array in arrays.items()}
+    frame = next((x for x in arrays if is_frame(words_of(x)[0]) and magnitudes[x] == len(q)), None)
     count = np.arange(len(q)) if frame is None else real_array(arrays[frame], "frame", where)
     t = (filed["t"] if "t" in filed else (step or 0.0) * count).reshape(-1)  # MATLAB has no vectors
     if "t" not in filed:
-        read_as.append(f"t from {'the samples' if frame is None else repr(frame)} {rate or 'times dt'}")
+        reading_remarks.append(f"t from {'the samples' if frame is None else repr(frame)} {rate or 'times dt'}")
     if len(t) != len(q):
-        orders = [] if joined else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
+        orders = [] if joined_arrays else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
         hint = f"; expected (T, n, m), or axes={' or axes='.join(orders or ['...'])}, which decides"
-        hint = '; expected one row for each time, or axes="agent time"' if joined and order is None else hint
+        hint = '; expected one row for each time, or axes="agent time"' if joined_arrays and order is None else hint
         raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}{hint}")
     if q.shape[2] > 3:
         raise ArgumentError(
@@ -117,25 +117,25 @@ def named_arrays(
             'axes=, such as axes=("time", "axis", "agent")'
         )
     if order is None and ("t" not in filed or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
-        choice = '"agent time"' if joined else " or axes=".join(possible_orders(q, [1, 0]))
+        choice = '"agent time"' if joined_arrays else " or axes=".join(possible_orders(q, [1, 0]))
         raise ArgumentError(
             f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
             f"be the time or the agent: expected axes={choice}, which decides"
         )
-    read = {stated.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
-    idle = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and sizes[x] > 1]
-    read_as += [f"not read: {', '.join(idle)}"] if idle else []
+    read = {stated_value.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
+    unused_names = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and magnitudes[x] > 1]
+    reading_remarks += [f"not read: {', '.join(unused_names)}"] if unused_names else []
     if m is not None and m not in range(1, q.shape[2] + 1):
         raise ArgumentError(f"m = {m!r}: expected 1 to {q.shape[2]}, of which {where} has positions")
     if m is not None:
         filed |= {kind: filed[kind][..., :m] for kind in "qpu" if kind in filed}
-        read_as.append(f"the first {m} of {q.shape[2]} axes, as m = {m}")
-    return filed | {"t": t, "read_as": tuple(read_as)}
+        reading_remarks.append(f"the first {m} of {q.shape[2]} axes, as m = {m}")
+    return filed | {"t": t, "read_as": tuple(reading_remarks)}
 
 
 def _interval(lower: Mapping[str, Any], arrays: Mapping[str, Any], dt: float | None, where: str) -> tuple[Any, str]:
     """Return the sampling interval, given or from a frame rate beside the arrays."""
-    name = next((lower[each] for each in _RATES if each in lower), None)
+    name = next((lower[item] for item in _RATES if item in lower), None)
     rate = np.asarray(arrays[name]).reshape(-1) if name is not None else np.empty(0)
     if rate.size != 1 or rate.dtype.kind not in "fiu" or not rate[0] > 0:
         return dt, ""
@@ -150,8 +150,8 @@ def _without_shells(arrays: Mapping[str, Any]) -> Mapping[str, Any]:
         inner = _dictionaries(value)
         if inner and len(arrays) <= 1 + sum(_dictionaries(x) == [] for x in arrays.values()):
             if len(inner) == 1:
-                rest = {k: x for k, x in arrays.items() if x is not value}
-                return _without_shells({**rest, **inner[0]})
+                other_arrays = {k: x for k, x in arrays.items() if x is not value}
+                return _without_shells({**other_arrays, **inner[0]})
             return _joined_agents(inner)
     return arrays
 
@@ -161,10 +161,10 @@ def _dictionaries(value: Any) -> list[Mapping[str, Any]]:
     if isinstance(value, Mapping):
         return [value]
     if isinstance(value, np.ndarray) and value.dtype.names:
-        return [{name: np.squeeze(one[name]) for name in value.dtype.names} for one in value.reshape(-1)]
+        return [{name: np.squeeze(dictionary[name]) for name in value.dtype.names} for dictionary in value.reshape(-1)]
     items = list(value.reshape(-1)) if isinstance(value, np.ndarray) and value.dtype.hasobject else value
     if isinstance(items, list) and items and all(isinstance(x, np.ndarray) and x.dtype.names for x in items):
-        return [one for x in items for one in _dictionaries(x)]
+        return [dictionary for x in items for dictionary in _dictionaries(x)]
     if isinstance(items, list | tuple) and items and all(isinstance(x, Mapping) for x in items):
         return list(items)
     return []
@@ -173,9 +173,9 @@ def _dictionaries(value: Any) -> list[Mapping[str, Any]]:
 def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Return a dictionary for each agent as one long table."""
     table: dict[str, list[Any]] = {}
-    for k, one in enumerate(agents):
+    for k, agent in enumerate(agents):
         columns = dict[str, Any]()
-        for name, value in one.items():
+        for name, value in agent.items():
             array = np.asarray(value)
             array = array.reshape(-1) if array.ndim > 1 and 1 in array.shape else array
             if array.ndim == 2 and 1 <= array.shape[1] <= 3:
@@ -189,14 +189,14 @@ def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         names = [name for name in columns if is_agent(words_of(name)[0])] or ["id"]
         columns.setdefault(names[0], np.array([k]))
         columns = {name: np.repeat(x, rows) if len(x) == 1 else x for name, x in columns.items()}
-        if (bad := next((name for name, x in columns.items() if len(x) != rows), None)) is not None:
+        if (bad_name := next((name for name, x in columns.items() if len(x) != rows), None)) is not None:
             raise ArgumentError(
-                f"agent {k}: {bad!r} has {len(columns[bad])} values: expected {rows}, one for each sample"
+                f"agent {k}: {bad_name!r} has {len(columns[bad_name])} values: expected {rows}, one for each sample"
             )
         for name, x in columns.items():
             table.setdefault(name, []).append(x)
-    if (bad := next((name for name, parts in table.items() if len(parts) != len(agents)), None)) is not None:
-        raise ArgumentError(f"{len(agents)} agents, and {bad!r} is not of each: expected the same names for all")
+    if (bad_name := next((name for name, parts in table.items() if len(parts) != len(agents)), None)) is not None:
+        raise ArgumentError(f"{len(agents)} agents, and {bad_name!r} is not of each: expected the same names for all")
     return {name: np.concatenate(parts) for name, parts in table.items()}
 
 
@@ -205,19 +205,19 @@ def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any], dt: float |
     import pandas as pd
 
     try:
-        plain = {str(name): np.asarray(x) for name, x in arrays.items()}
+        plain_arrays = {str(name): np.asarray(x) for name, x in arrays.items()}
     except ValueError:  # rows of different lengths
         return None
-    columns = {name: x.reshape(-1) for name, x in plain.items() if x.size == max(x.shape, default=0)}
+    columns = {name: x.reshape(-1) for name, x in plain_arrays.items() if x.size == max(x.shape, default=0)}
     columns = {name: x for name, x in columns.items() if x.size > 1 or len(columns) == len(arrays)}
     if len({x.size for x in columns.values()}) != 1:
         return None
     agents = "id" in given or any(is_agent(words_of(name)[0]) for name in columns)
-    places = [name for name in plain if coordinate(*words_of(name)) is not None]
-    alone = bool(places) and {*places} <= {*columns}  # all numbers are of one agent
+    position_names = [name for name in plain_arrays if coordinate(*words_of(name)) is not None]
+    is_number_only = bool(position_names) and {*position_names} <= {*columns}  # all numbers are of one agent
     times = any(is_time(words_of(name)[0]) or is_frame(words_of(name)[0]) for name in columns)
-    times = times or bool({"t", "frame"} & given.keys()) or (alone and dt is not None)
-    if not ((agents or alone) and times) or any(x.ndim > 2 for x in plain.values()):
+    times = times or bool({"t", "frame"} & given.keys()) or (is_number_only and dt is not None)
+    if not ((agents or is_number_only) and times) or any(x.ndim > 2 for x in plain_arrays.values()):
         return None
     return pd.DataFrame(columns)
 
@@ -309,9 +309,9 @@ def dataset_arrays(dataset: Any, where: str) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
     for name in (*dataset.coords, *dataset.data_vars):
         array = dataset[name]
-        order = [AXES.get(str(each).lower(), -1) for each in array.dims]
-        known = [str(each) for each in array.dims if str(each).lower() in AXES]
-        if str(name).lower() in (*_NAMES["q"], *_NAMES["p"], *_NAMES["u"]) and -1 in order and known:
+        order = [AXES.get(str(dim).lower(), -1) for dim in array.dims]
+        known_axes = [str(dim) for dim in array.dims if str(dim).lower() in AXES]
+        if str(name).lower() in (*_NAMES["q"], *_NAMES["p"], *_NAMES["u"]) and -1 in order and known_axes:
             raise ArgumentError(
                 f"{where}: {name} is over {', '.join(map(str, array.dims))}: expected time, agent and space (Cartesian "
                 "coordinates) alone; ds.rename(...) names a dimension, ds.sel(...) takes a part"

@@ -38,8 +38,8 @@ def turned(x: Any, order: Sequence[int], kind: str, where: str) -> Any:
             f"{where}: {kind} has shape {x.shape} and axes= names {len(order)}: expected one name for each"
         )
     missing = [k for k in range(3) if k not in order]
-    full = x.reshape(*x.shape, *(1 for _ in missing))
-    return np.transpose(full, [[*order, *missing].index(k) for k in range(3)])
+    full_array = x.reshape(*x.shape, *(1 for _ in missing))
+    return np.transpose(full_array, [[*order, *missing].index(k) for k in range(3)])
 
 
 def with_joined_axes(
@@ -47,9 +47,9 @@ def with_joined_axes(
 ) -> tuple[Mapping[str, Any], dict[str, str]]:
     """Return arrays with single coordinates such as x and y joined to (T, n, m), and the joined names."""
     words = {name: coordinate(*words_of(name)) for name in arrays if name not in given.values()}
-    known = {name: word for name, word in words.items() if word is not None and rank(arrays[name]) == 2}
+    known_axes = {name: word for name, word in words.items() if word is not None and rank(arrays[name]) == 2}
     kinds = {kind: dict(zip("xyz", x, strict=False)) for kind, x in given.items() if isinstance(x, list | tuple)}
-    kinds = kinds if "q" in given else by_owner(known, where).get((), {})
+    kinds = kinds if "q" in given else by_owner(known_axes, where).get((), {})
     if len(kinds.get("q", ())) < 2:
         return arrays, {}
     joined, texts, order = dict(arrays), dict[str, str](), order or (0, 1)
@@ -57,10 +57,10 @@ def with_joined_axes(
         if lacking := [name for name in names if name not in joined]:
             raise ArgumentError(f"{where} has no array {lacking[0]!r}: expected one of {', '.join(map(str, arrays))}")
         parts = [real_array(joined.pop(name), kind, where) for name in names]
-        if len({part.shape for part in parts}) > 1:
+        if len({segment.shape for segment in parts}) > 1:
             raise ArgumentError(f"{where}: {', '.join(names)} have other shapes than each other: expected one")
         joined[kind] = np.concatenate(
-            [turned(part, order, name, where) for part, name in zip(parts, names, strict=True)], axis=2
+            [turned(segment, order, name, where) for segment, name in zip(parts, names, strict=True)], axis=2
         )
         texts[kind] = ", ".join(map(repr, names))
     return joined, texts
@@ -87,8 +87,8 @@ def is_smoother_along_second(q: Any) -> bool:
     x = np.ma.masked_invalid(q)
     rounding = 1e-9 * np.ma.abs(x).max()
     shape = x - x.mean(axis=0) - x.mean(axis=1)[:, None]
-    sizes = [[np.ma.abs(y[1:] - y[:-1]).mean(), np.ma.abs(y[:, 1:] - y[:, :-1]).mean()] for y in (x, shape)]
-    return all(_SMOOTHER * second < first > rounding for first, second in sizes)
+    magnitudes = [[np.ma.abs(y[1:] - y[:-1]).mean(), np.ma.abs(y[:, 1:] - y[:, :-1]).mean()] for y in (x, shape)]
+    return all(_SMOOTHER * second_variation < first > rounding for first, second_variation in magnitudes)
 
 
 def real_array(value: Any, kind: str, where: str) -> Any:

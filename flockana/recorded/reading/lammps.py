@@ -43,8 +43,8 @@ class Box:
         if rows.shape[1] not in (2, 3):
             return None
         xy, xz, yz = rows[:, 2] if rows.shape[1] == 3 else np.zeros(3)
-        tilts = np.array([np.ptp([0.0, xy, xz, xy + xz]), np.ptp([0.0, yz]), 0.0])
-        edges = np.diag(rows[:, 1] - rows[:, 0] - tilts)
+        tilt_spans = np.array([np.ptp([0.0, xy, xz, xy + xz]), np.ptp([0.0, yz]), 0.0])
+        edges = np.diag(rows[:, 1] - rows[:, 0] - tilt_spans)
         edges[1, 0], edges[2, 0], edges[2, 1] = xy, xz, yz
         return cls(edges, periodic)
 
@@ -105,37 +105,37 @@ def read_dump(
 
 def _dimension(columns: Collection[str], m: int | None, path: object) -> int:
     """Return the requested dimension, by default that of the positions in the dump."""
-    there = len([*takewhile(lambda axis: {axis, f"{axis}u"} & {*columns}, AXES)])
-    if there == 0:
+    axis_count = len([*takewhile(lambda axis: {axis, f"{axis}u"} & {*columns}, AXES)])
+    if axis_count == 0:
         raise ArgumentError(
             f"{path} has the columns {', '.join(columns)}: expected positions x, y, z or xu, yu, zu "
             "(not scaled ones), such as `dump ... custom N FILE id x y vx vy fx fy`"
         )
     if m is None:
-        return there
-    if m not in range(1, there + 1):
-        raise ArgumentError(f"m = {m!r}: expected 1 to {there}, of which {path} has positions")
+        return axis_count
+    if m not in range(1, axis_count + 1):
+        raise ArgumentError(f"m = {m!r}: expected 1 to {axis_count}, of which {path} has positions")
     return m
 
 
 def _places(snapshot: Snapshot, m: int, path: object, may_stay: bool) -> FloatArray:
     """Return the positions of a snapshot, shape (n, m), unwrapped by image flags if present."""
-    columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
-    q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
-    if snapshot.box is None or not wrapped:
+    columns, wrapped_axes = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
+    q = np.stack([columns[AXES[k] if k in wrapped_axes else f"{AXES[k]}u"] for k in range(m)], axis=1)
+    if snapshot.box is None or not wrapped_axes:
         return q
     images = [k for k in range(3) if f"i{AXES[k]}" in columns]
-    lost = [k for k in snapshot.box.crossed(wrapped) if k not in images]
-    if lost and not may_stay:
+    lost_axes = [k for k in snapshot.box.crossed(wrapped_axes) if k not in images]
+    if lost_axes and not may_stay:
         condition = "is periodic" if snapshot.box.periodic else "may be periodic"
-        faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
+        faces, axes = ", ".join(AXES[k] for k in lost_axes), [AXES[k] for k in wrapped_axes]
         raise ArgumentError(
             f"{path}: the box {condition} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
-            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
+            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost_axes)} beside them; "
             "dump them, run LAMMPS with `boundary s s s`, or give read_recording box=, the periods"
         )
     for k in images:
-        q[:, wrapped] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped]
+        q[:, wrapped_axes] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped_axes]
     return q
 
 
@@ -146,9 +146,9 @@ def _snapshots(path: Path) -> list[Snapshot]:
     if not snapshots:
         raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
     ids = snapshots[0].columns["id"]
-    for before, after in pairwise(snapshots):
-        if after.step <= before.step:
-            raise FileError(f"{path}: step {after.step} follows step {before.step}; expected rising steps")
+    for before, next_snapshot in pairwise(snapshots):
+        if next_snapshot.step <= before.step:
+            raise FileError(f"{path}: step {next_snapshot.step} follows step {before.step}; expected rising steps")
     for k, snapshot in enumerate(snapshots):
         if snapshot.columns.keys() != snapshots[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
             raise FileError(
@@ -215,12 +215,12 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: S
     lines = list(islice(file, rows))
     cells = [line.split() for line in lines]
     width = len(cells[0]) if width is None and cells else width
-    bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
+    bad_line = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
     cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
-    if len(lines) < rows or bad is not None or cut:
-        text = "the end of the file" if bad is None else repr(bad.strip()[:60])
-        size = "" if width is None else f"{width} "
-        raise FileError(f"{path}: {text} where {rows} lines of {size}numbers were expected; was it cut off?")
+    if len(lines) < rows or bad_line is not None or cut:
+        text = "the end of the file" if bad_line is None else repr(bad_line.strip()[:60])
+        width_text = "" if width is None else f"{width} "
+        raise FileError(f"{path}: {text} where {rows} lines of {width_text}numbers were expected; was it cut off?")
     for row in cells:
         for k in words:
             row[k] = "nan"
@@ -228,10 +228,10 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: S
         values = np.array(cells, dtype=np.float64)
     except ValueError:
         values = np.array([[_number(cell) for cell in row] for row in cells])
-    wrong = ~np.isfinite(values)
-    wrong[:, list(words)] = False
-    if wrong.any():
-        k, j = np.argwhere(wrong)[0].tolist()
+    is_invalid = ~np.isfinite(values)
+    is_invalid[:, list(words)] = False
+    if is_invalid.any():
+        k, j = np.argwhere(is_invalid)[0].tolist()
         raise FileError(
             f"{path}: {cells[k][j]!r} in column {j + 1} of {lines[k].strip()[:60]!r}; expected a finite number; is the "
             "dump damaged, or did the run blow up?"

@@ -86,8 +86,8 @@ def layout_of(names: Sequence[Any], where: str, columns: Mapping[str, Any] | Non
         If a column is not there, or what is not stated may be read in two ways; the message has both.
     """
     stated = _ensure_given(columns or {}, names, where)
-    taken = {x for k, v in stated.items() if k != "agents" for x in (v if isinstance(v, list | tuple) else [v])}
-    texts = [name for name in names if name not in taken]
+    taken_columns = {x for k, v in stated.items() if k != "agents" for x in (v if isinstance(v, list | tuple) else [v])}
+    texts = [name for name in names if name not in taken_columns]
     described = {name: words_of(name) for name in texts}
     time, passed = _time_of(texts, described, where) if not {"t", "frame"} & stated.keys() else (stated.get("t"), [])
     frame = stated.get(
@@ -132,12 +132,12 @@ def _ensure_given(columns: Mapping[str, Any], names: Sequence[Any], where: str) 
         raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected {', '.join(_KNOWN)}")
     kinds = _stated(columns)
     requests = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
-    lacking = [x for x in requests if x not in list(names)]
-    if lacking:
-        raise ArgumentError(f"{where} has no column {lacking[0]!r}: expected one of {', '.join(map(str, names))}")
+    missing_names = [x for x in requests if x not in list(names)]
+    if missing_names:
+        raise ArgumentError(f"{where} has no column {missing_names[0]!r}: expected one of {', '.join(map(str, names))}")
     if "q" in kinds and (any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3):
-        got = format_value(dict(columns))
-        raise ArgumentError(f"columns = {got}: expected 1 to 3 columns for q, and as many for p and u")
+        value_text = format_value(dict(columns))
+        raise ArgumentError(f"columns = {value_text}: expected 1 to 3 columns for q, and as many for p and u")
     return columns
 
 
@@ -148,11 +148,11 @@ def _two_readings(where: str, names: Sequence[Any], one: str, other: str, remedy
 
 def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> tuple[Any, list[str]]:
     """Return the time column, or columns of seconds and nanoseconds, and ignored receipt times."""
-    endings = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
-    nano = [name for name in names if endings[name] and endings[name][0] in _NANO]
-    whole = [name for name in names if endings[name] and endings[name][0] in _WHOLE]
-    if len(nano) == len(whole) == 1:
-        return (whole[0], nano[0]), []
+    name_words = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
+    nanosecond_names = [name for name in names if name_words[name] and name_words[name][0] in _NANO]
+    whole_names = [name for name in names if name_words[name] and name_words[name][0] in _WHOLE]
+    if len(nanosecond_names) == len(whole_names) == 1:
+        return (whole_names[0], nanosecond_names[0]), []
     times = [x for x in names if is_time(described[x][0])]
     received = [x for x in times if str(x).startswith(("%", "__")) or "rosbag" in str(x).lower()]
     if received and len(received) < len(times):
@@ -170,21 +170,21 @@ def by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kin
     for name, word in known.items():
         patterns.setdefault(word.pattern, {}).setdefault(word.axis, name)
     quaternions = {pattern for pattern, axes in patterns.items() if {*axes} >= {*"xyzw"}}
-    others = any(word.kind == "q" and word.pattern not in quaternions for word in known.values())
+    has_other_positions = any(word.kind == "q" and word.pattern not in quaternions for word in known.values())
     groups: dict[tuple[str, ...], Kinds] = {}
     for name, word in known.items():
         kind = word.kind
         if word.pattern in quaternions:
-            if kind == "q" and not others and word.pattern in ((), ("",)):
+            if kind == "q" and not has_other_positions and word.pattern in ((), ("",)):
                 remedy = f'columns={{"q": [{", ".join(repr(patterns[word.pattern][x]) for x in AXES)}]}}'
-                one, other = "positions and a weight", "a quaternion without positions"
-                raise _two_readings(where, [*patterns[word.pattern].values()], one, other, remedy)
+                first_wording, second_wording = "positions and a weight", "a quaternion without positions"
+                raise _two_readings(where, [*patterns[word.pattern].values()], first_wording, second_wording, remedy)
             kind = "orientation"
         if word.axis == "w":
             continue
         group = groups.setdefault(word.owner, {})
-        if (rival := group.get(kind, {}).get(word.axis)) is not None and kind in MEANINGS:
-            raise _rivals(where, rival, name, kind, word.axis)
+        if (rival_column := group.get(kind, {}).get(word.axis)) is not None and kind in MEANINGS:
+            raise _rivals(where, rival_column, name, kind, word.axis)
         group.setdefault(kind, {})[word.axis] = name
     for kinds in groups.values():
         _settle(kinds, where)
@@ -225,36 +225,36 @@ def _arranged(
     placed = {owner: kinds for owner, kinds in groups.items() if "q" in kinds}
     if stated is not None:
         wanted_words = {str(name): tuple(words_of(name)[0]) for name in stated}
-        lacking = [name for name, owner in wanted_words.items() if owner not in placed]
-        if lacking:
-            raise ArgumentError(f"{where}: no positions of {lacking[0]!r} are among the columns {shown}")
+        missing_names = [name for name, owner in wanted_words.items() if owner not in placed]
+        if missing_names:
+            raise ArgumentError(f"{where}: no positions of {missing_names[0]!r} are among the columns {shown}")
         return Layout(
             None, None, None, {}, _alike({name: placed[owner] for name, owner in wanted_words.items()}, where, shown)
         )
     if not placed:
         raise _no_positions(names, groups, where, shown)
-    numbered = [owner for owner in placed if owner and all(word.isdigit() for word in owner)]
-    listed = [kinds["q"]["x"] for kinds in placed.values() if "x" in kinds["q"]] or names
+    numbered_owners = [owner for owner in placed if owner and all(word.isdigit() for word in owner)]
+    x_columns = [kinds["q"]["x"] for kinds in placed.values() if "x" in kinds["q"]] or names
     if () in placed:
-        if numbered:
-            raise _two_readings(where, listed, "one agent", "several", _EITHER)
+        if numbered_owners:
+            raise _two_readings(where, x_columns, "one agent", "several", _EITHER)
         return Layout(None, None, None, ordered_axes(placed[()], where, shown), {})
-    if len(placed) == 1 and (agents or not numbered):
+    if len(placed) == 1 and (agents or not numbered_owners):
         owner, kinds = next(iter(placed.items()))
         note = f"all are of {' '.join(owner)!r}, one agent" if not agents else f"all are of {' '.join(owner)!r}"
         return Layout(None, None, None, ordered_axes({**groups.get((), {}), **kinds}, where, shown), {}, notes=(note,))
     if agents:
         remedy = 'columns={"q": [...]} of the one that is meant, or columns={"agents": [...]}'
-        raise _two_readings(where, listed, f"vectors of the agent of {agents[0]!r}", "agents of their own", remedy)
-    if loose := {*groups.get((), {})} & {*MEANINGS}:
-        raise _two_readings(where, names, f"of agents and a common {MEANINGS[min(loose)]}", "of one", _EITHER)
+        raise _two_readings(where, x_columns, f"vectors of the agent of {agents[0]!r}", "agents of their own", remedy)
+    if ownerless_kinds := {*groups.get((), {})} & {*MEANINGS}:
+        raise _two_readings(where, names, f"of agents and a common {MEANINGS[min(ownerless_kinds)]}", "of one", _EITHER)
     if not _are_agents(list(placed)):
         owners = [_joined(owner) for owner in placed]
         remedy = f'columns={{"agents": {owners}}} or columns={{"q": [...]}}'
-        raise _two_readings(where, listed, "agents", "vectors of one agent, such as a goal", remedy)
+        raise _two_readings(where, x_columns, "agents", "vectors of one agent, such as a goal", remedy)
     if _are_pairs(placed):
         remedy = f'columns={{"agents": {["_".join(owner) for owner in placed]}}}, or names such as x1, y1'
-        raise _two_readings(where, listed, "agents on a line", "axes of agents, both by number", remedy)
+        raise _two_readings(where, x_columns, "agents on a line", "axes of agents, both by number", remedy)
     return Layout(None, None, None, {}, _alike({_joined(x): kinds for x, kinds in placed.items()}, where, shown))
 
 
@@ -280,12 +280,12 @@ def _are_pairs(placed: Mapping[tuple[str, ...], Kinds]) -> bool:
 
 def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:
     """Return the columns of each agent in the order of axes; raise on differing columns."""
-    each = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
-    sizes = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in each.items()}
-    first = next(iter(sizes))
-    if (other := next((name for name in sizes if sizes[name] != sizes[first]), None)) is not None:
-        raise ArgumentError(f"{where} has other columns for agent {other} than for {first}: expected alike")
-    return each
+    axes_by_name = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
+    counts = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in axes_by_name.items()}
+    first_name = next(iter(counts))
+    if (other_name := next((name for name in counts if counts[name] != counts[first_name]), None)) is not None:
+        raise ArgumentError(f"{where} has other columns for agent {other_name} than for {first_name}: expected alike")
+    return axes_by_name
 
 
 def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str, shown: str) -> ArgumentError:

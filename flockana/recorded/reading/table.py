@@ -31,8 +31,8 @@ def table_arrays(
     if not len(frame):
         raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
     if not frame.columns.is_unique:
-        twice = frame.columns[frame.columns.duplicated()][0]
-        raise ArgumentError(f"{where}: the column {twice!r} is given twice; expected each once")
+        repeated_names = frame.columns[frame.columns.duplicated()][0]
+        raise ArgumentError(f"{where}: the column {repeated_names!r} is given twice; expected each once")
     layout = layout_of(list(frame), where, columns if isinstance(columns, Mapping) else None)
     if layout.time is not None and dt is not None:
         raise ArgumentError(
@@ -62,10 +62,10 @@ def table_arrays(
             _ensure_one_agent(frame, layout, where)
         t = _counted(frame, t, dt, layout, where)
         if len(np.unique(t)) < len(t):
-            rest = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
+            other_columns = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
             raise ArgumentError(
                 f"{where} has several rows at one time and no column id: expected the agent of each row; name it by "
-                f'columns={{"id": ...}}, one of {rest}'
+                f'columns={{"id": ...}}, one of {other_columns}'
             )
         arrays = _wide(frame, {"0": layout.long}, t)
     for kind, factor in factors.items():
@@ -78,10 +78,10 @@ def _ensure_one_agent(frame: Any, layout: Layout, where: str) -> None:
     read = {x for names in layout.long.values() for x in names}
     for name in (x for x in frame.columns if x not in read and frame[x].dtype.kind not in "fbc"):
         if 1 < frame[name].nunique() <= len(frame) // 2:
-            decided = f'columns={{"id": {name!r}}}, or columns={{"q": {list(layout.long["q"])}}}'
+            is_decided = f'columns={{"id": {name!r}}}, or columns={{"q": {list(layout.long["q"])}}}'
             raise ArgumentError(
                 f"{where} has no times, and {name!r} repeats: it may name the agent of each row, or all rows are of "
-                f"one agent: expected {decided}, which decides"
+                f"one agent: expected {is_decided}, which decides"
             )
 
 
@@ -111,7 +111,7 @@ def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
     def cut(kinds: Mapping[str, Sequence[str]]) -> dict[str, Sequence[str]]:
         return {kind: columns[:m] for kind, columns in kinds.items()}
 
-    left = ", ".join(repr(str(x)) for each in (layout.long, *layout.wide.values()) for x in each.get("q", ())[m:])
+    left = ", ".join(repr(str(x)) for item in (layout.long, *layout.wide.values()) for x in item.get("q", ())[m:])
     notes = (*layout.notes, f"not read, as m = {m}: {left}")
     return replace(
         layout, notes=notes, long=cut(layout.long), wide={name: cut(kinds) for name, kinds in layout.wide.items()}
@@ -137,9 +137,9 @@ def _described(layout: Layout, dt: float | None) -> list[str]:
     elif not layout.wide:
         texts.append("one agent")
     if layout.wide:
-        first, kinds = next(iter(layout.wide.items()))
-        each = " and ".join(f"{kind} from {named(columns)}" for kind, columns in kinds.items())
-        texts.append(f"{len(layout.wide)} agents, each with columns: {each} of agent {first}")
+        first_axis, kinds = next(iter(layout.wide.items()))
+        description = " and ".join(f"{kind} from {named(columns)}" for kind, columns in kinds.items())
+        texts.append(f"{len(layout.wide)} agents, each with columns: {description} of agent {first_axis}")
     return texts + [f"{kind} from {named(columns)}" for kind, columns in layout.long.items()]
 
 
@@ -148,7 +148,7 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
     units, kinds = layout.units or {}, [layout.long] if layout.long else [*layout.wide.values()]
     by_name: dict[str, Unit] = {}
     for kind in MEANINGS:
-        columns = [x for each in kinds for x in each.get(kind, ())]
+        columns = [x for item in kinds for x in item.get(kind, ())]
         spelt = {(units[x].length, units[x].factor, units[x].power): units[x] for x in columns if x in units}
         if len(spelt) > 1 or (spelt and any(x not in units for x in columns)):
             raise ArgumentError(
@@ -178,11 +178,11 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
 def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
     """Return a note on a last axis without motion."""
     q = np.asarray(arrays["q"])
-    last = q[..., -1]
-    if q.shape[-1] < 2 or q.shape[0] < 2 or np.nanmax(last) != np.nanmin(last):
+    last_axis = q[..., -1]
+    if q.shape[-1] < 2 or q.shape[0] < 2 or np.nanmax(last_axis) != np.nanmin(last_axis):
         return []
     axis = AXES[q.shape[-1] - 1]
-    return [f"{axis} is {np.nanmin(last):g} throughout, and kept: m={q.shape[-1] - 1} leaves it out"]
+    return [f"{axis} is {np.nanmin(last_axis):g} throughout, and kept: m={q.shape[-1] - 1} leaves it out"]
 
 
 def _with_agents(frame: Any, layout: Layout, t: FloatArray | None, where: str) -> Layout:
@@ -268,24 +268,24 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
 def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
     """Return the times with equal stamps for one instant, by default stamps that differ by rounding."""
     stamps = np.unique(t)
-    size = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
-    reach = size if jitter is None else ensure_nonnegative("jitter", jitter)
+    magnitude = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
+    reach = magnitude if jitter is None else ensure_nonnegative("jitter", jitter)
     group = np.cumsum(np.diff(stamps, prepend=stamps[0]) > reach)
     if group[-1] == len(stamps) - 1:
         return t, ""
     start = np.searchsorted(group, np.arange(group[-1] + 1))
     end = np.append(start[1:], len(stamps)) - 1
-    if jitter is not None and (long := stamps[end] - stamps[start] > reach).any():
-        k = int(np.argmax(long))
+    if jitter is not None and (is_too_long := stamps[end] - stamps[start] > reach).any():
+        k = int(np.argmax(is_too_long))
         raise ArgumentError(
             f"jitter = {reach:g}: stamps from {stamps[start[k]]:g} to {stamps[end[k]]:g} follow each other within it, "
             "so nothing says which of them are one instant; expected as much as stamps of one instant spread, and "
             "less than the breaks between instants; or interpolate="
         )
-    middle = np.where(start == end, stamps[start], 0.5 * (stamps[start] + stamps[end]))
+    mean_stamps = np.where(start == end, stamps[start], 0.5 * (stamps[start] + stamps[end]))
     widest = float((stamps[end] - stamps[start]).max())
-    text = f"stamps up to {widest:.3g} apart are one instant: {len(stamps)} are {len(middle)}"
-    return middle[group[np.searchsorted(stamps, t)]], text
+    text = f"stamps up to {widest:.3g} apart are one instant: {len(stamps)} are {len(mean_stamps)}"
+    return mean_stamps[group[np.searchsorted(stamps, t)]], text
 
 
 def _name(agent: Any) -> str:
@@ -311,10 +311,10 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
             f"{where}: {len(frame)} rows of {len(ids)} agents at {len(instants)} times; expected agents that "
             "share their times; give jitter=, within which stamps are one instant"
         )
-    place = sample.astype(np.int64) * len(ids) + agent
-    if np.bincount(place).max() > 1:
-        order = np.argsort(place, kind="stable")
-        k = int(order[1:][np.diff(place[order]) == 0].min())
+    row_index = sample.astype(np.int64) * len(ids) + agent
+    if np.bincount(row_index).max() > 1:
+        order = np.argsort(row_index, kind="stable")
+        k = int(order[1:][np.diff(row_index[order]) == 0].min())
         raise FileError(
             f"{row_name(frame, k)}: agent {column.iloc[k]} at t = {t[k]:g} a second time; expected it once; were two "
             "agents given one name?"
@@ -322,7 +322,7 @@ def _long(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, An
     arrays: dict[str, Any] = {"t": np.asarray(instants, dtype=np.float64), "ids": [_name(i) for i in ids]}
     for kind, names in layout.long.items():
         array = np.full((len(instants) * len(ids), len(names)), np.nan)
-        array[place] = _values(frame, names)
+        array[row_index] = _values(frame, names)
         arrays[kind] = array.reshape(len(instants), len(ids), len(names))
     return arrays
 
@@ -342,12 +342,12 @@ def _wide(frame: Any, columns: Mapping[str, Mapping[str, Sequence[str]]], t: Flo
 
 def _one_instant(frame: Any, layout: Layout) -> dict[str, Any]:
     """Return arrays from a table without times: a flock at one instant."""
-    where = str(frame.attrs.get("where", "the frame"))
+    place_text = str(frame.attrs.get("where", "the frame"))
     arrays: dict[str, Any] = {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
     if layout.agent is not None:
         arrays["ids"] = ids = [_name(i) for i in frame[layout.agent]]
         if len(set(ids)) < len(ids):
             raise ArgumentError(
-                f'{where} has agents several times and no times: expected a column time, or columns={{"t": ...}}'
+                f'{place_text} has agents several times and no times: expected a column time, or columns={{"t": ...}}'
             )
     return arrays

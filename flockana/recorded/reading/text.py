@@ -88,11 +88,11 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
 def _below_comments(data: bytes, named: bool) -> tuple[bytes, int]:
     """Return a table without comment lines (#), of which the last may be the header, and their number."""
     lines = data.split(b"\n", 100)
-    first = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
-    cells = re.split(r"[\t,;\s]+", lines[first].decode("utf-8").strip())
-    if first and not named and all(_is_number(cell.strip('"')) for cell in cells):
-        first = max(k for k in range(first) if lines[k].strip())
-    return data.split(b"\n", first)[first], first
+    first_line = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
+    cells = re.split(r"[\t,;\s]+", lines[first_line].decode("utf-8").strip())
+    if first_line and not named and all(_is_number(cell.strip('"')) for cell in cells):
+        first_line = max(k for k in range(first_line) if lines[k].strip())
+    return data.split(b"\n", first_line)[first_line], first_line
 
 
 def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
@@ -106,8 +106,8 @@ def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
         if not any(texts) or any(_is_number(text) and text not in _GAPS for text in texts):
             break
         skipped += 1
-    later = [cell for line in lines[skipped : skipped + 1] for cell in line.decode("utf-8").split(delimiter)]
-    if skipped and any(_is_number(cell.strip(' "')) and cell.strip() not in _GAPS for cell in later):
+    is_later = [cell for line in lines[skipped : skipped + 1] for cell in line.decode("utf-8").split(delimiter)]
+    if skipped and any(_is_number(cell.strip(' "')) and cell.strip() not in _GAPS for cell in is_later):
         rest = b"\n" * skipped + b"\n".join(lines[skipped:])
         notes.append(f"{skipped} more lines of a header are left out")
     return head + b"\n" + rest, notes
@@ -120,30 +120,30 @@ def numbers(frame: Any, column: str) -> Any:
     series = frame[column]
     if series.dtype.kind == "c":
         raise _bad_cell(frame, 0, column)
-    values, refused = series, np.zeros(len(series), dtype=bool)
+    values, is_refused = series, np.zeros(len(series), dtype=bool)
     if series.dtype.kind not in "fiu":
         values = pd.to_numeric(series, errors="coerce")
-        refused = (series.notna() & values.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
-    parsed = values.to_numpy(dtype=np.float64)
-    refused = refused | np.isinf(parsed)
-    if refused.any():
-        raise _bad_cell(frame, int(np.argmax(refused)), column)
-    return parsed
+        is_refused = (series.notna() & values.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
+    parsed_values = values.to_numpy(dtype=np.float64)
+    is_refused = is_refused | np.isinf(parsed_values)
+    if is_refused.any():
+        raise _bad_cell(frame, int(np.argmax(is_refused)), column)
+    return parsed_values
 
 
 def row_name(frame: Any, k: int) -> str:
     """Return a row's location for messages: its line in a file, or its index in a frame."""
-    where, first = frame.attrs.get("where", "the frame"), frame.attrs.get("first")
-    if first is None:
-        return f"{where}, row {frame.index[k]}"
+    place_text, first_line = frame.attrs.get("where", "the frame"), frame.attrs.get("first")
+    if first_line is None:
+        return f"{place_text}, row {frame.index[k]}"
     lines = frame.attrs.get("lines")
-    return f"{where}, line {k + first if lines is None else lines[k]}"
+    return f"{place_text}, line {k + first_line if lines is None else lines[k]}"
 
 
 def _bad_cell(frame: Any, k: int, column: str) -> FileError:
     cell = str(frame[column].iloc[k])[:_SHOWN]
-    where = f"{row_name(frame, k)}, column {column!r}: {cell!r}"
-    return FileError(f"{where}; expected a finite number such as 0.5, or nothing for a gap")
+    place_text = f"{row_name(frame, k)}, column {column!r}: {cell!r}"
+    return FileError(f"{place_text}; expected a finite number such as 0.5, or nothing for a gap")
 
 
 def _bytes(path: Path) -> bytes:
@@ -180,24 +180,24 @@ def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path, abo
 
     pandas would fill short ones.
     """
-    raw = np.frombuffer(data, dtype=np.uint8)
-    ends = np.flatnonzero(raw == _NEWLINE)
-    ends = ends if raw[-1] == _NEWLINE else np.append(ends, len(raw))
-    starts = np.concatenate([[0], ends[:-1] + 1])
-    cells = np.diff(np.searchsorted(np.flatnonzero(raw == delimiter), np.append(starts, len(raw)))) + 1
-    bad, mark, long = np.flatnonzero((cells != width) & (ends > starts)), bytes([delimiter]), False
-    for k in bad.tolist():
-        text = data[starts[k] : ends[k]]
+    byte_values = np.frombuffer(data, dtype=np.uint8)
+    line_ends = np.flatnonzero(byte_values == _NEWLINE)
+    line_ends = line_ends if byte_values[-1] == _NEWLINE else np.append(line_ends, len(byte_values))
+    starts = np.concatenate([[0], line_ends[:-1] + 1])
+    cells = np.diff(np.searchsorted(np.flatnonzero(byte_values == delimiter), np.append(starts, len(byte_values)))) + 1
+    is_invalid, mark, long_lines = np.flatnonzero((cells != width) & (line_ends > starts)), bytes([delimiter]), False
+    for k in is_invalid.tolist():
+        text = data[starts[k] : line_ends[k]]
         excess = mark * int(cells[k] - width)
         if cells[k] > width and text.rstrip(b" ").endswith(excess):
-            long = True
+            long_lines = True
         elif text.strip():
             raise FileError(
                 f"{path}, line {k + 1 + above}: {cells[k]} values, expected {width} as in the header: "
                 f"{text.strip()[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off, or do lines above the table "
                 "describe it? leave those out by pandas.read_csv(file, skiprows=...), and read the frame"
             )
-    if not long:
+    if not long_lines:
         return data
     lines = data.split(b"\n")
     return b"\n".join(x.rstrip(b" ")[: -(x.count(mark) - width + 1)] if x.count(mark) >= width else x for x in lines)

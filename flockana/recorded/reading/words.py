@@ -63,14 +63,14 @@ def unit_of(text: str) -> Unit | None:
     match = _RATE.match(text.strip().lower())
     if match is None:
         return None
-    first, *rest = (_SPELLINGS.get(each, each) if each else "" for each in match.groups())
-    per, power = rest[0], 2 if rest[1] in ("2", "²") or rest[2] else 1
-    if first in _DURATIONS and not per:
-        return Unit(text.strip(), "", _DURATIONS[first], 0)
-    if first in _LENGTHS and (not per or per in _DURATIONS):
-        factor = (_LENGTHS[first] or 1.0) / (_DURATIONS[per] ** power if per else 1.0)
-        return Unit(text.strip(), first, factor, power if per else 0, _DURATIONS.get(per, 1.0))
-    return Unit(text.strip(), first, 1.0, 0) if first in ("deg", "rad", "au") else None
+    first_part, *remaining_parts = (_SPELLINGS.get(group, group) if group else "" for group in match.groups())
+    unit_name, power = remaining_parts[0], 2 if remaining_parts[1] in ("2", "²") or remaining_parts[2] else 1
+    if first_part in _DURATIONS and not unit_name:
+        return Unit(text.strip(), "", _DURATIONS[first_part], 0)
+    if first_part in _LENGTHS and (not unit_name or unit_name in _DURATIONS):
+        factor = (_LENGTHS[first_part] or 1.0) / (_DURATIONS[unit_name] ** power if unit_name else 1.0)
+        return Unit(text.strip(), first_part, factor, power if unit_name else 0, _DURATIONS.get(unit_name, 1.0))
+    return Unit(text.strip(), first_part, 1.0, 0) if first_part in ("deg", "rad", "au") else None
 
 
 def words_of(name: Any) -> tuple[list[str], Unit | None]:
@@ -79,8 +79,8 @@ def words_of(name: Any) -> tuple[list[str], Unit | None]:
     if (match := _BRACKET.search(text)) and (not match[1] or (unit := unit_of(match[1]))):
         text = text[: match.start()]
     pieces = _PIECES.findall(text)
-    mixed = text != text.upper()  # the A of robotA is a name, that of AX an acceleration
-    words = [x if mixed and len(x) == 1 and x.isupper() and x not in "XYZWT" else x.lower() for x in pieces]
+    has_mixed_case = text != text.upper()  # the A of robotA is a name, that of AX an acceleration
+    words = [x if has_mixed_case and len(x) == 1 and x.isupper() and x not in "XYZWT" else x.lower() for x in pieces]
     last = _SPELLINGS.get(words[-1], words[-1]) if words else ""
     if unit is None and len(words) > 1 and last != "in" and (last in _LENGTHS or last in _DURATIONS or "/" in last):
         unit, words = unit_of(last), words[:-1]
@@ -99,17 +99,17 @@ def is_time(words: list[str]) -> bool:
 
 def is_frame(words: list[str]) -> bool:
     """Return whether words denote a frame count."""
-    rest = [word for word in words if word not in _NUMBERS | _FILLERS]
-    return bool(rest) and all(_known(word, _FRAMES) for word in rest)
+    content_words = [word for word in words if word not in _NUMBERS | _FILLERS]
+    return bool(content_words) and all(_known(word, _FRAMES) for word in content_words)
 
 
 def is_agent(words: list[str]) -> bool:
     """Return whether words denote the agent of a row."""
-    rest = [word for word in words if word not in _FILLERS]
+    content_words = [word for word in words if word not in _FILLERS]
     return (
-        bool(rest)
-        and all(_known(word, _AGENTS) or word in _NUMBERS for word in rest)
-        and rest[0] not in ("no", "n", "count")
+        bool(content_words)
+        and all(_known(word, _AGENTS) or word in _NUMBERS for word in content_words)
+        and content_words[0] not in ("no", "n", "count")
     )
 
 

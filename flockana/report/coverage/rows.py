@@ -98,8 +98,8 @@ def _rows(name: str, lines: list[str]) -> Iterator[Row]:
             row = _row(line)
         except ArgumentError as error:
             raise ArgumentError(f"{name}, line {number}: {error}") from None
-        if (first := row_numbers.setdefault((row.place, row.what), number)) != number:
-            raise ArgumentError(f"{name}, line {number}: the same as line {first}; leave one out")
+        if (first_row := row_numbers.setdefault((row.place, row.what), number)) != number:
+            raise ArgumentError(f"{name}, line {number}: the same as line {first_row}; leave one out")
         yield row
 
 
@@ -107,10 +107,10 @@ def _row(line: str) -> Row:
     cells = _cells(line)
     if len(cells) != len(_COLUMNS):
         raise ArgumentError(f"{len(cells)} columns, expected {len(_COLUMNS)}: {', '.join(_COLUMNS)}")
-    place, what, standing, held_by, remark = cells
-    parted = (text.partition(":") for text in held_by.split())
-    references = tuple(Reference(kind, name) for kind, _, name in parted)
-    return Row(place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
+    rows_place, what, standing, test_names, remark = cells
+    split_texts = (text.partition(":") for text in test_names.split())
+    references = tuple(Reference(kind, name) for kind, _, name in split_texts)
+    return Row(rows_place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
 
 
 def _cells(line: str) -> tuple[str, ...]:

@@ -12,13 +12,13 @@ _REFERENCES = ("carrillo-2017", "ahn-2012", "flockana")
 def _pair(name: str, decay: float, speed: float, end: float, expected: dict[str, Status]) -> Builder:
     """Return two agents on a line, 1 apart, that approach."""
     title = f"Two agents that approach at {speed:g} under the weight s^-{decay:g}"
-    source = (
+    source_text = (
         f"Ours: two agents on a line, 1 apart, relative speed {speed:g}, K = ℓ = 1. For α = ½ they meet if it is 4 or "
         "more. The start is fixed."
     )
     start = np.array([[0.0], [1.0]]), np.array([[0.0], [-speed]])
     law = SingularAlignment(SingularWeight(decay=decay))
-    return entry(name, title, source, law, lambda seed: start, end, expected, references=_REFERENCES)
+    return entry(name, title, source_text, law, lambda seed: start, end, expected, references=_REFERENCES)
 
 
 def _crowd(seed: int) -> Start:

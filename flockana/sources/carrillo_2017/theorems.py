@@ -27,17 +27,17 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     two of any number of agents meet from some distinct start.
     """
     alpha = seen.law.weight.decay
-    strong = condition("α >= 1", alpha >= 1.0, alpha - 1.0, f"α = {alpha:g}", remedy="raise α to 1")
+    strong_claim = condition("α >= 1", alpha >= 1.0, alpha - 1.0, f"α = {alpha:g}", remedy="raise α to 1")
     weak = condition("α < 1", alpha < 1.0, 1.0 - alpha, f"α = {alpha:g}")
-    several = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
-    room = least_distance(seen) if seen.n > 1 else Enclosure.of(np.inf)
-    apart = judged("apart", room, [strong], proof="singular-alignment").described(
-        computed=float(room.mid), stated="no two agents ever meet", detail=f"the least distance is {room.mid:.6g}"
+    count_claim = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
+    margin = least_distance(seen) if seen.n > 1 else Enclosure.of(np.inf)
+    separation_claim = judged("apart", margin, [strong_claim], proof="singular-alignment").described(
+        computed=float(margin.mid), stated="no two agents ever meet", detail=f"the least distance is {margin.mid:.6g}"
     )
-    some = judged("some-start", Enclosure.of(0.0), [weak, several], about="all", proof="singular-alignment").described(
-        stated="from some distinct start two agents meet"
-    )
-    return [several], [apart, vacuous("some-start", weak) if weak.status == "unmet" else some]
+    some_claim = judged(
+        "some-start", Enclosure.of(0.0), [weak, count_claim], about="all", proof="singular-alignment"
+    ).described(stated="from some distinct start two agents meet")
+    return [count_claim], [separation_claim, vacuous("some-start", weak) if weak.status == "unmet" else some_claim]
 
 
 def _duration(excess: float, factor: float, alpha: float, x: float) -> float:
@@ -52,23 +52,23 @@ def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int |
     """Return the exact sign of w + 2K ℓ^α x^(1−α)/(1−α), floats taken as rationals; None if unknown."""
     import sympy as sp
 
-    strength, length, alpha, start, speed = map(sp.Rational, (*factor, x, w))
-    value = speed + 2 * strength * length**alpha * start ** (1 - alpha) / (1 - alpha)
+    strength, length_symbol, alpha, start, speed = map(sp.Rational, (*factor, x, w))
+    value = speed + 2 * strength * length_symbol**alpha * start ** (1 - alpha) / (1 - alpha)
     return 0 if value.is_zero else 1 if value.is_positive else -1 if value.is_negative else None
 
 
 def _sides(seen: Observed, x: float, w: float, integral: float) -> tuple[Hypothesis, Hypothesis]:
     """Return the hypotheses that a pair reaches contact, w <= -integral, and that it is slower."""
     weight, error = seen.law.weight, 16.0 * EPS * (abs(w) + integral)
-    room, text = Enclosure.around(w + integral, error), f"w(0) = {w:.6g}, the integral {integral:.6g}"
+    margin_enclosure, text = Enclosure.around(w + integral, error), f"w(0) = {w:.6g}, the integral {integral:.6g}"
     name = "w(0) > -∫2a from 0 to x(0)"
-    slower = positive_room(name, room, text, remedy="start slower or farther apart")
-    if slower.status == "assumed":
+    slower_claim = positive_room(name, margin_enclosure, text, remedy="start slower or farther apart")
+    if slower_claim.status == "assumed":
         sign = _exact_sign(w, (weight.strength, weight.length, weight.decay), x)
         if sign is not None:
-            slower = condition(name, sign > 0, w + integral, f"{text}, decided exactly")
-    opposite = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[slower.status]
-    return Hypothesis(f"not: {name}", opposite, detail=slower.detail), slower  # type: ignore[arg-type]
+            slower_claim = condition(name, sign > 0, w + integral, f"{text}, decided exactly")
+    opposite = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[slower_claim.status]
+    return Hypothesis(f"not: {name}", opposite, detail=slower_claim.detail), slower_claim  # type: ignore[arg-type]
 
 
 @run_theorem(
@@ -98,12 +98,12 @@ def pair(seen: Observed, tolerances: Tolerances) -> Checked:
     rest = 1.0 - weight.decay
     factor = 2.0 * weight.strength * weight.length**weight.decay / rest
     integral = factor * x**rest
-    fast, slower = _sides(seen, x, w, integral)
+    fast, slower_claim = _sides(seen, x, w, integral)
     return needs, [
         vacuous("meet", fast) if fast.status == "unmet" else _meet(seen, [*needs, fast], x, -w - integral, factor),
-        vacuous("apart", slower)
-        if slower.status == "unmet"
-        else _apart(seen, [*needs, slower], x, (w + integral) / factor),
+        vacuous("apart", slower_claim)
+        if slower_claim.status == "unmet"
+        else _apart(seen, [*needs, slower_claim], x, (w + integral) / factor),
     ]
 
 

@@ -11,7 +11,7 @@ _NAMES = ("cucker-dong", *(f"cucker-dong:{claim}" for claim in ("functional", "a
 
 def _crossing(name: str, title: str, repulsion: float, expected: dict[str, Status]) -> Builder:
     """Return two rows of three agents that fly at each other."""
-    source = f"Ours: two rows of three agents that fly at each other, K = ℓ = 1, β = ¼, δ = ½, k = {repulsion:g}."
+    source_text = f"Ours: two rows of three agents that fly at each other, K = ℓ = 1, β = ¼, δ = ½, k = {repulsion:g}."
 
     def draw(seed: int) -> Start:
         rng = np.random.default_rng(seed)
@@ -19,7 +19,7 @@ def _crossing(name: str, title: str, repulsion: float, expected: dict[str, Statu
         return q + rng.uniform(-0.1, 0.1, q.shape), np.sign(q[:, :1]) * [-3.0, 0.0]
 
     law = CuckerDong(RationalWeight(decay=0.25), repulsion, 0.5)
-    return entry(name, title, source, law, draw, 3.0, expected, references=("cucker-dong-2010", "flockana"))
+    return entry(name, title, source_text, law, draw, 3.0, expected, references=("cucker-dong-2010", "flockana"))
 
 
 SCENARIOS = {

@@ -37,8 +37,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         return needs, []
     pairs = np.triu_indices(n, 1)
     first = float(np.sqrt(np.min(np.sum((seen.given.q[0][pairs[0]] - seen.given.q[0][pairs[1]]) ** 2, axis=1))))
-    room = Enclosure.around(first / far - 1.0, 4.0 * EPS * first / far)
-    needs.append(positive_room("all pairs start farther apart than δ", room, f"{first:.6g} against δ = {far:g}"))
+    margin = Enclosure.around(first / far - 1.0, 4.0 * EPS * first / far)
+    needs.append(positive_room("all pairs start farther apart than δ", margin, f"{first:.6g} against δ = {far:g}"))
     if unmet(needs):
         return needs, []
     level = seen.series(lambda run: np.array([law.functional(q, p) for q, p in zip(run.q, run.p, strict=True)]))
@@ -48,10 +48,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     distance = least_distance(seen)
     phi = AlignmentRate(law.weight, n * law.weight.strength, np.sqrt(2.0))
     guarantee = Guarantee(seen, phi, seen.spread, spread_over(seen).max(), level, _PROOF, ("‖x{}‖", "E{}"))
-    slow = guarantee.hypothesis("E(0) < n∫a(√2 s) from ‖x(0)‖ on")
-    bounded = [claim for claim in guarantee.claims([*needs, slow])[1] if claim.name == "bounded"]
+    slow_claim = guarantee.hypothesis("E(0) < n∫a(√2 s) from ‖x(0)‖ on")
+    bound_claims = [claim for claim in guarantee.claims([*needs, slow_claim])[1] if claim.name == "bounded"]
     v = seen.velocity_spread.mid
-    return [*needs, slow], [
+    return [*needs, slow_claim], [
         judged("functional", 1.0 - level.max() / start, needs, proof=_PROOF).described(
             computed=float(level.mid.max()), stated=f"E never exceeds E(0) = {start.mid:.6g}"
         ),
@@ -59,8 +59,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
             stated=f"no two agents are nearer than {bound.mid:.6g}, δ = {far:g}",
             detail=f"the least distance is {distance.mid:.6g}",
         ),
-        *bounded,
-        limit_claim("flock", [*needs, slow], proof=_PROOF, computed=float(v[-1])).described(
+        *bound_claims,
+        limit_claim("flock", [*needs, slow_claim], proof=_PROOF, computed=float(v[-1])).described(
             stated="V -> 0, and every q_j - q_i has a limit",
             detail=f"V goes from {v[0]:.4g} to {v[-1]:.4g} at t = {seen.t[-1]:g}",
         ),

@@ -14,7 +14,7 @@ _N = 12
 def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Builder:
     """Return twelve agents in the plane, with random velocities scaled to a given spread."""
     title = f"Twelve agents that match velocities alone, β = {beta:g}"
-    source = (
+    source_text = (
         f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
         f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}²."
     )
@@ -26,19 +26,19 @@ def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) ->
         p -= p.mean(axis=0)
         return q, p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5)
 
-    return entry(name, title, source, law, draw, 4.0, expected, references=_REFERENCES)
+    return entry(name, title, source_text, law, draw, 4.0, expected, references=_REFERENCES)
 
 
 def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
     """Return two agents on a line, 1 apart; π/4 is the critical relative speed."""
     title = f"Two agents that separate at {speed:g}; the critical speed is π/4"
-    source = (
+    source_text = (
         "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
         f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed."
     )
     law = CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True)
     start = np.array([[0.0], [1.0]]), np.array([[0.0], [speed]])
-    return entry(name, title, source, law, lambda seed: start, 20.0, expected, references=_REFERENCES)
+    return entry(name, title, source_text, law, lambda seed: start, 20.0, expected, references=_REFERENCES)
 
 
 _ALL = verified("ha-liu", "ha-liu-sharp")

@@ -28,33 +28,33 @@ def _steps() -> tuple[tuple[str, str, DiscreteLaw, FloatArray], ...]:
     """Return name, source, map, and equilibrium (or a start for finding one) of each source's map."""
     rest = StaticTarget((0.0, 0.0))
     msn = Algorithm2(_MSN, _MSN_GAINS, rest)
-    at_once = MSNDiscretisation(msn, 0.009, in_place=False)
-    first, second = Algorithm1(_NOTEBOOK_1, _UNIT), Algorithm2(_NOTEBOOK_2, _UNIT, rest)
+    explicit_map = MSNDiscretisation(msn, 0.009, in_place=False)
+    first_law, second_law = Algorithm1(_NOTEBOOK_1, _UNIT), Algorithm2(_NOTEBOOK_2, _UNIT, rest)
     tree = MinimalFlocking(edges=_TREE, spacing=2.0)
-    rest_of_tree = hexagonal_spiral(4, 1.0)[[1, 0, 2, 3]]
-    few, many, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
+    tree_positions = hexagonal_spiral(4, 1.0)[[1, 0, 2, 3]]
+    few, medium_lattice, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
     return (
-        ("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
+        ("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", explicit_map, few),
         ("msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few),
-        ("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
-        ("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
-        ("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
-        ("minimal", "bearing-distance paper, minimal model on a tree of 4", tree.discrete(0.1), 2.0 * rest_of_tree),
+        ("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", explicit_map, medium_lattice),
+        ("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first_law, 0.05), _NOTEBOOK_1.d * small),
+        ("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second_law, 0.1), _NOTEBOOK_2.d * small),
+        ("minimal", "bearing-distance paper, minimal model on a tree of 4", tree.discrete(0.1), 2.0 * tree_positions),
     )
 
 
 def _claim(name: str, words: str, step: DiscreteLaw, q: FloatArray) -> Claim:
     """Compare the step with the margin; if the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.continuous
-    rest = q if isinstance(law, MinimalFlocking) else find_equilibrium(law, q).q
-    bound, dt = sampling_margin(step, rest), step.dt
+    equilibrium = q if isinstance(law, MinimalFlocking) else find_equilibrium(law, q).q
+    bound, dt = sampling_margin(step, equilibrium), step.dt
     if bound.certified:
         margin, error = bound.times(dt) - 1.0, CLOSE
     else:
-        worst = linearise(step, rest).modes[0]
+        worst = linearise(step, equilibrium).modes[0]
         margin, error = worst.decay_per_step, worst.error
     return spectral(name, margin, error).described(
-        computed={"n": len(rest), "dt": dt, "margin": bound.period, "margin over dt": bound.times(dt)},
+        computed={"n": len(equilibrium), "dt": dt, "margin": bound.period, "margin over dt": bound.times(dt)},
         stated=f"at dt = {dt:g} every mode of the flock at its equilibrium decays",
         witness={"lost at z": str(bound.first and bound.first.multiplier)},
         detail=f"{words}: dt = {dt:g}, stable up to {bound.period:.4g}, {bound.times(dt):.3g} times dt",

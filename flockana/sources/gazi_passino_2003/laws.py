@@ -100,12 +100,12 @@ class GaziPassino(VelocityLaw):
     def _pulls(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return q_j − q_i, the pull per difference, and its slope by the squared distance, of all pairs."""
         away = q[None] - q[:, None]
-        push, _, bend, _ = GaussianRepulsion(self.repulsion, self.c).inner(np.einsum("ijk,ijk->ij", away, away))
-        return away, self.attraction + push, bend
+        push, _, weight_slope, _ = GaussianRepulsion(self.repulsion, self.c).inner(np.einsum("ijk,ijk->ij", away, away))
+        return away, self.attraction + push, weight_slope
 
     def velocity(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        away, pull, _ = self._pulls(q)
-        return np.asarray(np.einsum("ij,ijk->ik", pull, away))
+        displacement, pull, _ = self._pulls(q)
+        return np.asarray(np.einsum("ij,ijk->ik", pull, displacement))
 
     def slopes(self, t: float, q: FloatArray) -> Any:
         """Return the blocks w 1 + 2 w' (q_j − q_i)(q_j − q_i)ᵀ of pairs, and minus their sums on the diagonal."""

@@ -13,15 +13,15 @@ _PROOF = "gazi-passino"
 
 def _centroid(seen: Observed, size: float, tolerances: Tolerances) -> Claim:
     """Return the claim that the centroid stays where it starts."""
-    off = Enclosure.around(
+    deviation = Enclosure.around(
         np.linalg.norm(seen.run.q.mean(axis=1) - seen.run.q[0].mean(axis=0), axis=1), seen.centre_error
     )
-    off, allowed = off.clip(0.0) / size, tolerances.energy
-    k = int(off.mid.argmax())
-    return judged("centroid", allowed - off, proof=_PROOF, computed=float(off.mid[k])).described(
-        stated=f"the centroid stays, to {allowed:g} of the size",
+    deviation, energy_tolerance = deviation.clip(0.0) / size, tolerances.energy
+    k = int(deviation.mid.argmax())
+    return judged("centroid", energy_tolerance - deviation, proof=_PROOF, computed=float(deviation.mid[k])).described(
+        stated=f"the centroid stays, to {energy_tolerance:g} of the size",
         witness={"time": float(seen.t[k])},
-        detail=f"the centroid moves by {off.mid[k]:.2g} of the size at most",
+        detail=f"the centroid moves by {deviation.mid[k]:.2g} of the size at most",
     )
 
 
@@ -66,10 +66,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     ratio, n, radius = law.repulsion / law.attraction, seen.n, law.radius
     bound, size = (n - 1) / n * radius, radius + float(seen.radius.mid[0])
     text = f"b/a = {ratio:.6g}"
-    weak = condition("b <= a", ratio <= 1.0, 1.0 - ratio, text, remedy="lower the repulsion b or raise a")
+    weak_claim = condition("b <= a", ratio <= 1.0, 1.0 - ratio, text, remedy="lower the repulsion b or raise a")
     strong = condition("b > a", ratio > 1.0, ratio - 1.0, text, remedy="raise the repulsion b or lower a")
     wide = float(np.ptp(seen.run.q[0], axis=0).max())
-    several = condition("not all agents start at one place", wide > 0.0, wide, remedy="move one agent")
+    count_claim = condition("not all agents start at one place", wide > 0.0, wide, remedy="move one agent")
     rest = sqrt(law.c * log(ratio)) if ratio > 1.0 else 0.0
     return [], [
         _centroid(seen, size, tolerances),
@@ -77,6 +77,6 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         _limit("rest", seen, [], "velocities tend to 0"),
         _limit("sharp", seen, [], f"in the end ‖q_i - q_c‖ <= {n - 1}/{n} of that, {bound:.6g}"),
         _rate(seen, size, bound),
-        _limit("collapse", seen, [weak], "all tend to their centroid"),
-        _limit("apart", seen, [strong, several], f"the lim sup of the largest distance is at least {rest:.6g}"),
+        _limit("collapse", seen, [weak_claim], "all tend to their centroid"),
+        _limit("apart", seen, [strong, count_claim], f"the lim sup of the largest distance is at least {rest:.6g}"),
     ]

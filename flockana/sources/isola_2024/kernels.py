@@ -16,14 +16,14 @@ def neighbour_lists(n, first, second):
         start[second[k] + 1] += 1
     for i in range(n):
         start[i + 1] += start[i]
-    fill = start[:-1].copy()
+    fill_positions = start[:-1].copy()
     neighbour = np.empty(2 * first.size, np.int32)
     for k in range(first.size):
         i, j = first[k], second[k]
-        neighbour[fill[i]] = j
-        neighbour[fill[j]] = i
-        fill[i] += 1
-        fill[j] += 1
+        neighbour[fill_positions[i]] = j
+        neighbour[fill_positions[j]] = i
+        fill_positions[i] += 1
+        fill_positions[j] += 1
     return start, neighbour
 
 

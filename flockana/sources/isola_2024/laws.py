@@ -79,13 +79,13 @@ class MSNDiscretisation(DiscreteLaw):
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one iteration, unchecked; no memory, as the net follows from q."""
-        later, h = t + self.dt, self.dt
+        next_time, h = t + self.dt, self.dt
         if not self.in_place:
-            u, _ = self.law.flow(later, q, p)
+            u, _ = self.law.flow(next_time, q, p)
             return q + p * h + self.position_factor * u * h * h, p + u * h, u, memory
         q, p, u = q.copy(), p.copy(), np.empty_like(q)
-        g, nobody = self.gains, np.zeros(q.shape[1])
-        q_r, p_r = (nobody, nobody) if self.target is None else self.target.state(later)
+        g, zero_vector = self.gains, np.zeros(q.shape[1])
+        q_r, p_r = (zero_vector, zero_vector) if self.target is None else self.target.state(next_time)
         goal = (0.0, 0.0, q_r, p_r) if self.target is None else (g.c1_gamma, g.c2_gamma, q_r, p_r)
         # the project links agents at exactly r, which the strict neighbour search leaves out
         lists = neighbour_lists(len(q), *pair_list(q, np.nextafter(self.alpha.r, np.inf)))

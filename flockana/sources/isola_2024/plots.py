@@ -20,10 +20,10 @@ def rank_connectivity(trajectory: Trajectory, ax: Any) -> None:
     if pair is None or not np.isfinite(pair.range):
         raise ArgumentError(f"law = {trajectory.law!r}: expected one whose agents interact within a range")
     t = trajectory.t
-    picks = np.unique(np.linspace(0, len(t) - 1, min(len(t), _SAMPLES)).round().astype(int))
-    nets = [links(trajectory.q[k], pair.range) for k in picks]
-    for typeset, colour, name in ((False, BLUE, "rank(A)/n"), (True, VERMILLION, "rank(A)/n as typeset")):
-        ranks = [printed_rank_connectivity(trajectory.n, net, typeset=typeset) for net in nets]
-        ax.plot(t[picks], ranks, color=colour, linewidth=1.0, label=name)
+    picked_samples = np.unique(np.linspace(0, len(t) - 1, min(len(t), _SAMPLES)).round().astype(int))
+    nets = [links(trajectory.q[k], pair.range) for k in picked_samples]
+    for is_typeset, colour, name in ((False, BLUE, "rank(A)/n"), (True, VERMILLION, "rank(A)/n as typeset")):
+        ranks = [printed_rank_connectivity(trajectory.n, net, typeset=is_typeset) for net in nets]
+        ax.plot(t[picked_samples], ranks, color=colour, linewidth=1.0, label=name)
     ax.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="--", label="C = rank(L)/(n − 1)")
     ax.set_ylim(-0.03, 1.05)

@@ -15,21 +15,21 @@ from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 def perceived_edges(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
     """Return the world of the minimal model: its perceived edges."""
     data = [law.edge_data(run.q[k]) for k in (frames if law.edges is None else frames[:1])]
-    return World(edges=tuple(np.column_stack([each.tail, each.head]).astype(np.int64) for each in data))
+    return World(edges=tuple(np.column_stack([data_row.tail, data_row.head]).astype(np.int64) for data_row in data))
 
 
 def zone_surroundings(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
     """Return the world of zone-based flocking: obstacles, box and aliens."""
     around = law.world
-    solids = tuple(each for each in around.obstacles if isinstance(each, Sphere))
-    outlines = [np.asarray(each.vertices) for each in around.obstacles if not isinstance(each, Sphere)]
+    solids = tuple(obstacle for obstacle in around.obstacles if isinstance(obstacle, Sphere))
+    outlines = [np.asarray(obstacle.vertices) for obstacle in around.obstacles if not isinstance(obstacle, Sphere)]
     if around.box is not None and run.m == 2:
         (x0, y0), (x1, y1) = around.box.low, around.box.high
         outlines.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
     aliens = run.extra.get("alien")
-    crosses = None if aliens is None else aliens[frames].reshape(len(frames), -1, run.m)
+    cross_points = None if aliens is None else aliens[frames].reshape(len(frames), -1, run.m)
     reach = float(law.radii.reach[2])
-    return World(reach=finite_or_none(reach), crosses=crosses, solids=solids, outlines=tuple(outlines))
+    return World(reach=finite_or_none(reach), crosses=cross_points, solids=solids, outlines=tuple(outlines))
 
 
 SCENE = {MinimalFlocking: perceived_edges, ZoneFlocking: zone_surroundings}

@@ -57,10 +57,10 @@ class DistanceFormation(VelocityLaw):
         if np.ndim(self.lengths) and np.size(self.lengths) != len(self.edges):
             raise ArgumentError(f"{np.size(self.lengths)} lengths of {len(self.edges)} links: expected one for each")
         if np.ndim(self.lengths):
-            length_of = {
+            desired_lengths = {
                 tuple(sorted(map(int, edge))): d for edge, d in zip(edges, np.ravel(self.lengths), strict=True)
             }
-            object.__setattr__(self, "lengths", tuple(float(length_of[edge]) for edge in self.edges))
+            object.__setattr__(self, "lengths", tuple(float(desired_lengths[edge]) for edge in self.edges))
 
     @property
     def scales(self) -> Scales:
@@ -84,9 +84,9 @@ class DistanceFormation(VelocityLaw):
     def rows(self, q: FloatArray) -> FloatArray:
         """Return R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors."""
         i, j, z = self._links(q)
-        whole, agents = np.zeros((len(z), *q.shape)), np.arange(len(z))
-        whole[agents, j], whole[agents, i] = z, -z
-        return whole.reshape(len(z), q.size)
+        full_matrix, agents = np.zeros((len(z), *q.shape)), np.arange(len(z))
+        full_matrix[agents, j], full_matrix[agents, i] = z, -z
+        return full_matrix.reshape(len(z), q.size)
 
     def velocity(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
         (i, j, z), v = self._links(q), np.zeros_like(q)
@@ -97,5 +97,5 @@ class DistanceFormation(VelocityLaw):
         return v
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Mapping[str, Any]:  # noqa: D102
-        largest = np.array([np.abs(self.errors(each)).max(initial=0.0) for each in q])
+        largest = np.array([np.abs(self.errors(item)).max(initial=0.0) for item in q])
         return {"length_error": ("largest |‖q_j − q_i‖² − d²| of a link (length²)", largest, True)}

@@ -14,13 +14,13 @@ _OPEN = verified("distance-formation") | vacuous("distance-formation:formation",
 
 def _formation(name: str, title: str, law: DistanceFormation, places: object, expected: dict[str, Status]) -> Builder:
     """Return a formation from given positions."""
-    source = "Ours, on Krick, Broucke and Francis: formation by squared lengths, k = 1. The start is fixed."
+    source_text = "Ours, on Krick, Broucke and Francis: formation by squared lengths, k = 1. The start is fixed."
     q = np.array(places, dtype=float)
 
     def draw(seed: int) -> Start:
         return law.start(0.0, q)
 
-    return entry(name, title, source, law, draw, 20.0, expected, references=("krick-2009", "flockana"))
+    return entry(name, title, source_text, law, draw, 20.0, expected, references=("krick-2009", "flockana"))
 
 
 _PATCH = hexagonal_patch(1, 1.0)[:4]

@@ -21,15 +21,15 @@ _PROOF = "distance-formation"
 def _near(law: DistanceFormation, q: FloatArray) -> tuple[Hypothesis, float, float]:
     """Return the hypothesis σ² > 4 √Δ ‖e‖ of a start, with error ‖e‖ and least singular value σ."""
     rows, e = law.rows(q), float(np.linalg.norm(law.errors(q)))
-    values, size = np.linalg.svd(rows, compute_uv=False), float(np.linalg.norm(rows))
+    values, magnitude = np.linalg.svd(rows, compute_uv=False), float(np.linalg.norm(rows))
     smallest = float(values[-1]) if len(rows) <= rows.shape[1] else 0.0
     share = 4.0 * sqrt(float(np.bincount(np.ravel(law.edges)).max()))
-    sigma = Enclosure.around(smallest, 64.0 * max(rows.shape) * EPS * size).clip(0.0)
-    blur = 64.0 * len(rows) * EPS * (e + size * size + float(np.sum(np.square(law.lengths))))
-    room = (sigma.square() - share * Enclosure.around(e, blur)) / float(np.max(law.lengths)) ** 2
+    sigma = Enclosure.around(smallest, 64.0 * max(rows.shape) * EPS * magnitude).clip(0.0)
+    rounding_width = 64.0 * len(rows) * EPS * (e + magnitude * magnitude + float(np.sum(np.square(law.lengths))))
+    margin = (sigma.square() - share * Enclosure.around(e, rounding_width)) / float(np.max(law.lengths)) ** 2
     text = f"σ² = {smallest**2:.6g}, 4 √Δ ‖e‖ = {share * e:.6g}"
     name = "σ² > 4 √Δ ‖e‖: independent links, near their lengths"
-    return positive_room(name, room, text, remedy="start nearer, or remove links that depend on others"), e, smallest
+    return positive_room(name, margin, text, remedy="start nearer, or remove links that depend on others"), e, smallest
 
 
 def _collinear(q: FloatArray) -> Hypothesis:
@@ -37,15 +37,15 @@ def _collinear(q: FloatArray) -> Hypothesis:
     name = "all agents start on one line of a plane or of space"
     z = [[Fraction(x) - Fraction(y) for x, y in zip(row, q[0].tolist(), strict=True)] for row in q.tolist()]
     way = max(z, key=lambda row: sum(x * x for x in row))
-    on = all(row[a] * way[b] == row[b] * way[a] for row in z for a in range(len(way)) for b in range(a))
-    return condition(name, on and q.shape[1] > 1, detail=f"m = {q.shape[1]}")
+    is_on_line = all(row[a] * way[b] == row[b] * way[a] for row in z for a in range(len(way)) for b in range(a))
+    return condition(name, is_on_line and q.shape[1] > 1, detail=f"m = {q.shape[1]}")
 
 
 def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: Tolerances) -> Claim:
     share = off.clip(0.0) / (float(np.max(seen.law.lengths)) + float(seen.radius.mid[0]))
     k = int(share.mid.argmax())
-    needs = [_collinear(seen.run.q[0])] if name == "collinear" else []
-    return judged(name, tolerances.energy - share, needs, proof=_PROOF, computed=float(share.mid[k])).described(
+    requirements = [_collinear(seen.run.q[0])] if name == "collinear" else []
+    return judged(name, tolerances.energy - share, requirements, proof=_PROOF, computed=float(share.mid[k])).described(
         stated=f"{stated}, to {tolerances.energy:g} of the size",
         witness={"time": float(seen.t[k])},
         detail=f"off by {share.mid[k]:.2g} of the size at most",
@@ -55,11 +55,11 @@ def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: T
 def _off_line(seen: Observed) -> Enclosure:
     """Return the largest distance from the line of the start over time, in the frame of the centroid."""
     z = seen.run.q - seen.run.q.mean(axis=1, keepdims=True)
-    first = z[0]
-    way = first[np.linalg.norm(first, axis=1).argmax()]
-    way = way / (float(np.linalg.norm(way)) or 1.0)
-    across = z - (z @ way)[..., None] * way
-    return Enclosure.around(np.linalg.norm(across, axis=2).max(axis=1), seen.shape_error.max(axis=1))
+    first_state = z[0]
+    direction = first_state[np.linalg.norm(first_state, axis=1).argmax()]
+    direction = direction / (float(np.linalg.norm(direction)) or 1.0)
+    transverse_part = z - (z @ direction)[..., None] * direction
+    return Enclosure.around(np.linalg.norm(transverse_part, axis=2).max(axis=1), seen.shape_error.max(axis=1))
 
 
 @run_theorem(
@@ -79,27 +79,27 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     no agent ever is farther than ‖e‖/σ from its start.
     """
     law, q = seen.law, seen.run.q
-    near, e, sigma = _near(law, q[0])
-    off = Enclosure.around(np.linalg.norm(q.mean(axis=1) - q[0].mean(axis=0), axis=1), seen.centre_error)
-    moves = np.linalg.norm(q - q[0], axis=2).max(axis=1)
-    moves = Enclosure.around(moves, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
+    near_margin, e, sigma = _near(law, q[0])
+    deviation = Enclosure.around(np.linalg.norm(q.mean(axis=1) - q[0].mean(axis=0), axis=1), seen.centre_error)
+    distances = np.linalg.norm(q - q[0], axis=2).max(axis=1)
+    distances = Enclosure.around(distances, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
     limit = e / sigma if sigma > 0.0 else np.inf
     left = float(seen.run.metric("length_error")[-1])
-    ended = f"the largest error of a squared length is {left:.3g} at the end"
+    end_text = f"the largest error of a squared length is {left:.3g} at the end"
     claims = [
-        _share("centroid", "the centroid stays", seen, off, tolerances),
-        limit_claim("rest", [], proof=_PROOF, computed=left).described(stated="velocities tend to 0", detail=ended),
+        _share("centroid", "the centroid stays", seen, deviation, tolerances),
+        limit_claim("rest", [], proof=_PROOF, computed=left).described(stated="velocities tend to 0", detail=end_text),
         _share("collinear", "agents stay on their line", seen, _off_line(seen), tolerances),
-        limit_claim("formation", [near], proof=_PROOF, computed=left).described(
-            stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=ended
+        limit_claim("formation", [near_margin], proof=_PROOF, computed=left).described(
+            stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=end_text
         ),
         judged(
-            "nearby", (limit - moves) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
-            [near], proof=_PROOF,
+            "nearby", (limit - distances) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
+            [near_margin], proof=_PROOF,
         ).described(
-            computed=float(moves.mid.max()),
+            computed=float(distances.mid.max()),
             stated=f"no agent is farther than {limit:.6g} from its start",
-            detail=f"an agent moves by {moves.mid.max():.6g} at most",
+            detail=f"an agent moves by {distances.mid.max():.6g} at most",
         ),
     ]  # fmt: skip
     return [], claims

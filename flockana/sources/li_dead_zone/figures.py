@@ -9,12 +9,12 @@ from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the figures of any flock; captions of snapshots name the followers of each leader."""
-    first, *others = flock_pictures(trajectory)
+    first_picture, *later_pictures = flock_pictures(trajectory)
     caption = (
         "Start, middle and end. Stars are the leaders; links join agents within 1.1 d1, in contact or nearly. The "
         "player gives each agent the colour of its leader."
     )
-    return (replace(first, caption=caption), *others)
+    return (replace(first_picture, caption=caption), *later_pictures)
 
 
 PICTURES = {LedDeadZoneFlocking: pictures}

@@ -37,8 +37,8 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, ax: Axes | None = None)
             face = BLUE if abs(value - least_force) <= 1e-9 * interaction.contact_force else "white"
             ax.plot(jump.distance, value, "o", color=BLUE, markerfacecolor=face, markersize=5, zorder=3)
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
-    for name, place in (("d₁", interaction.d1), ("d₂", interaction.d2), ("r", interaction.r)):
-        mark(ax, place, name)
+    for name, position in (("d₁", interaction.d1), ("d₂", interaction.d2), ("r", interaction.r)):
+        mark(ax, position, name)
     ax.set_xlim(0.0, far)
     write_title(ax, "below 0 it repels", color=MUTED, fontsize=8)
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
@@ -51,8 +51,8 @@ def dead_zone_energies(trajectory: Trajectory, ax: Any) -> None:
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")
     ax.plot(trajectory.t, trajectory.energy(), color=BLUE, linestyle="-", label="H̄, every pair, ψ constant beyond r")
-    printed = metrics.literal_energy.values
-    ax.plot(trajectory.t, printed, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
+    printed_value = metrics.literal_energy.values
+    ax.plot(trajectory.t, printed_value, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
 
 
 @draw_sample.register(LedDeadZoneFlocking)
@@ -61,17 +61,17 @@ def _led(
 ) -> Axes:
     """Draw each agent in its leader's colour, leaders as stars, pinned agents ringed, links within 1.1 d1."""
     q, t = trajectory.q[k], float(trajectory.t[k])
-    p, contact = trajectory.p[k] if velocities else None, 1.1 * law.interaction.d1
-    axes: Any = configuration(q, p, r=contact, ax=ax, title=f"t = {t:.4g}")
-    places = in_plane(np.array([leader.position(t) for leader in law.leaders]))
-    x, size = in_plane(q), float(np.clip(900.0 / len(q), 3.0, 26.0))
-    for number, (members, place) in enumerate(zip(law.ties.members, places, strict=True)):
+    p, contact_distance = trajectory.p[k] if velocities else None, 1.1 * law.interaction.d1
+    axes: Any = configuration(q, p, r=contact_distance, ax=ax, title=f"t = {t:.4g}")
+    positions = in_plane(np.array([leader.position(t) for leader in law.leaders]))
+    x, marker_size = in_plane(q), float(np.clip(900.0 / len(q), 3.0, 26.0))
+    for number, (members, position) in enumerate(zip(law.ties.members, positions, strict=True)):
         colour = _GROUPS[number % len(_GROUPS)]
         rings = [INK if i in law.pinned else colour for i in members.tolist()]
-        axes.scatter(*x[members].T, s=1.6 * size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
-        star(axes, place[None, :], color=colour)
-    framed: Axes = frame_space(axes, np.vstack([x, places]), trajectory.m)
-    return framed
+        axes.scatter(*x[members].T, s=1.6 * marker_size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
+        star(axes, position[None, :], color=colour)
+    framed_axes: Axes = frame_space(axes, np.vstack([x, positions]), trajectory.m)
+    return framed_axes
 
 
 @in_view.register(LedDeadZoneFlocking)

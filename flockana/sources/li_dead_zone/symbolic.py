@@ -67,8 +67,8 @@ def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
     def far(s: sp.Expr) -> sp.Expr:
         return attractive_primitive(s, eta=eta) - attractive_primitive(D_2, eta=eta) + K_1 * s**2 / 2
 
-    pull, near = K_1 * rho**2 / 2, repulsive_primitive(D_1, eta=eta) - repulsive_primitive(rho, eta=eta)
-    return _pieces(rho, far(R), near + pull, pull, far(rho))
+    pull, inner_potential = K_1 * rho**2 / 2, repulsive_primitive(D_1, eta=eta) - repulsive_primitive(rho, eta=eta)
+    return _pieces(rho, far(R), inner_potential + pull, pull, far(rho))
 
 
 def derive_potential() -> Derivation:
@@ -93,12 +93,12 @@ def derive_potential() -> Derivation:
 
 def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
     """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r."""
-    near, far = repulsion() * direction(), attraction() * direction()
+    inner_force, outer_force = repulsion() * direction(), attraction() * direction()
     pull = K_1 * RHO
     return {
-        "d1": ((pull - near).subs(RHO, D_1), pull.subs(RHO, D_1)),
-        "d2": (pull.subs(RHO, D_2), (pull + far).subs(RHO, D_2)),
-        "r": ((pull + far).subs(RHO, R), sp.S.Zero),
+        "d1": ((pull - inner_force).subs(RHO, D_1), pull.subs(RHO, D_1)),
+        "d2": (pull.subs(RHO, D_2), (pull + outer_force).subs(RHO, D_2)),
+        "r": ((pull + outer_force).subs(RHO, R), sp.S.Zero),
     }
 
 
@@ -111,11 +111,11 @@ def saturated_energy_identity(m: int = 2) -> Derivation:
     on_i = FORCE(rho) * delta / rho + K_2 * weight * slip
     energy = PSI(rho) + (p_i.dot(p_i) + p_j.dot(p_j)) / 2
     rate = along_flow(energy, [*q_i, *q_j], [*p_i, *p_j], [*on_i, *(-on_i)])
-    claimed = -K_2 * weight * slip.dot(slip)
+    stated_rate = -K_2 * weight * slip.dot(slip)
     steps = (
         Step("The energy of one pair,", energy),
-        Step(r"changes, with $d\psi/d\rho = F$ and opposite forces on the two, at", claimed),
+        Step(r"changes, with $d\psi/d\rho = F$ and opposite forces on the two, at", stated_rate),
     )
     apart = {q_j[0]: q_i[0] + sp.Symbol("x", real=True, nonzero=True)}  # two agents differ along some axis: the first
-    left = sp.simplify((rate - claimed).subs(apart))
-    return Derivation("Saturated energy of the dead-zone law", steps, claimed, (left,))
+    left = sp.simplify((rate - stated_rate).subs(apart))
+    return Derivation("Saturated energy of the dead-zone law", steps, stated_rate, (left,))

@@ -26,8 +26,8 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
     problem = gain_problem(hexagonal_spiral(n, alpha.d), alpha=alpha, gains=Gains(), **options)
     best = design_gains(problem, starts=1)
     margin, error = best.ratio - 1.0 - _WORTH, _ratio_error(best)
-    sure = margin > error  # else another search may find more
-    claim = spectral(name, margin, error) if sure else undecided(name, "", margin=margin, error=error)
+    is_certain = margin > error  # else another search may find more
+    claim = spectral(name, margin, error) if is_certain else undecided(name, "", margin=margin, error=error)
     return claim.described(
         computed={"n": n, "alike": best.rate_homogeneous, "per agent": best.rate_heterogeneous},
         stated="gains of its own for each agent make the slowest mode die out faster than one pair for all, by "
@@ -42,12 +42,12 @@ def _ratio_error(design: GainDesign) -> float:
     """Return the error of the ratio of two rates, from the rounding of their eigenvalues."""
     # At the best gains roots coalesce, and a rate depends on them as a root: where they are found to 2e-9, it is to
     # 1e-4.
-    slow = []
+    slow_agents = []
     for gains in (design.homogeneous, design.heterogeneous):
         values, errors = eigenvalues(design.problem.matrix(gains))
         k = int(np.argmax(values.real))
-        slow.append(float(errors[k]) / abs(float(values[k].real)))
-    return design.ratio * (sum(slow) + _CUSP)
+        slow_agents.append(float(errors[k]) / abs(float(values[k].real)))
+    return design.ratio * (sum(slow_agents) + _CUSP)
 
 
 @erratum(

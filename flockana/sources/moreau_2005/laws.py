@@ -22,13 +22,13 @@ def ensure_averages(name: str, value: Any) -> tuple[tuple[tuple[float, ...], ...
     nets = nets[None] if nets.ndim == 2 else nets
     if nets.ndim != 3 or nets.shape[1] != nets.shape[2] or not nets.size:
         raise ArgumentError(f"{name} has shape {nets.shape}: expected {_WANTED}")
-    bad = ~np.isfinite(nets) | (nets < 0.0)
-    if bad.any():
-        k, i, j = np.argwhere(bad)[0].tolist()
+    is_invalid = ~np.isfinite(nets) | (nets < 0.0)
+    if is_invalid.any():
+        k, i, j = np.argwhere(is_invalid)[0].tolist()
         raise ArgumentError(f"{name}[{k}][{i}, {j}] = {nets[k, i, j]:g}: expected {_WANTED}")
-    off = np.abs(nets.sum(axis=2) - 1.0)
-    if off.max() > _ROUNDING:
-        k, i = np.argwhere(off > _ROUNDING)[0].tolist()
+    deviation = np.abs(nets.sum(axis=2) - 1.0)
+    if deviation.max() > _ROUNDING:
+        k, i = np.argwhere(deviation > _ROUNDING)[0].tolist()
         total = nets[k, i].sum()
         raise ArgumentError(f"row {i} of {name}[{k}] sums to {total:.6g}: expected 1; divide it by its sum")
     return tuple(tuple(map(tuple, net)) for net in nets.tolist())
@@ -102,14 +102,14 @@ class NetAveraging(DiscreteLaw):
         step : int
             At least 0.
         """
-        first, more, rounds = sum(self.lengths), sum(self.growth), 0
-        if not more:
-            step %= first
-        while step >= first + more * rounds:
-            step -= first + more * rounds
+        first_duration, total_growth, rounds = sum(self.lengths), sum(self.growth), 0
+        if not total_growth:
+            step %= first_duration
+        while step >= first_duration + total_growth * rounds:
+            step -= first_duration + total_growth * rounds
             rounds += 1
-        ends = np.cumsum(np.array(self.lengths) + rounds * np.array(self.growth))
-        return int(np.searchsorted(ends, step, side="right"))
+        window_ends = np.cumsum(np.array(self.lengths) + rounds * np.array(self.growth))
+        return int(np.searchsorted(window_ends, step, side="right"))
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         if len(q) != len(self.nets[0]):

@@ -21,7 +21,7 @@ def _links(n: int, *heard: tuple[int, int]) -> np.ndarray:
 
 def _net(name: str, title: str, law: NetAveraging, expected: dict[str, Status], steps: int) -> Builder:
     """Return agents at random in a plane, or three on a line at 0, 0 and 1 for growing rounds."""
-    source = "Ours, on Moreau, and Ren and Beard: agents average in halves with those that they hear."
+    source_text = "Ours, on Moreau, and Ren and Beard: agents average in halves with those that they hear."
 
     def draw(seed: int) -> Start:
         n = len(law.nets[0])
@@ -30,7 +30,7 @@ def _net(name: str, title: str, law: NetAveraging, expected: dict[str, Status], 
         return q, np.zeros_like(q)
 
     statuses = expected | (verified if any(law.growth) else vacuous)("growing-windows")
-    return entry(name, title, source, law, draw, float(steps), statuses, references=("moreau-2005", "flockana"))
+    return entry(name, title, source_text, law, draw, float(steps), statuses, references=("moreau-2005", "flockana"))
 
 
 SCENARIOS = {

@@ -23,7 +23,7 @@ def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
     """Return the hypotheses that every window of some length has a root, and that all nets together have none."""
     nets, grows = np.array(law.nets), np.array(law.growth) > 0
     together = unheard_groups(nets.sum(axis=0))
-    rootless = condition("the nets have no root together", len(together) > 1, detail=describe_groups(together))
+    rootless_claim = condition("the nets have no root together", len(together) > 1, detail=describe_groups(together))
     name, remedy = "the nets of every window of T steps have a root together, for some T", ""
     if not grows.any():
         text, holds = f"T = {sum(law.lengths)}: {describe_groups(together)}", len(together) == 1
@@ -35,13 +35,13 @@ def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
         if lacking:
             text = f"net {lacking[0][0]} acts ever longer, in which {describe_groups(lacking[0][1])}"
             remedy = "keep the lengths bounded"
-    return condition(name, holds, detail=text, remedy=remedy), rootless
+    return condition(name, holds, detail=text, remedy=remedy), rootless_claim
 
 
 def _hull(seen: Observed, needs: Needs) -> Claim:
-    minimum, most = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
-    out = np.flatnonzero(((np.diff(minimum, axis=0) < 0.0) | (np.diff(most, axis=0) > 0.0)).any(axis=1))
-    spread = (most - minimum).max(axis=1)
+    minimum, maximum = seen.run.q.min(axis=1), seen.run.q.max(axis=1)
+    out = np.flatnonzero(((np.diff(minimum, axis=0) < 0.0) | (np.diff(maximum, axis=0) > 0.0)).any(axis=1))
+    spread = (maximum - minimum).max(axis=1)
     return by_count("hull", out.size, needs, proof=_PROOF, computed=float(spread[-1])).described(
         stated="along no axis the greatest place ever rises, or the least falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
@@ -72,15 +72,15 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     start never agrees. Where the root is an agent who hears nobody all come to it: a leader.
     """
     floor = min(min(np.diag(np.array(net))) for net in seen.law.nets)
-    keeps = condition("each agent keeps a share of its own place", floor > 0.0, floor, f"least w_ii = {floor:g}")
-    windows, rootless = windows_rooted(seen.law)
-    some = judged("some-start", Enclosure.of(0.0), [rootless], about="all", proof=_PROOF)
+    share_claim = condition("each agent keeps a share of its own place", floor > 0.0, floor, f"least w_ii = {floor:g}")
+    windows, rootless_claim = windows_rooted(seen.law)
+    some_claim = judged("some-start", Enclosure.of(0.0), [rootless_claim], about="all", proof=_PROOF)
     return [], [
-        _agreement(seen, [keeps, windows]),
+        _agreement(seen, [share_claim, windows]),
         _hull(seen, []),
-        vacuous("some-start", rootless)
-        if rootless.status == "unmet"
-        else some.described(stated="from some start places never agree", detail=rootless.detail),
+        vacuous("some-start", rootless_claim)
+        if rootless_claim.status == "unmet"
+        else some_claim.described(stated="from some start places never agree", detail=rootless_claim.detail),
     ]
 
 
@@ -115,8 +115,8 @@ def growing(seen: Observed, tolerances: Tolerances) -> Checked:
     apart = np.abs(seen.run.q[:, 2, 0] - seen.run.q[:, 0, 0])
     share = 1.0 - 2.0 ** (1 - length)
     error = 4.0 * EPS * float(np.abs(seen.run.q).max()) * (1.0 + (seen.t[-1] - seen.t[0]) / law.dt)
-    room = Enclosure.around(float(apart.min()) - share * apart[0], error)
-    claim = judged("apart", room, needs, about="all", proof=_GROWS, computed=float(apart.min() / apart[0])).described(
+    margin = Enclosure.around(float(apart.min()) - share * apart[0], error)
+    claim = judged("apart", margin, needs, about="all", proof=_GROWS, computed=float(apart.min() / apart[0])).described(
         stated=f"above {share:g} of the first distance for ever",
         detail=f"the least seen is {apart.min() / apart[0]:.6g} of the first",
     )

@@ -84,4 +84,4 @@ def diameters(x: FloatArray) -> FloatArray:
     """Return the largest distance of two agents at each sample of x, shape (T, n, m)."""
     from scipy.spatial.distance import pdist
 
-    return np.array([pdist(each).max(initial=0.0) for each in x])
+    return np.array([pdist(item).max(initial=0.0) for item in x])

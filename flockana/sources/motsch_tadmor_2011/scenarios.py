@@ -11,7 +11,7 @@ _REFERENCES = ("motsch-tadmor-2011", "flockana")
 
 def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
     """Return two agents on a line, 1 apart, that separate."""
-    source = (
+    source_text = (
         "Ours: two agents on a line, 1 apart, under the law of Motsch and Tadmor, φ = 1/(1 + s²), α = 1, relative "
         f"speed {speed:g}. From 1 on ∫φ² = 0.1427, ∫φ = π/4, and ∫2φ/(1 + φ) = √2 (π/2 − atan(1/√2)) = 1.3510, beyond "
         "which they part for ever. The start is fixed."
@@ -19,7 +19,7 @@ def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
     start = np.array([[0.0], [1.0]]), np.array([[0.0], [speed]])
     law = MotschTadmor(RationalWeight(decay=1.0))
     title = f"Two agents with own sums that part at {speed:g}"
-    return entry(name, title, source, law, lambda seed: start, 20.0, expected, references=_REFERENCES)
+    return entry(name, title, source_text, law, lambda seed: start, 20.0, expected, references=_REFERENCES)
 
 
 def _two_groups(seed: int) -> Start:

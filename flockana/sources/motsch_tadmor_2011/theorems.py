@@ -15,8 +15,8 @@ _NAMES = ("bounded", "rate", "flock")
 def _series(seen: Observed, of: str, error: np.ndarray) -> Enclosure:
     """Return the diameter of positions or velocities at each sample, widened by the errors of two agents."""
     values = [diameters(getattr(run, of)) for run in (seen.run, seen.other)]
-    size = np.abs(getattr(seen.run, of)).max(axis=(1, 2))
-    return Enclosure.around(values[0], 2.0 * error.max(axis=1) + 8.0 * EPS * size).clip(0.0)
+    magnitude = np.abs(getattr(seen.run, of)).max(axis=(1, 2))
+    return Enclosure.around(values[0], 2.0 * error.max(axis=1) + 8.0 * EPS * magnitude).clip(0.0)
 
 
 def _checked(seen: Observed, power: float, name: str) -> Checked:
@@ -25,9 +25,9 @@ def _checked(seen: Observed, power: float, name: str) -> Checked:
     rate = AlignmentRate(RationalWeight(1.0, power * law.weight.decay, law.weight.length), law.gain, 1.0)
     x, v = _series(seen, "q", seen.shape_error), _series(seen, "p", seen.speed_error)
     steps = np.diff(seen.t)
-    further = float((fastest_between(seen) * steps).max(initial=0.0))  # half an interval at twice the fastest
-    over = Enclosure(float(x.lo.max()), float(x.mid.max()), float(x.hi.max()) + further)
-    guarantee = Guarantee(seen, rate, x, over, v, _PROOF, ("d_X{}", "d_V{}"))
+    step_distance = float((fastest_between(seen) * steps).max(initial=0.0))  # half an interval at twice the fastest
+    range_excess = Enclosure(float(x.lo.max()), float(x.mid.max()), float(x.hi.max()) + step_distance)
+    guarantee = Guarantee(seen, rate, x, range_excess, v, _PROOF, ("d_X{}", "d_V{}"))
     return guarantee.claims([guarantee.hypothesis(name)], limit="flock")
 
 

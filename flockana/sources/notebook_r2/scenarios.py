@@ -37,9 +37,9 @@ def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
 def _other(run: Trajectory) -> Trajectory:
     """Run the same start with the extra repulsion switched on or off."""
     law = run.law
-    shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
-    other = _SWITCH[type(law)](**shared)
-    return findings.rerun(run, other, **(_integrator(other) or findings.same_accuracy(run)))
+    shared_options = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
+    other_law = _SWITCH[type(law)](**shared_options)
+    return findings.rerun(run, other_law, **(_integrator(other_law) or findings.same_accuracy(run)))
 
 
 @findings.report("push", "a tenfold push below 0.05 keeps agents apart")
@@ -54,14 +54,14 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
     if isinstance(run.law, PushedAlgorithm1 | PushedAlgorithm2):
         runs.reverse()
     near = [r.closest_approach() for r in runs]
-    plain, pushed = (each.distance for each in near)
-    blur = sum(each.distance - each.lower for each in near) + findings.ROUNDING * float(np.abs(run.q).max())
-    apart = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
+    plain, pushed = (item.distance for item in near)
+    rounding_width = sum(item.distance - item.lower for item in near) + findings.ROUNDING * float(np.abs(run.q).max())
+    end_distance = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
     detail = (
         f"{len(contact_times)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} "
-        f"without the push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
+        f"without the push and {pushed:.3g} with it, and final positions differ by up to {end_distance:.3g}"
     )
-    return findings.finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
+    return findings.finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=rounding_width)
 
 
 @findings.report("follows", "agents take on the γ-agent's velocity")
@@ -70,31 +70,31 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     # With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
     # the end every agent has the γ-agent's velocity. Whether this run is long enough to see it is what is looked at.
     pull = run.law.gains.c2_gamma * np.linalg.norm(run.p[-1] - run.law.target.state(float(run.t[-1]))[1], axis=1)
-    middle = float(np.median(pull))
-    certificate = Certificate(max(-1.0, 1.0 - middle / _FOLLOWS), "that is what counts as following")
-    detail = f"‖u_γ‖ at the end is {middle:.2g} in the median and {pull.max():.2g} at most"
-    return findings.limit_report(certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
+    median = float(np.median(pull))
+    certificate = Certificate(max(-1.0, 1.0 - median / _FOLLOWS), "that is what counts as following")
+    detail = f"‖u_γ‖ at the end is {median:.2g} in the median and {pull.max():.2g} at most"
+    return findings.limit_report(certificate, detail, computed=median, stated=f"below {_FOLLOWS:g}")
 
 
 @findings.report("unit-direction", "n_ij is a normalised direction")
 def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that n_ij is a unit vector: its length ‖Δ‖/√(1 + ε‖Δ‖²) is below 1/√ε."""
     alpha = run.law.alpha
-    lengths = link_lengths(run.q[0], links(run.q[0], alpha.r))
-    n = lengths / np.sqrt(1.0 + alpha.eps * lengths**2)
-    off = float(np.abs(n - 1.0).max())
+    distances = link_lengths(run.q[0], links(run.q[0], alpha.r))
+    n = distances / np.sqrt(1.0 + alpha.eps * distances**2)
+    deviation = float(np.abs(n - 1.0).max())
     detail = (
         f"‖n_ij‖ of the {n.size} links at the start is {n.min():.3g} to {n.max():.3g}; it is 0 at coincidence and "
         f"could come near 1/√ε = {1.0 / np.sqrt(alpha.eps):.3g}"
     )
-    return findings.finding(-off, detail, computed=off, stated="‖n_ij‖ = 1")
+    return findings.finding(-deviation, detail, computed=deviation, stated="‖n_ij‖ = 1")
 
 
 @findings.report("goal", "agents move toward the common goal")
 def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that agents move toward a common goal; with c1γ = 0 the law does not contain q_r."""
-    place = run.law.target.position(0.0)
-    first, last = (float(np.linalg.norm(run.q[k].mean(axis=0) - place)) for k in (0, -1))
+    position = run.law.target.position(0.0)
+    first, last = (float(np.linalg.norm(run.q[k].mean(axis=0) - position)) for k in (0, -1))
     detail = (
         f"the centre of mass is {first:.3g} from q_r at the start and {last:.3g} at the end: with c1γ = 0 nothing "
         "draws it there, and it drifts away with p_r"
@@ -119,16 +119,16 @@ def _follows_flow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the notebook's steps follow the flow of the same law to 1 % of d."""
     law = run.law.law
     flow = findings.rerun(run, law, t_eval=run.t, **_integrator(law))
-    apart = lengths(run.q - flow.q).max(axis=1) / law.alpha.d
-    beyond = np.flatnonzero(apart > _FOLLOWED)
-    since = f"from t = {run.t[beyond[0]]:.3g} on" if beyond.size else "at no time"
-    energy, true = run.energy()[-1], flow.energy()[-1]
+    distances = lengths(run.q - flow.q).max(axis=1) / law.alpha.d
+    deviating_samples = np.flatnonzero(distances > _FOLLOWED)
+    time_text = f"from t = {run.t[deviating_samples[0]]:.3g} on" if deviating_samples.size else "at no time"
+    energy, flow_energy = run.energy()[-1], flow.energy()[-1]
     detail = (
-        f"an agent is more than {_FOLLOWED:.0%} of d from the flow's {since}, and up to "
-        f"{apart.max():.3g} d later; the run ends in {findings.component_count(run)} components, the flow in "
-        f"{findings.component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
+        f"an agent is more than {_FOLLOWED:.0%} of d from the flow's {time_text}, and up to "
+        f"{distances.max():.3g} d later; the run ends in {findings.component_count(run)} components, the flow in "
+        f"{findings.component_count(flow)}, at energies of {energy:.5g} and {flow_energy:.5g}"
     )
-    worst = float(apart.max())
+    worst = float(distances.max())
     return findings.finding(_FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
 
 
@@ -145,8 +145,8 @@ def _scenario(
 ) -> Scenario:
     generator, references = np.random.default_rng(seed), ("notebook-r2", "olfati-saber-2006")
     q, p = generator.uniform(0.0, 13.0, (n, 2)), generator.standard_normal((n, 2))
-    judged, how, span = findings.in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
-    return Scenario(name, *text, law, q, p, span, seed, expected, judged, how, references, shipped=shipped)
+    judged, integration_text, span = findings.in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
+    return Scenario(name, *text, law, q, p, span, seed, expected, judged, integration_text, references, shipped=shipped)
 
 
 def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
@@ -156,14 +156,14 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
     expected = vacuous("os-1", "os-5-terminal:i") | refuted("source:unit-direction")
     if not push:
         expected |= verified("energy")
-    shipped = refuted("alpha-flocking-strict", "alpha-flocking-strict:flock")
+    shipped_statuses = refuted("alpha-flocking-strict", "alpha-flocking-strict:flock")
     text = (
         "R² notebook: 27 agents, Algorithm 1, unequal attraction and repulsion",
         "R² notebook, Algorithm 1: n = 27, d = 1.9, r = 2.8, ε = 0.1, h = 0.4, a = 7, b = 9, no gains "
         "(unit), q uniform in [0, 13]², p standard normal, 5 time units. The notebook steps by 0.05; this is the flow.",
     )
     reports = _push, _unit_directions
-    return _scenario("notebook-algorithm1", text, law, 27, 5.0, seed, expected, *reports, shipped=shipped)
+    return _scenario("notebook-algorithm1", text, law, 27, 5.0, seed, expected, *reports, shipped=shipped_statuses)
 
 
 def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
@@ -175,7 +175,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
     if not push:
         expected |= vacuous("os-3:i", "os-3:ii", "os-3:iii")
         expected |= verified("energy", "os-3", "os-3:iv-printed")
-    shipped = verified("alpha-flocking-strict:mismatch", "source:follows", "source:relaxes")
+    shipped_statuses = verified("alpha-flocking-strict:mismatch", "source:follows", "source:relaxes")
     text = (
         "R² notebook: 35 agents, Algorithm 2 with velocity feedback only",
         "R² notebook, Algorithm 2: n = 35, d = 1.7, r = 2.5, ε = 0.01, h = 0.2, a = 7, b = 15, unit gains, c1γ = 0, "
@@ -183,7 +183,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
         "units. The notebook steps by 0.1; this is the continuous system.",
     )
     reports = _push, _velocity_follows, _pairs_relax, _goal
-    return _scenario("notebook-algorithm2", text, law, 35, 15.0, seed, expected, *reports, shipped=shipped)
+    return _scenario("notebook-algorithm2", text, law, 35, 15.0, seed, expected, *reports, shipped=shipped_statuses)
 
 
 def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
@@ -193,9 +193,9 @@ def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
         item = flow(seed, push=True)
         law: Any = item.law
         name, title = f"{item.name}-map", f"{item.title}, by the notebook's own steps"
-        how = f"q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05."
-        source = f"{item.source.rpartition('. ')[0]}. As published: {how}"
-        item = replace(item, name=name, title=title, source=source, law=TaylorStep(law, dt), options={})
+        description = f"q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05."
+        source_text = f"{item.source.rpartition('. ')[0]}. As published: {description}"
+        item = replace(item, name=name, title=title, source=source_text, law=TaylorStep(law, dt), options={})
         reports = findings.in_source_units(lambda: law.scales, (_follows_flow,))
         return replace(item, expected=refuted("source:flow"), shipped={}, reports=reports)
 

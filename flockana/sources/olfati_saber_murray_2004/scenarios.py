@@ -14,15 +14,15 @@ _OTHER = verified("average-consensus", *_NAMES) | vacuous(_NAMES[1], _NAMES[3])
 
 def _net(name: str, title: str, nets: list[np.ndarray], expected: dict[str, Status]) -> Builder:
     """Return a net, or switching nets, with agents at random in a plane."""
-    each = [AverageConsensus(weights) for weights in nets]
-    law = each[0] if len(nets) == 1 else VelocityInTurn(each, _LENGTHS)
+    laws = [AverageConsensus(weights) for weights in nets]
+    law = laws[0] if len(nets) == 1 else VelocityInTurn(laws, _LENGTHS)
 
     def draw(seed: int) -> Start:
         return law.start(0.0, np.random.default_rng(seed).uniform(-1.0, 1.0, (len(nets[0]), 2)))
 
-    source = "Ours, on Olfati-Saber and Murray: q' = -Lq from random places."
+    source_text = "Ours, on Olfati-Saber and Murray: q' = -Lq from random places."
     references = ("olfati-saber-murray-2004", "flockana")
-    return entry(name, title, source, law, draw, 20.0, expected, references=references)
+    return entry(name, title, source_text, law, draw, 20.0, expected, references=references)
 
 
 _RING = np.roll(np.eye(4), 1, axis=1)

@@ -14,13 +14,13 @@ _SPREAD = _ALL | verified("cyclic-pursuit:spread") | vacuous("cyclic-pursuit:mee
 def _ring(name: str, title: str, n: int, angle: float, end: float, expected: dict[str, Status]) -> Builder:
     """Return agents in cyclic pursuit with gain 1 from a random start."""
     law = CyclicPursuit(1.0, angle)
-    source = f"Ours, on Pavone and Frazzoli: k = 1, θ = {angle:g}°, 180°/n = {180.0 / n:g}°; positions normal."
+    source_text = f"Ours, on Pavone and Frazzoli: k = 1, θ = {angle:g}°, 180°/n = {180.0 / n:g}°; positions normal."
 
     def draw(seed: int) -> Start:
         q = np.random.default_rng(seed).normal(size=(n, 2))
         return law.start(0.0, q)
 
-    return entry(name, title, source, law, draw, end, expected, references=("pavone-frazzoli-2007", "flockana"))
+    return entry(name, title, source_text, law, draw, end, expected, references=("pavone-frazzoli-2007", "flockana"))
 
 
 SCENARIOS = {

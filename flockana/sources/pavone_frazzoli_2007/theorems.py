@@ -17,13 +17,13 @@ def _growing_part(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the start excites a growing mode."""
     law, n = seen.law, seen.n
     angles = [(exact(law.angle) * n + 180 * j) / n for j in range(1, n)]  # degrees: those of which the sine is < 0 grow
-    grows = [j for j, angle in enumerate(angles, 1) if 180 < angle < 360 or angle < 0]
+    growing_modes = [j for j, angle in enumerate(angles, 1) if 180 < angle < 360 or angle < 0]
     z = seen.run.q[0] @ np.array([1.0, 1j])
-    parts = np.abs(np.fft.fft(z - z.mean())[grows]) / n
-    part, size = float(parts.max(initial=0.0)), float(np.abs(z).max())
-    room = Enclosure.around(part, 8.0 * n * EPS * size)
+    parts = np.abs(np.fft.fft(z - z.mean())[growing_modes]) / n
+    part, magnitude = float(parts.max(initial=0.0)), float(np.abs(z).max())
+    margin = Enclosure.around(part, 8.0 * n * EPS * magnitude)
     return positive_room(
-        "the start has a part in a mode that grows", room, f"the largest is {part:.6g}", remedy="move one agent"
+        "the start has a part in a mode that grows", margin, f"the largest is {part:.6g}", remedy="move one agent"
     )
 
 
@@ -32,22 +32,22 @@ def _motion(seen: Observed, tolerances: Tolerances) -> list[Claim]:
     law: CyclicPursuit = seen.law
     z = seen.run.q @ np.array([1.0, 1j])
     motion = np.fft.ifft(np.fft.fft(z[0] - z[0].mean()) * np.exp(np.outer(seen.t - seen.t[0], law.eigenvalues(seen.n))))
-    size = float(max(np.abs(motion).max(), np.abs(z[0] - z[0].mean()).max())) or 1.0
-    rounding = 64.0 * seen.n * EPS * float(np.abs(z).max() + law.gain * (seen.t[-1] - seen.t[0]) * size)
-    off = {
+    magnitude = float(max(np.abs(motion).max(), np.abs(z[0] - z[0].mean()).max())) or 1.0
+    rounding = 64.0 * seen.n * EPS * float(np.abs(z).max() + law.gain * (seen.t[-1] - seen.t[0]) * magnitude)
+    deviation = {
         "centroid": Enclosure.around(np.abs(z.mean(axis=1) - z[0].mean()), seen.centre_error + rounding),
         "motion": Enclosure.around(
             np.abs(z - z.mean(axis=1, keepdims=True) - motion).max(axis=1), seen.shape_error.max(axis=1) + rounding
         ),
     }
-    stated = {"centroid": "the centroid stays", "motion": "the motion is Σ_j c_j e^{λ_j t} v_j, c of the start"}
+    stated_value = {"centroid": "the centroid stays", "motion": "the motion is Σ_j c_j e^{λ_j t} v_j, c of the start"}
     claims = []
-    for name, series in off.items():
-        share = series.clip(0.0) / size
+    for name, series in deviation.items():
+        share = series.clip(0.0) / magnitude
         k = int(share.mid.argmax())
         claims.append(
             judged(name, tolerances.energy - share, proof=_PROOF, computed=float(share.mid[k])).described(
-                stated=f"{stated[name]}, to {tolerances.energy:g} of the size",
+                stated=f"{stated_value[name]}, to {tolerances.energy:g} of the size",
                 witness={"time": float(seen.t[k])},
                 detail=f"off by {share.mid[k]:.2g} of the size at most",
             )
@@ -80,12 +80,12 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     law: CyclicPursuit = seen.law
     critical, angle = 180.0 / seen.n, abs(law.angle)
-    room, text = 180 - abs(exact(law.angle)) * seen.n, f"|θ| = {angle:.9g}°, 180°/n = {critical:.9g}°"
-    margin = float(room.p) / float(room.q) / seen.n
-    below = condition("|θ| < π/n", bool(room > 0), margin, text, remedy="turn the lines of sight less")
-    at = condition("|θ| = π/n", bool(room == 0), -abs(margin), text, remedy=f"choose the angle {critical:.9g}")
-    beyond = [condition("|θ| > π/n", bool(room < 0), -margin, text, remedy="turn the lines of sight more")]
-    if room < 0:
+    slack, text = 180 - abs(exact(law.angle)) * seen.n, f"|θ| = {angle:.9g}°, 180°/n = {critical:.9g}°"
+    margin = float(slack.p) / float(slack.q) / seen.n
+    below = condition("|θ| < π/n", bool(slack > 0), margin, text, remedy="turn the lines of sight less")
+    at = condition("|θ| = π/n", bool(slack == 0), -abs(margin), text, remedy=f"choose the angle {critical:.9g}")
+    beyond = [condition("|θ| > π/n", bool(slack < 0), -margin, text, remedy="turn the lines of sight more")]
+    if slack < 0:
         beyond.append(_growing_part(seen))
     z = seen.run.q[0] @ np.array([1.0, 1j])
     circling = float(np.abs(np.fft.fft(z)[seen.n - 1 if law.angle > 0.0 else 1]) / seen.n)

@@ -48,16 +48,16 @@ def informed_shares(
     share = runs["followers"].transpose("informed", "seed").values
     x = np.asarray(runs["informed"].values, dtype=np.float64) / agents
     is_finite = np.isfinite(share)  # a run that failed has none
-    counts, of = (share > majority).sum(axis=1), is_finite.sum(axis=1)
-    low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, of, level=_CONFIDENCE))
-    middle = counts / np.maximum(of, 1)
+    counts, status_name = (share > majority).sum(axis=1), is_finite.sum(axis=1)
+    low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, status_name, level=_CONFIDENCE))
+    success_shares = counts / np.maximum(status_name, 1)
     axes = ensure_axes(ax)
-    for place, row in zip(x, share, strict=True):
-        axes.plot(np.full(row.shape, place), row, ".", color=MUTED, alpha=0.5, zorder=1)
+    for position, row in zip(x, share, strict=True):
+        axes.plot(np.full(row.shape, position), row, ".", color=MUTED, alpha=0.5, zorder=1)
     axes.plot(x, np.nanmean(share, axis=1), "-o", color=BLUE, label="agents that follow, mean of all runs")
-    bars = np.clip([middle - low, high - middle], 0.0, None)
+    bars = np.clip([success_shares - low, high - success_shares], 0.0, None)
     label = f"runs in which more than {majority:.0%} follow, with 95 % intervals"
-    axes.errorbar(x, middle, bars, fmt="s", color=ORANGE, capsize=3.0, label=label)
+    axes.errorbar(x, success_shares, bars, fmt="s", color=ORANGE, capsize=3.0, label=label)
     axes.set_ylim(-0.03, 1.03)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(PercentFormatter(1.0))

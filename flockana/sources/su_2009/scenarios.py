@@ -44,14 +44,14 @@ def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _few(seed: int = 0) -> Scenario:
     q, p = _near_lattice(seed, 7, 0.2)
-    others = hexagonal_spiral(4, AlphaInteraction().d) + np.array([_APART, 0.0])
+    other_positions = hexagonal_spiral(4, AlphaInteraction().d) + np.array([_APART, 0.0])
     law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=(0, 2), agents=len(q) + 4)
     title = "Two of eleven agents know the leader: those linked to them follow, the others drift on"
-    source = (
+    source_text = (
         "Ours, on Su, Wang and Lin 2009: Algorithm 2 with default gains, seven agents near a patch of the lattice of "
         "which two feel a leader of constant velocity (1, ½), and four more out of everybody's reach."
     )
-    q, p = np.vstack([q, others]), np.vstack([p, np.tile([0.1, -0.2], (4, 1))])
+    q, p = np.vstack([q, other_positions]), np.vstack([p, np.tile([0.1, -0.2], (4, 1))])
     expected = (
         verified("su-informed:energy", "su-informed:distance", "su-informed:informed")
         | inconclusive("su-informed:linked")  # a run does not show that links last
@@ -62,7 +62,7 @@ def _few(seed: int = 0) -> Scenario:
     # so tightly that the decay is seen through many constants
     options = {"t_eval": np.linspace(0.0, 90.0, 241), "rtol": 1e-11}
     reports, span = (_others_drift,), (0.0, 90.0)
-    return Scenario("informed-few", title, source, law, q, p, span, seed, expected, reports, options, _REFERENCES)
+    return Scenario("informed-few", title, source_text, law, q, p, span, seed, expected, reports, options, _REFERENCES)
 
 
 def _one_informed(seed: int = 0) -> Scenario:
@@ -89,9 +89,9 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     omega = 2.0 * pi * path.frequency
     lag = path.radius * omega**2 / abs(gains.c1_gamma - omega**2 + 1j * omega * gains.c2_gamma)
     distance = float(np.linalg.norm(run.q[-1].mean(axis=0) - path.position(float(run.t[-1]))))
-    off = abs(distance / lag - 1.0)
+    deviation = abs(distance / lag - 1.0)
     detail = f"the centre of mass ends {distance:.6g} from the leader, where the transfer function says {lag:.6g}"
-    return finding(1e-6 - off, detail, computed=distance, stated=lag, error=ROUNDING)
+    return finding(1e-6 - deviation, detail, computed=distance, stated=lag, error=ROUNDING)
 
 
 def _varying(name: str, title: str, *, feedforward: bool) -> Builder:
@@ -105,19 +105,19 @@ def _varying(name: str, title: str, *, feedforward: bool) -> Builder:
         remark = " and are told its acceleration."
     else:
         expected |= vacuous("su-varying") | verified("source")
-    source = (
+    source_text = (
         "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
         f"radius 20{remark}"
     )
     draw, reports = partial(_near_lattice, n=12, noise=0.2), () if feedforward else (_lag,)
-    return entry(name, title, source, law, draw, 40.0, expected, reports, references=_REFERENCES)
+    return entry(name, title, source_text, law, draw, 40.0, expected, reports, references=_REFERENCES)
 
 
 @report("informed-follow", "all informed agents adopt the leader's velocity")
 def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that all informed agents follow at the end."""
-    who = np.asarray(run.law.gains.c1_gamma) > 0.0
-    count, of = int(following(run)[who].sum()), int(who.sum())
+    is_informed = np.asarray(run.law.gains.c1_gamma) > 0.0
+    count, of = int(following(run)[is_informed].sum()), int(is_informed.sum())
     text = (
         f"{count} of {of} informed agents, and {int(following(run).sum())} of {run.n} in all, move as the leader does"
     )
@@ -136,10 +136,10 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
     """Return n agents in a square, the first few informed of a leader with constant velocity."""
     if not 1 <= informed <= n:
         raise ArgumentError(f"informed = {informed}: expected 1 to {n}, the number of agents")
-    generator, who = np.random.default_rng(seed), range(informed)
-    law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=who, agents=n)
+    generator, informed_agents = np.random.default_rng(seed), range(informed)
+    law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=informed_agents, agents=n)
     title = f"{informed} of {n} agents, spread over a square, know the leader: how many follow?"
-    source = (
+    source_text = (
         "Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and that more of them lead a "
         f"larger share. Ours: n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, "
         "0) at (1, ½), 80 time units; an option of the scenario says how many are informed."
@@ -149,7 +149,7 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
     more: dict[str, Any] = {"references": _REFERENCES, "shipped": verified("source")}
     more["options"] = {"t_eval": np.linspace(0.0, 80.0, 81)}
     reports = (_some_follow, _most_follow)
-    return Scenario("informed-survey", title, source, law, q, p, (0.0, 80.0), seed, expected, reports, **more)
+    return Scenario("informed-survey", title, source_text, law, q, p, (0.0, 80.0), seed, expected, reports, **more)
 
 
 _KNOWN = "A circling leader whose acceleration all agents know: the centre of mass converges to it"
@@ -165,8 +165,8 @@ SCENARIOS: dict[str, Builder] = {
 
 def _informing(some: int, n: int) -> Gains:
     """Return the default gains, with c1γ and c2γ zero except for the first agents."""
-    gains, felt = Gains(), np.arange(n) < some
-    return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
+    gains, is_informed = Gains(), np.arange(n) < some
+    return replace(gains, c1_gamma=tuple(gains.c1_gamma * is_informed), c2_gamma=tuple(gains.c2_gamma * is_informed))
 
 
 ONE_START = (

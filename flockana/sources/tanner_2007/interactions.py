@@ -104,18 +104,18 @@ def net_forces(
     potential: LogPotential, damping: float, q: FloatArray, p: FloatArray, i: Any, j: Any, u: FloatArray
 ) -> float:
     """Add the forces along given edges to u, unchecked, and return their power −k₂ Σ ‖p_j − p_i‖²."""
-    delta, slip = q[j] - q[i], p[j] - p[i]
-    pull = potential.inner(np.einsum("kc,kc->k", delta, delta))[0][:, None] * delta + damping * slip
+    delta, velocity_difference = q[j] - q[i], p[j] - p[i]
+    pull = potential.inner(np.einsum("kc,kc->k", delta, delta))[0][:, None] * delta + damping * velocity_difference
     np.add.at(u, i, pull)
     np.subtract.at(u, j, pull)
-    return -damping * float(np.sum(slip * slip))
+    return -damping * float(np.sum(velocity_difference * velocity_difference))
 
 
 def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: Any, j: Any) -> tuple[Any, Any]:
     """Return (∂u/∂q, ∂u/∂p) of the forces along given edges, sparse."""
     (n, m), delta = q.shape, q[j] - q[i]
     stress, _, slope, _ = potential.inner(np.einsum("kc,kc->k", delta, delta))
-    bend = 2.0 * slope[:, None, None] * delta[:, :, None] * delta[:, None, :]
-    stiff = stress[:, None, None] * np.eye(m) + bend
-    drag = np.broadcast_to(damping * np.eye(m), stiff.shape)
-    return -pair_matrix(i, j, stiff, n), -pair_matrix(i, j, drag, n)
+    weight_slope = 2.0 * slope[:, None, None] * delta[:, :, None] * delta[:, None, :]
+    stiffness_terms = stress[:, None, None] * np.eye(m) + weight_slope
+    drag = np.broadcast_to(damping * np.eye(m), stiffness_terms.shape)
+    return -pair_matrix(i, j, stiffness_terms, n), -pair_matrix(i, j, drag, n)

@@ -183,8 +183,8 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
         return _pairs_within(self.pieces(q), len(q))
 
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:  # noqa: D102
-        inside = self.r - _distances(q)
-        return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
+        range_margin = self.r - _distances(q)
+        return Margins(np.where(pieces == _NEAR, range_margin, -range_margin), pieces == _NEAR)
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
         return np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
@@ -200,8 +200,8 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
 def _pairs_within(pieces: Pieces, n: int) -> Ends:
     """Return the index pairs (i, j) assigned to the piece within R."""
     i, j = np.triu_indices(n, 1)
-    near = pieces == _NEAR
-    return i[near], j[near]
+    is_near = pieces == _NEAR
+    return i[is_near], j[is_near]
 
 
 def _distances(q: FloatArray) -> FloatArray:

@@ -42,8 +42,8 @@ def _fixed(seed: int = 0) -> Scenario:
         "velocities uniform in [-0.3, 0.3]².",
     )
     law = FixedNetFlocking((*((0, k) for k in range(1, n)), *((k, 1 + k % 6) for k in range(1, n))))
-    expected, shipped = verified("tanner-fixed:energy", "tanner-fixed:no-collision"), verified("tanner-fixed")
-    return _scenario("tanner-fixed", text, law, q, p, 20.0, seed, expected, shipped=shipped)
+    expected, shipped_statuses = verified("tanner-fixed:energy", "tanner-fixed:no-collision"), verified("tanner-fixed")
+    return _scenario("tanner-fixed", text, law, q, p, 20.0, seed, expected, shipped=shipped_statuses)
 
 
 def _switching(seed: int = 0) -> Scenario:
@@ -58,8 +58,8 @@ def _switching(seed: int = 0) -> Scenario:
     p = generator.uniform((1.0, -0.5), (2.0, 0.5), (n, 2))
     expected = verified("tanner-switching:energy", "tanner-switching:no-collision")
     expected |= inconclusive("tanner-switching:critical")  # where forces jump no proof says that they die out
-    shipped = inconclusive("tanner-switching") | verified("tanner-switching:velocities")
-    return _scenario("tanner-switching", text, law, q, p, 10.0, seed, expected, shipped=shipped)
+    shipped_statuses = inconclusive("tanner-switching") | verified("tanner-switching:velocities")
+    return _scenario("tanner-switching", text, law, q, p, 10.0, seed, expected, shipped=shipped_statuses)
 
 
 def _parting(seed: int = 0) -> Scenario:

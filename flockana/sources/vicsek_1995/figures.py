@@ -15,8 +15,8 @@ _SETTLED = 1e-3  # of the first span of headings: until it falls below there is 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the figures of any flock at start, middle, end; headings, connectivity and heading span."""
-    early = trajectory.window(float(trajectory.t[0]), _until(trajectory))
-    times = float(trajectory.t[0]), float(early.t[len(early.t) // 2]), float(trajectory.t[-1])
+    early_run = trajectory.window(float(trajectory.t[0]), _until(trajectory))
+    times = float(trajectory.t[0]), float(early_run.t[len(early_run.t) // 2]), float(trajectory.t[-1])
     windows = windows_of(trajectory)
     longest = max((stop - start for start, stop in windows), default=0)
     return (
@@ -30,8 +30,8 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             f"are jointly connected over each of {len(windows)} contiguous windows, the longest of {longest} steps.",
             panels(
                 [
-                    Chart("heading (radians)", early.t, spread(early.extra["heading"])),
-                    *(measured(early, name) for name in ("connectivity",) if has_metric(early, name)),
+                    Chart("heading (radians)", early_run.t, spread(early_run.extra["heading"])),
+                    *(measured(early_run, name) for name in ("connectivity",) if has_metric(early_run, name)),
                     measured(trajectory, "heading_spread"),
                 ]
             ),
@@ -42,10 +42,10 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 def _until(run: Trajectory) -> float:
     """Return the time until which headings visibly differ and the first windows end."""
     span = run.metric("heading_spread")
-    late = np.flatnonzero(span > _SETTLED * span[0])
+    late_samples = np.flatnonzero(span > _SETTLED * span[0])
     windows = windows_of(run)[:4]
-    last = max([int(late[-1]) if late.size else 0, *(stop for _, stop in windows), 1])
-    return float(run.t[min(last, len(run.t) - 1)])
+    last_sample = max([int(late_samples[-1]) if late_samples.size else 0, *(stop for _, stop in windows), 1])
+    return float(run.t[min(last_sample, len(run.t) - 1)])
 
 
 PICTURES = {HeadingAveraging: pictures}

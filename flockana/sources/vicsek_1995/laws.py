@@ -94,9 +94,9 @@ class HeadingAveraging(DiscreteLaw):
             raise ArgumentError(f"the agents live in {m} dimensions: a heading is an angle, expected the plane, m = 2")
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
-        off = np.abs(np.linalg.norm(p, axis=1) / self.speed - 1.0)
-        worst = int(np.argmax(off))
-        if off[worst] > _SPEED:
+        deviation = np.abs(np.linalg.norm(p, axis=1) / self.speed - 1.0)
+        worst = int(np.argmax(deviation))
+        if deviation[worst] > _SPEED:
             raise ArgumentError(
                 f"agent {worst} has the speed {np.linalg.norm(p[worst]):g}: expected speed = {self.speed:g} for all "
                 "agents; make velocities with law.velocities(headings)"
@@ -137,14 +137,14 @@ class HeadingAveraging(DiscreteLaw):
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         heading = memory["heading"]
         average = _mean_angles if self.average == "headings" else _mean_vectors
-        turned, after = average(heading, self.links(q)), dict(memory)
+        turned, next_memory = average(heading, self.links(q)), dict(memory)
         if self.noise:
             k = int(memory["step"])
-            shaken = [random_number(self.seed, k, i, 0, 0) for i in range(len(q))]
-            turned = turned + 0.5 * self.noise * np.array(shaken)
-            after["step"] = memory["step"] + 1.0
+            noise_samples = [random_number(self.seed, k, i, 0, 0) for i in range(len(q))]
+            turned = turned + 0.5 * self.noise * np.array(noise_samples)
+            next_memory["step"] = memory["step"] + 1.0
         before, velocities = self.velocities(heading), self.velocities(turned)
-        return q + self.dt * before, velocities, (velocities - before) / self.dt, after | {"heading": turned}
+        return q + self.dt * before, velocities, (velocities - before) / self.dt, next_memory | {"heading": turned}
 
     def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
         """Return the derivative of the next headings by the headings.
@@ -167,10 +167,10 @@ class HeadingAveraging(DiscreteLaw):
         """
         from scipy.sparse import coo_array
 
-        near = np.column_stack(pair_list(q, _SEARCH * self.range))
-        away = np.abs(np.linalg.norm(q[near[:, 1]] - q[near[:, 0]], axis=1) - self.range)
-        if near.size and away.min() <= (_SEARCH - 1.0) * self.range:
-            i, j = near[int(np.argmin(away))]
+        near_pairs = np.column_stack(pair_list(q, _SEARCH * self.range))
+        range_excess = np.abs(np.linalg.norm(q[near_pairs[:, 1]] - q[near_pairs[:, 0]], axis=1) - self.range)
+        if near_pairs.size and range_excess.min() <= (_SEARCH - 1.0) * self.range:
+            i, j = near_pairs[int(np.argmin(range_excess))]
             raise ArgumentError(f"agents {i} and {j} are at the edge of each other's circle: the map jumps there")
         n, pairs = len(q), self.links(q)
         rows = np.concatenate([np.arange(n), pairs[:, 0], pairs[:, 1]])
@@ -196,19 +196,19 @@ def _mean_angles(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     """Return the mean heading angle of each agent and its neighbours, clipped to their range."""
     (i, j), n = pairs.T, heading.size
     total = heading + np.bincount(i, heading[j], n) + np.bincount(j, heading[i], n)
-    lower, most = heading.copy(), heading.copy()
-    for one, other in ((i, j), (j, i)):
-        np.minimum.at(lower, one, heading[other])
-        np.maximum.at(most, one, heading[other])
-    return np.clip(total / _sizes(pairs, n), lower, most)
+    lower, maximum = heading.copy(), heading.copy()
+    for agent_index, neighbour_index in ((i, j), (j, i)):
+        np.minimum.at(lower, agent_index, heading[neighbour_index])
+        np.maximum.at(maximum, agent_index, heading[neighbour_index])
+    return np.clip(total / _sizes(pairs, n), lower, maximum)
 
 
 def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
     """Return the angle of the mean unit vector; the agent's own heading if the mean vanishes."""
     (i, j), n = pairs.T, heading.size
     x, y = (f(heading) + np.bincount(i, f(heading)[j], n) + np.bincount(j, f(heading)[i], n) for f in (np.cos, np.sin))
-    cancels = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
-    return np.where(cancels, heading, np.arctan2(y, x))
+    is_cancelling = np.hypot(x, y) <= _CANCELS * _sizes(pairs, n)
+    return np.where(is_cancelling, heading, np.arctan2(y, x))
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:

@@ -17,8 +17,8 @@ _SHAKEN = 0.05  # of r and of a radian: what chance adds to each coordinate and 
 def _group(centre: float, heading: float, generator: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Return two by three agents, _SIZE r apart, near one heading; r = 1."""
     grid = _SIZE * np.array([[x, y] for x in (-0.5, 0.5) for y in (-1.0, 0.0, 1.0)]) + (centre, 0.0)
-    shaken = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
-    return grid + shaken[:, :2], heading + shaken[:, 2]
+    start_noise = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
+    return grid + start_noise[:, :2], heading + start_noise[:, 2]
 
 
 def _last(run: Trajectory) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
@@ -47,7 +47,7 @@ def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _build(name: str, title: str, heading: float, steps: int, expected: dict[str, Status], *reports: Report) -> Builder:
-    source = (
+    source_text = (
         "Ours, on Jadbabaie, Lin and Morse's model: two groups of two by three agents, 0.7 r apart within a group, "
         "3 r between the centres, headings mirrored, each coordinate and heading shaken by up to 0.05."
     )
@@ -59,7 +59,7 @@ def _build(name: str, title: str, heading: float, steps: int, expected: dict[str
         left, right = _group(-1.5, heading, generator), _group(1.5, np.pi - heading, generator)
         return np.vstack([left[0], right[0]]), law.velocities(np.concatenate([left[1], right[1]]))
 
-    return entry(name, title, source, law, two_groups, float(steps), expected, reports, references=_REFERENCES)
+    return entry(name, title, source_text, law, two_groups, float(steps), expected, reports, references=_REFERENCES)
 
 
 _MEET, _PART = verified("jlm-headings"), verified("jlm-headings:hull")

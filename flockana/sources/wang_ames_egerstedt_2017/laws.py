@@ -75,28 +75,28 @@ class SafetyFilter(WrappingLaw):
         x, v = q[i] - q[j], p[i] - p[j]
         r = np.linalg.norm(x, axis=1)
         with np.errstate(invalid="ignore"):  # at one place there is no way apart
-            along = x / r[:, None]
-        speed = np.sum(along * v, axis=1)
+            axial_part = x / r[:, None]
+        speed = np.sum(axial_part * v, axis=1)
         s = np.sqrt(2.0 * c * np.maximum(r - self.distance, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):  # below h = 0 they brake as at it
             rate = np.where((s > 0.0) & (speed > -s), c * speed / s, -c)
-            turn = np.maximum(np.sum(v * v, axis=1) - speed**2, 0.0) / r
+            turning_rate = np.maximum(np.sum(v * v, axis=1) - speed**2, 0.0) / r
         h = s + speed
-        return h, along, -self.gain * h**3 - rate - turn
+        return h, axial_part, -self.gain * h**3 - rate - turning_rate
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = self.law.flow(t, q, p)[0]
         i, j = np.triu_indices(len(q), 1)
-        _, along, lowest = self.barriers(q, p)
-        lack = lowest - np.sum(along * (u[i] - u[j]), axis=1)
+        _, along, lowest_value = self.barriers(q, p)
+        lack = lowest_value - np.sum(along * (u[i] - u[j]), axis=1)
         if (lack <= 0.0).all():
             return u, float("nan")
         if np.isnan(lack).any():  # two agents at one place
             return np.full_like(u, np.nan), float("nan")
         if len(q) == 2:
             return u + 0.5 * lack[0] * np.stack([along[0], -along[0]]), float("nan")
-        asks = np.isfinite(lack)
-        return u + _least_change(along[asks], (i[asks], j[asks]), lack[asks], q.shape), float("nan")
+        is_asking = np.isfinite(lack)
+        return u + _least_change(along[is_asking], (i[is_asking], j[is_asking]), lack[is_asking], q.shape), float("nan")
 
 
 def _least_change(along: FloatArray, pairs: Any, lack: FloatArray, shape: tuple[int, ...]) -> FloatArray:
@@ -106,8 +106,8 @@ def _least_change(along: FloatArray, pairs: Any, lack: FloatArray, shape: tuple[
     rows, unit = np.zeros((len(lack), *shape)), float(lack.max())
     k = np.arange(len(lack))
     rows[k, pairs[0]], rows[k, pairs[1]] = along, -along
-    whole = np.vstack([rows.reshape(len(lack), -1).T, lack / unit])
-    aim = np.zeros(len(whole))
+    stacked_rows = np.vstack([rows.reshape(len(lack), -1).T, lack / unit])
+    aim = np.zeros(len(stacked_rows))
     aim[-1] = 1.0
-    residual = whole @ nnls(whole, aim)[0] - aim
+    residual = stacked_rows @ nnls(stacked_rows, aim)[0] - aim
     return np.asarray(-unit * residual[:-1].reshape(shape) / residual[-1])

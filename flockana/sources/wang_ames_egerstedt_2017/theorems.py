@@ -16,10 +16,10 @@ def _at_start(law: SafetyFilter, q: FloatArray, p: FloatArray) -> tuple[Enclosur
     h, size = law.barriers(q, p)[0], 16.0 * EPS
     r, speed = np.linalg.norm(q[i] - q[j], axis=1), np.abs(p[i]).sum(axis=1) + np.abs(p[j]).sum(axis=1)
     far = size * (np.abs(q[i]).sum(axis=1) + np.abs(q[j]).sum(axis=1) + law.distance)
-    room, c = r - law.distance, 2.0 * law.acceleration_limit
-    root = np.sqrt(2.0 * c * np.maximum(room, 0.0))
-    blur = np.sqrt(2.0 * c * (np.maximum(room, 0.0) + far)) - root + size * (root + speed * (1.0 + far / r))
-    return Enclosure.around(h, blur + size * speed), Enclosure.around(room, far)
+    margin, c = r - law.distance, 2.0 * law.acceleration_limit
+    root = np.sqrt(2.0 * c * np.maximum(margin, 0.0))
+    rounding_width = np.sqrt(2.0 * c * (np.maximum(margin, 0.0) + far)) - root + size * (root + speed * (1.0 + far / r))
+    return Enclosure.around(h, rounding_width + size * speed), Enclosure.around(margin, far)
 
 
 @run_theorem(
@@ -40,36 +40,36 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     law: SafetyFilter = seen.law
     q, p = seen.given.q[0], seen.given.p[0]
     i, j = np.triu_indices(seen.n, 1)
-    several = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
+    count_claim = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
     if seen.n < 2:
-        return [several], []
-    h, room = _at_start(law, q, p)
+        return [count_claim], []
+    h, margin = _at_start(law, q, p)
     k = int(h.mid.argmin())
     text = f"agents {i[k]} and {j[k]} have h = {h.mid[k]:.6g}"
-    apart = f"the least r - D is {room.mid.min():.6g}"
-    far = positive_room("all pairs start farther apart than D", room.min(), apart, remedy="lower D")
-    safe = positive_room("h > 0 for all pairs at the start", h.min(), text, remedy="start slower")
+    distance_text = f"the least r - D is {margin.mid.min():.6g}"
+    far = positive_room("all pairs start farther apart than D", margin.min(), distance_text, remedy="lower D")
+    safe_claim = positive_room("h > 0 for all pairs at the start", h.min(), text, remedy="start slower")
     line = condition("agents move on a line", seen.m == 1, detail=f"m = {seen.m}")
-    late = positive_room("h < 0 for a pair at the start", -h.min(), text)
+    start_violation = positive_room("h < 0 for a pair at the start", -h.min(), text)
     distances = seen.distances(i, j).min(axis=1)
     limits = f"2α = {2.0 * law.acceleration_limit:g}"
-    missed = unmet([far, line, late])
-    too_late = (
-        judged("too-late", Enclosure.of(0.0), [far, line, late], about="all", proof=_PROOF).described(
+    unmet_hypothesis = unmet([far, line, start_violation])
+    late_claim = (
+        judged("too-late", Enclosure.of(0.0), [far, line, start_violation], about="all", proof=_PROOF).described(
             stated="with inputs up to α the pair comes nearer than D", detail=text
         )
-        if missed is None
-        else vacuous("too-late", missed)
+        if unmet_hypothesis is None
+        else vacuous("too-late", unmet_hypothesis)
     )
-    return [several], [
-        judged("apart", distances / law.distance - 1.0, [far, safe], proof=_PROOF).described(
+    return [count_claim], [
+        judged("apart", distances / law.distance - 1.0, [far, safe_claim], proof=_PROOF).described(
             computed=float(distances.mid.min()),
             stated=f"all pairs stay farther apart than D = {law.distance:g}",
             witness={"time": float(seen.t[int(distances.mid.argmin())])},
             detail=f"the least distance at a sample is {distances.mid.min():.6g}",
         ),
-        judged("braking", Enclosure.of(0.0), [far, safe], about="all", proof=_PROOF).described(
+        judged("braking", Enclosure.of(0.0), [far, safe_claim], about="all", proof=_PROOF).described(
             stated=f"of a pair never more than {limits} is asked", detail=text
         ),
-        too_late,
+        late_claim,
     ]

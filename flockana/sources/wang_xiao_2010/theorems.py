@@ -26,8 +26,8 @@ def _rate(law: FiniteTimeAlignment, n: int) -> Enclosure:
     for i, j in law.links:
         laplacian[i, j] = laplacian[j, i] = -1.0
     laplacian -= np.diag(laplacian.sum(axis=1))
-    second = np.linalg.eigvalsh(laplacian)
-    rate = Enclosure.around(float(second[1]), 16.0 * n * EPS * float(second[-1]))
+    second_eigenvalue = np.linalg.eigvalsh(laplacian)
+    rate = Enclosure.around(float(second_eigenvalue[1]), 16.0 * n * EPS * float(second_eigenvalue[-1]))
     factor = law.gain * law.speed ** (1.0 - law.exponent)  # (b^(1/power))^power
     return rate.rising(lambda value: np.maximum(value, 0.0) ** power).scaled_out(16.0 * EPS) * factor
 
@@ -49,32 +49,32 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     law: FiniteTimeAlignment = seen.law
     alpha = law.exponent
-    several = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
+    count_claim = condition("two agents or more", seen.n > 1, detail=f"n = {seen.n}")
     root = condition("α < 1", alpha < 1.0, 1.0 - alpha, f"α = {alpha:g}", remedy="lower α below 1")
     net = _connected(law, seen.n)
-    needs = [several, root, net]
-    if unmet([several]):
+    needs = [count_claim, root, net]
+    if unmet([count_claim]):
         return needs, []
     missed = unmet([root, net])
     if missed is not None:
-        other = Hypothesis(f"not: {missed.name}", "met", detail=missed.detail)
-        never = judged("some-start", Enclosure.of(0.0), [several, other], about="all", proof=_PROOF)
-        return needs, [never.described(stated="from some start velocities never agree", detail=missed.detail)]
+        negation = Hypothesis(f"not: {missed.name}", "met", detail=missed.detail)
+        never_claim = judged("some-start", Enclosure.of(0.0), [count_claim, negation], about="all", proof=_PROOF)
+        return needs, [never_claim.described(stated="from some start velocities never agree", detail=missed.detail)]
     rest, rate, v = 1.0 - alpha, _rate(law, seen.n), seen.velocity_spread
-    level, fall = v.rising(lambda value: value**rest), rest * rate
+    level, fall_rate = v.rising(lambda value: value**rest), rest * rate
     start, t = level[0], seen.t - seen.t[0]
-    last = start / fall
-    margin = (start - fall * t).clip(0.0) - level
-    k = int((level.mid - (start.mid - fall.mid * t)).argmax())
+    end_time = start / fall_rate
+    margin = (start - fall_rate * t).clip(0.0) - level
+    k = int((level.mid - (start.mid - fall_rate.mid * t)).argmax())
     text = f"v goes from {v.mid[0]:.6g} to {v.mid[-1]:.3g} at t = {seen.t[-1]:.6g}"
     return needs, [
         judged("bound", margin, needs, proof=_PROOF, computed=float(v.mid[k])).described(
-            stated=f"v^{rest:.3g} <= {start.mid:.6g} - {fall.mid:.6g} t",
+            stated=f"v^{rest:.3g} <= {start.mid:.6g} - {fall_rate.mid:.6g} t",
             witness={"time": float(seen.t[k])},
             detail=text,
         ),
         judged("settle", Enclosure.of(0.0), needs, about="all", proof=_PROOF).described(
-            computed=float(v.mid[-1]), stated=f"all velocities are p̄ from T = {last.mid:.6g} on", detail=text
+            computed=float(v.mid[-1]), stated=f"all velocities are p̄ from T = {end_time.mid:.6g} on", detail=text
         ),
         vacuous("some-start", condition("α >= 1 or the net is not connected", False, -rest, f"α = {alpha:g}")),
     ]

@@ -20,9 +20,9 @@ def ensure_weights(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     weights = ensure_numbers(name, value.toarray() if hasattr(value, "toarray") else value, _WANTED)
     if weights.ndim != 2 or weights.shape[0] != weights.shape[1] or not weights.size:
         raise ArgumentError(f"{name} has shape {weights.shape}: expected {_WANTED}")
-    bad = ~np.isfinite(weights) | (weights < 0.0)
-    if bad.any():
-        i, j = np.argwhere(bad)[0].tolist()
+    is_invalid = ~np.isfinite(weights) | (weights < 0.0)
+    if is_invalid.any():
+        i, j = np.argwhere(is_invalid)[0].tolist()
         raise ArgumentError(f"{name}[{i}, {j}] = {weights[i, j]:g}: expected {_WANTED}")
     if np.diag(weights).any():
         i = int(np.diag(weights).nonzero()[0][0])
@@ -99,7 +99,7 @@ class NetConsensus(HearingLaw):
         self, own: tuple[FloatArray, FloatArray], heard: tuple[FloatArray, FloatArray], linked: Any
     ) -> FloatArray:
         weights = np.array(self.weights) if linked is None else np.where(linked, self.weights, 0.0)
-        q, p = (theirs - mine[:, None] for mine, theirs in zip(own, heard, strict=True))
+        q, p = (neighbour_state - agent_state[:, None] for agent_state, neighbour_state in zip(own, heard, strict=True))
         return np.einsum("ij,ijk->ik", weights, self.position * q + self.velocity * p)
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
@@ -112,5 +112,5 @@ class NetConsensus(HearingLaw):
         """Return −αL and −βL for each component of space, sparse."""
         from scipy.sparse import csr_array, eye_array, kron
 
-        whole = csr_array(kron(csr_array(self.laplacian), eye_array(q.shape[1]), format="csr"))
-        return -self.position * whole, -self.velocity * whole
+        full_matrix = csr_array(kron(csr_array(self.laplacian), eye_array(q.shape[1]), format="csr"))
+        return -self.position * full_matrix, -self.velocity * full_matrix

@@ -39,21 +39,21 @@ def threshold_exceeded(law: NetConsensus) -> Hypothesis:
 
 
 def _consensus(seen: Observed, needs: Needs) -> Claim:
-    spreads = [float(np.ptp(series[-1], axis=0).max()) for series in (seen.run.q, seen.run.p)]
-    return limit_claim("consensus", needs, proof=_PROOF, computed=spreads).described(
+    final_spreads = [float(np.ptp(series[-1], axis=0).max()) for series in (seen.run.q, seen.run.p)]
+    return limit_claim("consensus", needs, proof=_PROOF, computed=final_spreads).described(
         stated="q_i - q_j -> 0 and p_i - p_j -> 0 from every start",
-        detail=f"at the end positions differ by {spreads[0]:.3g} and velocities by {spreads[1]:.3g}",
+        detail=f"at the end positions differ by {final_spreads[0]:.3g} and velocities by {final_spreads[1]:.3g}",
     )
 
 
 def _never(gains: Hypothesis, root: Hypothesis, above: Hypothesis | None) -> Claim:
     """Return the claim that some start never agrees, vacuous if the conditions are met."""
     missed = root if above is None else above
-    opposite = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[missed.status]
-    need = Hypothesis(f"not: {missed.name}", opposite, detail=missed.detail)  # type: ignore[arg-type]
-    if need.status == "unmet":
-        return vacuous("some-start", need)
-    return judged("some-start", Enclosure.of(0.0), [gains, need], about="all", proof=_PROOF).described(
+    opposite_status = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[missed.status]
+    requirement = Hypothesis(f"not: {missed.name}", opposite_status, detail=missed.detail)  # type: ignore[arg-type]
+    if requirement.status == "unmet":
+        return vacuous("some-start", requirement)
+    return judged("some-start", Enclosure.of(0.0), [gains, requirement], about="all", proof=_PROOF).described(
         stated="from some start positions or velocities never agree", detail=missed.detail
     )
 
@@ -73,6 +73,6 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     law: NetConsensus = seen.law
     gains, root = gains_positive(law), has_root(law.weights)
-    above = threshold_exceeded(law) if gains.status == root.status == "met" else None
-    needs = [gains, root, *([] if above is None else [above])]
-    return needs, [_consensus(seen, needs), _never(gains, root, above)]
+    threshold_claim = threshold_exceeded(law) if gains.status == root.status == "met" else None
+    requirements = [gains, root, *([] if threshold_claim is None else [threshold_claim])]
+    return requirements, [_consensus(seen, requirements), _never(gains, root, threshold_claim)]

@@ -92,14 +92,14 @@ class LinkKeeping(SumOfTerms):
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if a link is as long as r, the pole of the tension."""
         super().check_start(q, p)
-        for (i, j), length in zip(self.links, self.lengths(q), strict=True):
-            if length >= self.r:
-                raise ArgumentError(f"link ({i}, {j}) is {length:g} long: expected links shorter than r = {self.r:g}")
+        for (i, j), distance in zip(self.links, self.lengths(q), strict=True):
+            if distance >= self.r:
+                raise ArgumentError(f"link ({i}, {j}) is {distance:g} long: expected links shorter than r = {self.r:g}")
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return the length of each link."""
-        ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
-        return np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
+        link_ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
+        return np.linalg.norm(q[link_ends[:, 1]] - q[link_ends[:, 0]], axis=1)
 
     def longest(self, energy: float) -> float:
         """Return the length s < r at which one link stores all the energy: k s²/(r − s) = H.

@@ -16,24 +16,24 @@ _PROOF = "links-kept"
 
 def _joined(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the links connect all agents."""
-    ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
-    parts = len({*components(seen.n, ends).tolist()})
-    text = f"{parts} component(s), {len(ends)} links"
+    link_ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
+    parts = len({*components(seen.n, link_ends).tolist()})
+    text = f"{parts} component(s), {len(link_ends)} links"
     return condition("the links join all agents", parts == 1, float(1 - parts), text)
 
 
 def longest_link(seen: Observed) -> Enclosure:
     """Return an enclosure of the longest link over the run, also between samples."""
-    ends = np.array(seen.law.links, dtype=np.int64).reshape(-1, 2)
-    if not len(ends):
+    link_ends = np.array(seen.law.links, dtype=np.int64).reshape(-1, 2)
+    if not len(link_ends):
         return Enclosure.of(0.0)
-    at_samples = seen.distances(ends[:, 0], ends[:, 1]).max()
-    bound = float(at_samples.hi)
-    for _, points, off in polygons(seen.run):
-        apart = lengths(points[ends[:, 1]] - points[ends[:, 0]]).max(axis=1)
-        bound = max(bound, float((apart + 2.0 * np.max(off)).max(initial=0.0)))
+    sample_distances = seen.distances(link_ends[:, 0], link_ends[:, 1]).max()
+    bound = float(sample_distances.hi)
+    for _, points, deviation in polygons(seen.run):
+        link_lengths = lengths(points[link_ends[:, 1]] - points[link_ends[:, 0]]).max(axis=1)
+        bound = max(bound, float((link_lengths + 2.0 * np.max(deviation)).max(initial=0.0)))
     error = 2.0 * float(seen.between_error.max(initial=0.0)) + ROUNDING * float(np.abs(seen.run.q).max())
-    return Enclosure(at_samples.lo, at_samples.mid, bound + error + 64.0 * EPS * seen.law.r)
+    return Enclosure(sample_distances.lo, sample_distances.mid, bound + error + 64.0 * EPS * seen.law.r)
 
 
 def _below(longest: Enclosure, r: float, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:

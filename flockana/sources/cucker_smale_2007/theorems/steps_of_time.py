@@ -35,7 +35,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     theorem of Cucker and Smale, who bound the step too.
     """
     guarantee = guarantee_of(seen, sqrt(2.0))
-    most = seen.law.dt * guarantee.phi.strength  # at most 1, no step reverses a relative velocity
-    room = 1.0 + 2.0 * _ROUNDING - Enclosure.around(most, _ROUNDING * most)
-    short = positive_room("h λ <= 1", room, f"h λ = {most:.6g}")
+    step_strength = seen.law.dt * guarantee.phi.strength  # at most 1, no step reverses a relative velocity
+    margin = 1.0 + 2.0 * _ROUNDING - Enclosure.around(step_strength, _ROUNDING * step_strength)
+    short = positive_room("h λ <= 1", margin, f"h λ = {step_strength:.6g}")
     return guarantee.claims([short, guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")])

@@ -14,14 +14,14 @@ def _invariant(
 ) -> Claim:
     """Return the claim that w + ∫λψ is conserved."""
     start = float(x.mid[0])
-    passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
-    off = abs((w + passed) / w[0] - 1.0)
-    k = int(off.mid.argmax())
-    return judged("invariant", tolerances.energy - off, needs, proof="cucker-smale").described(
-        computed=float(off.mid[k]),
+    passed_integral = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
+    deviation = abs((w + passed_integral) / w[0] - 1.0)
+    k = int(deviation.mid.argmax())
+    return judged("invariant", tolerances.energy - deviation, needs, proof="cucker-smale").described(
+        computed=float(deviation.mid[k]),
         stated=f"w + ∫λψ from x(0) to x is w(0), to {tolerances.energy:g} of it",
         witness={"time": float(seen.t[k])},
-        detail=f"the invariant is off by {off.mid[k]:.2g} of w(0) at most",
+        detail=f"the invariant is off by {deviation.mid[k]:.2g} of w(0) at most",
     )
 
 
@@ -64,14 +64,14 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     psi = AlignmentRate(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
     rest = psi.beyond_enclosed(x[0])
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
-    slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
-    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
+    slow_claim = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
+    fast_claim = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
     far, smallest, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
-    bounded = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
+    bound_claims = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
     parts = f"their relative speed is {end:.6g} at the end and never below {smallest:.6g}"
-    match = "the two match, and their distance tends to a known one"
+    match_text = "the two match, and their distance tends to a known one"
     return needs, [
         _invariant(seen, psi, x, w, needs, tolerances),
-        _side("bounded", slow, needs, float(x.mid[-1]), match, bounded),
-        _side("parts", fast, needs, end, "the two never match and separate", parts),
+        _side("bounded", slow_claim, needs, float(x.mid[-1]), match_text, bound_claims),
+        _side("parts", fast_claim, needs, end, "the two never match and separate", parts),
     ]

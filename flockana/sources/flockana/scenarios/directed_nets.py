@@ -41,7 +41,7 @@ def _cone(seed: int = 0) -> Scenario:
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
     q = hexagonal_spiral(_N, d) + generator.uniform(-0.3, 0.3, (_N, 2))
     title = "Twelve agents that look ahead only: momentum is not kept, energy rises"
-    source = (
+    source_text = (
         "Ours, on the slides' remark on directed nets: Algorithm 1 with the default gains, an angle of view of 120°, "
         "twelve agents near a lattice, each coordinate displaced by up to 0.3, velocities uniform in [1, 3] × [-1, 1]."
     )
@@ -49,7 +49,7 @@ def _cone(seed: int = 0) -> Scenario:
     p = generator.uniform((1.0, -1.0), (3.0, 1.0), (_N, 2))
     reports = (_one_way, _momentum_changes, _energy_rises)
     return Scenario(
-        "directed-cone", title, source, law, q, p, (0.0, 3.0), seed, verified("source"), reports, references=OURS
+        "directed-cone", title, source_text, law, q, p, (0.0, 3.0), seed, verified("source"), reports, references=OURS
     )
 
 

@@ -22,19 +22,19 @@ _DRIFT = 4.0  # by which the copies of the two halves differ from the true veloc
 def _velocity_is_true(run: Trajectory, tolerances: Tolerances) -> Claim:
     condition = consistent(run)
     margin = 0.5 if condition.status == "met" else -0.5
-    off = -float(condition.margin or 0.0)
-    return finding(margin, f"mean dq_r/dt is p_r to {off:.2g}", computed=off, stated="dq_r/dt = p_r")
+    deviation = -float(condition.margin or 0.0)
+    return finding(margin, f"mean dq_r/dt is p_r to {deviation:.2g}", computed=deviation, stated="dq_r/dt = p_r")
 
 
 @report("predicted", "copies part, or meet, as the linear theory says")
 def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Compare the copies with d'' = −(k + k₁) d − (b + k₂) d' for the distance d from their mean."""
     copies, t = run.law.copies, float(run.t[-1] - run.t[0])
-    place, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
+    position, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
     k, b = copies.position_coupling, copies.velocity_coupling  # f_r = 0
-    predicted = place + speed * t
+    predicted = position + speed * t
     if k > 0.0:  # critically damped, b² = 4k
-        predicted = (place + (speed + 0.5 * b * place) * t) * np.exp(-0.5 * b * t)
+        predicted = (position + (speed + 0.5 * b * position) * t) * np.exp(-0.5 * b * t)
     centre = copies.state(float(run.t[-1]))[0]
     centre = centre - centre.mean(axis=0)
     off, size = float(np.abs(centre - predicted).max()), run.scales.length
@@ -47,12 +47,12 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the centre of mass follows the mean of the copies as a critically damped system."""
     law = run.law
-    places, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
-    away, slip = run.q[0].mean(axis=0) - places, run.p[0].mean(axis=0) - speeds
+    positions, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
+    away, slip = run.q[0].mean(axis=0) - positions, run.p[0].mean(axis=0) - speeds
     rate, t = 0.5 * float(law.gains.c2_gamma), float(run.t[-1] - run.t[0])
-    predicted = (away + (slip + rate * away) * t) * np.exp(-rate * t)
+    predicted_value = (away + (slip + rate * away) * t) * np.exp(-rate * t)
     offset = run.q[-1].mean(axis=0) - law.copies.state(float(run.t[-1]))[0].mean(axis=0)
-    off = float(np.abs(offset - predicted).max()) / run.scales.length
+    off = float(np.abs(offset - predicted_value).max()) / run.scales.length
     detail = (
         f"the centre of mass ends {float(np.linalg.norm(offset)):.2g} from the mean of the copies, as a critically "
         f"damped follower does to {off:.1g} d"
@@ -80,31 +80,31 @@ def _start(seed: int) -> Start:
 def _system() -> Builder:
     law = Algorithm2(target=SystemTarget((30.0, 0.0), (0.0, 6.0), Spring((0.0, 0.0), 1.0, reach=8.0)))
     title = "A γ-agent that is a system of its own leads eight agents round"
-    source = (
+    source_text = (
         "Ours, on the γ-agent q_r' = p_r, p_r' = f_r(q_r, p_r): f_r = −x/√(1 + ‖x‖²/64), a spring whose pull is "
         "bounded, from (30, 0) at (0, 6); Algorithm 2 with the default gains, eight agents near a lattice about the "
         "origin, each coordinate displaced by up to 0.2, velocities up to 0.3."
     )
     expected = verified("energy", "os-3:i", "source")
-    return entry("gamma-system", title, source, law, _start, 30.0, expected, (_velocity_is_true,), references=OURS)
+    return entry("gamma-system", title, source_text, law, _start, 30.0, expected, (_velocity_is_true,), references=OURS)
 
 
 def _peers(name: str, title: str, *, coupling: float) -> Builder:
     """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
     damping = 2.0 * np.sqrt(coupling)
-    coupled = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
-    source = (
+    coupling_gains = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
+    source_text = (
         "Ours, on Fig. 7 (a virtual leader against peer-to-peer copies of the γ-agent): eight agents near a "
         "lattice, each with a copy of the γ-agent of its own, f_r = 0, all copies from (10, 0) at (2, 0), but for "
         "-4 across the way in one half of the flock and +4 in the other; default gains. "
-        + (coupled if coupling else "The copies are not coupled, and part.")
+        + (coupling_gains if coupling else "The copies are not coupled, and part.")
     )
     end = report("together", "the flock stays one")(connected) if coupling else _TWO_HALVES
     reports = (_copies_as_predicted, end, _centre_follows, _balanced)
-    place, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
+    position, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
     couplings = {"position_coupling": coupling, "velocity_coupling": damping}
-    law = PeerToPeer(Copies(place, speed, Spring((0.0, 0.0), 0.0), **couplings))
-    return entry(name, title, source, law, _start, 25.0, verified("source"), reports, references=OURS)
+    law = PeerToPeer(Copies(position, speed, Spring((0.0, 0.0), 0.0), **couplings))
+    return entry(name, title, source_text, law, _start, 25.0, verified("source"), reports, references=OURS)
 
 
 SCENARIOS: dict[str, Builder] = {

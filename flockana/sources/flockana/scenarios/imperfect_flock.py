@@ -17,8 +17,8 @@ DT, LAG, PERIOD, LOSS, LIMIT, NOISE, WIND = 0.01, 0.01, 0.02, 0.05, 20.0, 0.002,
 
 def _as_built(seed: int = 0) -> Scenario:
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
-    sensed = Measured(Lossy(law, LOSS, seed=seed), NOISE, NOISE, "neighbours", seed=seed)
-    applied = Saturated(Sampled(Delayed(sensed, LAG, "neighbours"), PERIOD), LIMIT)
+    sensed_law = Measured(Lossy(law, LOSS, seed=seed), NOISE, NOISE, "neighbours", seed=seed)
+    applied_law = Saturated(Sampled(Delayed(sensed_law, LAG, "neighbours"), PERIOD), LIMIT)
     q = hexagonal_patch(2, 7.0) + np.random.default_rng(seed).uniform(-0.5, 0.5, (19, 2))
     title = "Algorithm 2 as it is built: late and lost messages, noise, sampling, limits, wind"
     source = (
@@ -26,8 +26,8 @@ def _as_built(seed: int = 0) -> Scenario:
         f"late, with noise, lose one message in {1.0 / LOSS:g}, compute every {PERIOD:g} and accelerate by at most "
         f"{LIMIT:g}; white noise of intensity {WIND:g} pushes them. Steps of {DT:g}."
     )
-    stepped: Any = Stepped(Disturbed(applied, intensity=WIND, seed=seed), DT, 2)
-    return Scenario("as-built", title, source, stepped, q, np.zeros_like(q), (0.0, 20.0), seed, vacuous("os-3"))
+    stepped_law: Any = Stepped(Disturbed(applied_law, intensity=WIND, seed=seed), DT, 2)
+    return Scenario("as-built", title, source, stepped_law, q, np.zeros_like(q), (0.0, 20.0), seed, vacuous("os-3"))
 
 
 def _swinging_push(seed: int = 0) -> Scenario:

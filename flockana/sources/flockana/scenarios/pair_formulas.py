@@ -27,14 +27,14 @@ def _follows(seed: int = 0) -> Scenario:
     generator = np.random.default_rng(seed)
     grid = 8.0 * np.array([(i, j) for i in range(4) for j in range(3)], dtype=np.float64)
     title = "Twelve agents with Morse's potential follow a γ-agent"
-    source = (
+    source_text = (
         "Ours: Algorithm 2 with a Morse potential of depth 30, a = 0.5, d = 7, brought to 0 at r = 14; a grid of "
         "spacing 8, each coordinate displaced by up to 1, velocities up to 1 per axis."
     )
     law = Algorithm2(_morse(), Gains(1.0, 1.0, 0.0, 0.0, 0.2, 0.5), LinearTarget((40.0, 0.0), (1.0, 0.0)))
     q, p = grid + generator.uniform(-1.0, 1.0, grid.shape), generator.uniform(-1.0, 1.0, grid.shape)
     expected = verified("energy") | _VERIFIED | vacuous("os-3") | verified("os-3:i", "os-3:iii")
-    return Scenario("morse-follows", title, source, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
+    return Scenario("morse-follows", title, source_text, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
 
 
 def _holds(seed: int = 0) -> Scenario:
@@ -42,14 +42,14 @@ def _holds(seed: int = 0) -> Scenario:
     generator = np.random.default_rng(seed)
     rhombus = 6.0 * np.array([(0.0, 0.0), (1.0, 0.0), (0.5, 0.75**0.5), (1.5, 0.75**0.5)])
     title = "Four agents with Morse's potential that have too little energy to part"
-    source = (
+    source_text = (
         "Ours: Algorithm 1 with a Morse potential of depth 30, a = 0.5, d = 7, brought to 0 at r = 14; a rhombus of "
         "side 6, velocities up to 1 per axis. E(0) < 3 c1α (ψ(r) - L), so that no solution from there is disconnected."
     )
     law = Algorithm1(_morse(), Gains(1.0, 1.0))
     p = generator.uniform(-1.0, 1.0, rhombus.shape)
     expected = verified("energy") | _VERIFIED | vacuous("os-1") | verified("os-1:ii", "os-1:iii")
-    return Scenario("morse-holds", title, source, law, rhombus, p, (0.0, 20.0), seed, expected, references=OURS)
+    return Scenario("morse-holds", title, source_text, law, rhombus, p, (0.0, 20.0), seed, expected, references=OURS)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {"morse-follows": _follows, "morse-holds": _holds}

@@ -22,7 +22,7 @@ def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40
     side = alpha.d * sqrt(ensure_count("n", n) / density)
     generator = np.random.default_rng(seed)
     title = f"{n} agents, c1γ/c1α = {ratio:g}, {density:g} agents per d² at the start"
-    source = (
+    source_text = (
         "Ours: Algorithm 2 with d, r, ε, a, b, h of Fig. 10, c1α = 5, c2 = 2√c1 for both gains, a γ-agent at rest at "
         "the origin, q uniform in a square about it that holds the given number of agents per d² (a lattice has "
         "2/√3), p uniform in [-1, 1]², 60 time units."
@@ -30,7 +30,7 @@ def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40
     law = Algorithm2(alpha, gains, StaticTarget((0.0, 0.0)))
     q, p = generator.uniform(-0.5 * side, 0.5 * side, (n, 2)), generator.uniform(-1.0, 1.0, (n, 2))
     expected = verified("energy", "os-3:i")
-    return Scenario("phase", title, source, law, q, p, (0.0, _END), seed, expected, references=OURS)
+    return Scenario("phase", title, source_text, law, q, p, (0.0, _END), seed, expected, references=OURS)
 
 
 SCENARIOS = {"phase": _phase}

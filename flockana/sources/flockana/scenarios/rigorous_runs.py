@@ -16,7 +16,7 @@ _ALL_OF_OS_3 = verified(*(f"os-3:{name}" for name in ("i", "ii", "iii", "iv-inst
 def _flock_of_three(seed: int = 0) -> Scenario:
     q = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
     title = "Three agents: their flock and its limit are proved"
-    source = (
+    source_text = (
         "Ours: three agents at rest, out of each other's range, with the γ-agent between them, Algorithm 2 with the "
         "default gains. A tube encloses the run while the links form, until it is in a certified basin: all of Theorem "
         "3 holds, its limit included. The start is fixed."
@@ -24,15 +24,15 @@ def _flock_of_three(seed: int = 0) -> Scenario:
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     p = np.zeros((3, 2))
     expected = verified("energy", "os-3") | _ALL_OF_OS_3
-    enclosed = Enclosure(("os-3",), limit=True)
+    enclosure = Enclosure(("os-3",), limit=True)
     return Scenario(
-        "proved-flock", title, source, law, q, p, (0.0, 1.25), seed, expected, references=OURS, enclosed=enclosed
+        "proved-flock", title, source_text, law, q, p, (0.0, 1.25), seed, expected, references=OURS, enclosed=enclosure
     )
 
 
 def _collision(seed: int = 0) -> Scenario:
     title = "Two agents head on: that they collide is proved"
-    source = (
+    source_text = (
         "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = "
         "1.6 c*. A tube shows them in the other order, so they met: no bound above c* excludes a collision. The start "
         "is fixed."
@@ -40,7 +40,7 @@ def _collision(seed: int = 0) -> Scenario:
     q, p = np.array([[0.0], [1.0]]), np.array([[32.0], [-32.0]])
     expected = verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice")
     more: dict[str, Any] = {"references": OURS, "enclosed": Enclosure(("collision-energy",))}
-    return Scenario("proved-collision", title, source, Algorithm1(), q, p, (0.0, 0.0625), seed, expected, **more)
+    return Scenario("proved-collision", title, source_text, Algorithm1(), q, p, (0.0, 0.0625), seed, expected, **more)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {"proved-flock": _flock_of_three, "proved-collision": _collision}

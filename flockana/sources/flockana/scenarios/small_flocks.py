@@ -23,12 +23,12 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
         return np.array([[speed], [-speed]])
 
     title = f"Two agents head on, with {share:g} c* of energy"
-    source = (
+    source_text = (
         f"Ours: two agents on a line, {apart:g} apart, with equal and opposite velocities, H(0) = {share:g} c*, "
         "Algorithm 1 with the default gains. The start is fixed."
     )
     start, statuses = (q, lazy_array((2, 1), velocities)), verified("energy") | expected
-    return entry(name, title, source, law, lambda seed: start, 3.0, statuses, references=OURS)
+    return entry(name, title, source_text, law, lambda seed: start, 3.0, statuses, references=OURS)
 
 
 def _five_agents(seed: int = 0) -> Scenario:
@@ -37,25 +37,25 @@ def _five_agents(seed: int = 0) -> Scenario:
     q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)
     title = "Five agents: two of them next to one corner of a rhombus"
-    source = (
+    source_text = (
         "Ours, on erratum E3: a rhombus of side d = 7 with two agents at one corner, 0.5 apart, at rest, Algorithm 1 "
         "with c1α = 30, c2α = 20. The two part and all five come near a lattice, which can flex. The start is fixed."
     )
     p = np.zeros((5, 2))
     expected = verified("energy") | inconclusive("lattice-limit-printed")
-    return Scenario("five-agents", title, source, law, q, p, (0.0, 40.0), seed, expected, references=OURS)
+    return Scenario("five-agents", title, source_text, law, q, p, (0.0, 40.0), seed, expected, references=OURS)
 
 
 def _beside_a_sphere(seed: int = 0) -> Scenario:
     title = "Two agents pulled together beside a sphere"
-    source = (
+    source_text = (
         "Ours, on erratum E2: two agents at rest 16 apart, out of each other's range, the γ-agent between them and a "
         "sphere of radius 2 beside it, Algorithm 3 with the default gains. The start is fixed."
     )
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     q, p = np.array([[-6.0, 0.0], [10.0, 0.0]]), np.zeros((2, 2))
     expected = verified("energy") | inconclusive("energy-printed")
-    return Scenario("beside-a-sphere", title, source, law, q, p, (0.0, 1.0), seed, expected, references=OURS)
+    return Scenario("beside-a-sphere", title, source_text, law, q, p, (0.0, 1.0), seed, expected, references=OURS)
 
 
 SCENARIOS: dict[str, Builder] = {

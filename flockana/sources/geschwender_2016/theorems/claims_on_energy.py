@@ -41,12 +41,12 @@ def run_claim(seen: Observed, excess: Callable[[Trajectory], FloatArray], where:
     """Return the claim that the printed energy (true plus excess) never rises; `where` names the run."""
     # A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
     above = rises(printed_energy(seen, excess))
-    peak, true = int(np.argmax(above.lo)), seen.energy
+    peak, true_energy = int(np.argmax(above.lo)), seen.energy
     rise = float(above.mid[peak])
     course = f"rises by {rise:.4g} until t = {seen.t[peak]:.3g}" if above.lo[peak] > 0.0 else "is not seen to rise"
     return judged("printed-run", -above, needs, about="all", computed=rise).described(
         stated="the printed H never rises",
         witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[peak])},
-        detail=f"along a run of {where} the printed H {course}; the true one goes from {true.mid[0]:.4g} to "
-        f"{true.mid[-1]:.4g}",
+        detail=f"along a run of {where} the printed H {course}; the true one goes from {true_energy.mid[0]:.4g} to "
+        f"{true_energy.mid[-1]:.4g}",
     )

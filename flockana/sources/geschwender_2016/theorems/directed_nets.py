@@ -23,11 +23,11 @@ def _undirected() -> Claim:
     generator, target = np.random.default_rng(0), LinearTarget((0.0, 0.0), (1.0, 0.0))
     q, p = generator.uniform(-20.0, 20.0, (40, 2)), generator.normal(0.0, 1.0, (40, 2))
     laws = Algorithm1(), Algorithm2(target=target), Algorithm3(target=target, obstacles=(Sphere((40.0, 0.0), 5.0),))
-    each = []
+    entries = []
     for law in laws:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
-        each.append(float(np.abs(u - again).max() / np.abs(u).max()))
-    off = float(np.max(each))
+        entries.append(float(np.abs(u - again).max() / np.abs(u).max()))
+    off = float(np.max(entries))
     text = f"40 agents with one range for all: the input differs from that of Algorithms 1 to 3 by {off:.1g}"
     return of_state("undirected", _ROUNDING - off, 0.0).described(
         computed=off, stated=f"the same input to {_ROUNDING:g} of the largest", witness={"agents": 40}, detail=text
@@ -53,8 +53,8 @@ def _momentum() -> Claim:
 
 def _own_energy(run: Trajectory) -> FloatArray:
     """Return c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
-    apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
-    return run.law.law.gains.c1_alpha * run.law.alpha.energy(np.abs(apart)) + 0.5 * slip**2
+    displacement, velocity_difference = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
+    return run.law.law.gains.c1_alpha * run.law.alpha.energy(np.abs(displacement)) + 0.5 * velocity_difference**2
 
 
 def _following() -> list[Claim]:
@@ -66,7 +66,7 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     law, run = seen.law, seen.run
     energy = seen.series(lambda run: list(map(partial(law.law.energy, 0.0), run.q, run.p)), floor=seen.floors.work)
     own_energy, rise = seen.series(_own_energy, floor=seen.floors.work), energy[-1] - energy[0]
-    climbed, size = rises(own_energy), float(own_energy.mid[0])
+    energy_rises, size = rises(own_energy), float(own_energy.mid[0])
     swerve = seen.series(lambda run: np.abs(run.p[:, 1, 0] - speed), floor=seen.floors.speed)
     slip = seen.series(lambda run: np.abs(run.p[:, 0, 0] - run.p[:, 1, 0]), floor=2.0 * seen.floors.speed)[-1]
     length = seen.distances([0], [1])[-1, 0] / law.alpha.d
@@ -76,12 +76,12 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
             detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: from start to end H changes by "
             f"{rise.mid:.6g}; ½v² = {0.5 * speed**2:g}",
         ),
-        judged("follower", _NUMERICAL * size - climbed, computed=float(climbed.mid.max())).described(
+        judged("follower", _NUMERICAL * size - energy_rises, computed=float(energy_rises.mid.max())).described(
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own_energy.mid[-1])},
             detail=f"the energy of the follower, relative to its leader, goes from {size:.4g} to "
-            f"{float(own_energy.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way",
+            f"{float(own_energy.mid[-1]):.2g}, and rises by {energy_rises.mid.max():.2g} at most on the way",
         ),
         judged(
             "leader",

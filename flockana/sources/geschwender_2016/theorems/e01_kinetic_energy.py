@@ -12,13 +12,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½."""
     from flockana.symbolic import algorithm1_identity, e1_counterexample, e1_identity
 
-    falling = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))  # and the printed energy climbs
+    falling_pair = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 2.0))  # and the printed energy climbs
     return [
         equal("printed", e1_identity(m=2).residual, disproof=PROOF, stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p").described(
             detail="with the printed H a term -dV/dt remains, which has no definite sign"
         ),
         state_claim(e1_counterexample()),
-        run_claim(falling, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents"),
+        run_claim(falling_pair, lambda run: 0.5 * np.sum(run.p**2, axis=(1, 2)), "two agents"),
         equal("corrected", algorithm1_identity(m=2).residual, proof=PROOF).described(
             stated="d/dt (V + ½ Σ‖p_i‖²) = -c2α pᵀL̂p", detail="with ½ the identity is exact, for every n"
         ),

@@ -63,10 +63,10 @@ def _is_lattice(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> bool 
     """Return whether a limit is an α-lattice; None if undecided."""
     if not limit.converged:
         return None
-    strained = [q for q, end in limit.parts if end.strain > tolerances.lattice]
-    if not strained:
+    strained_states = [q for q, end in limit.parts if end.strain > tolerances.lattice]
+    if not strained_states:
         return True
-    return False if any(_certain_strain(law, q).lo > tolerances.lattice for q in strained) else None
+    return False if any(_certain_strain(law, q).lo > tolerances.lattice for q in strained_states) else None
 
 
 def _shares(law: Algorithm1, limits: dict[int, list[_Limit]], tolerances: Tolerances) -> Claim:
@@ -101,8 +101,8 @@ def _double_agent(law: Algorithm1) -> Claim:
 def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
     """Return a random start's limit of distinct agents with link lengths other than d, at a strict minimum of V."""
     q, end = max(limit.parts, key=lambda part: part[1].strain)
-    certain = end.coincident == 0
-    margin = tolerances.lattice - _certain_strain(law, q) if certain else Enclosure.around(0.0, inf)
+    is_distinct = end.coincident == 0
+    margin = tolerances.lattice - _certain_strain(law, q) if is_distinct else Enclosure.around(0.0, inf)
     return judged("strained", margin, about="all", computed=end.strain).described(
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
         witness={"start": f"random_disc{_STRAINED}", "agents": len(q), "links": end.links},
@@ -147,10 +147,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     starts do not guarantee.)
     """
     law, (n, seed) = Algorithm1(), _STRAINED
-    limits: dict[int, list[_Limit]] = {size: [] for size in _SIZES}
-    for size, start in product(_SIZES, range(_STARTS)):
-        show_part(f"flow {start + 1} of {_STARTS} of {size} agents")
-        limits[size].append(_limit(law, size, start))
+    limits: dict[int, list[_Limit]] = {agent_count: [] for agent_count in _SIZES}
+    for agent_count, start in product(_SIZES, range(_STARTS)):
+        show_part(f"flow {start + 1} of {_STARTS} of {agent_count} agents")
+        limits[agent_count].append(_limit(law, agent_count, start))
     return [
         _shares(law, limits, tolerances),
         _double_agent(law),

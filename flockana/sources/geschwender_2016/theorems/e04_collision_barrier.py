@@ -47,8 +47,8 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     # ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
     z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
-    off = (z - alpha.d_alpha) ** 2
-    ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
+    deviation = (z - alpha.d_alpha) ** 2
+    ratio, error = alpha.psi_alpha(z) / deviation, 1e-13 * alpha.c_star / float(deviation.min())
     slope = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
     return of_state("printed", slope, error, about="all", proof="collisions", computed=slope).described(
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
@@ -96,10 +96,10 @@ def _together(alpha: AlphaInteraction) -> Claim:
     """Return the claim that only small lattices meet Theorem 1's energy hypothesis."""
     rooms, table = [], {}
     for m, q in _LATTICES.items():
-        n, far = len(q), alpha.far_potential
-        rooms.append((n - 1) * far - alpha.potential_energy(alpha.d * q))
-        none = next(k for k in range(2, 100) if energy_floor(alpha, k, m) > (k - 1.5) * far)
-        table[m] = [n, none]
+        n, far_energy = len(q), alpha.far_potential
+        rooms.append((n - 1) * far_energy - alpha.potential_energy(alpha.d * q))
+        agent_count = next(k for k in range(2, 100) if energy_floor(alpha, k, m) > (k - 1.5) * far_energy)
+        table[m] = [n, agent_count]
     return of_state(
         "together",
         float(min(rooms)),
@@ -110,7 +110,7 @@ def _together(alpha: AlphaInteraction) -> Claim:
         witness={"[n of a lattice below, least n without any state], by dimension": table},
         proof="any-potential",
         detail="the best lattices at rest are below this energy up to n = "
-        + ", ".join(f"{n} ({_SPACES[m]}; no state from n = {none} on)" for m, (n, none) in table.items())
+        + ", ".join(f"{n} ({_SPACES[m]}; no state from n = {agent_count} on)" for m, (n, agent_count) in table.items())
         + f", by {min(rooms) / alpha.far_potential:.3g} ψ_α(r_α) at least, left for kinetic energy",
     )
 
@@ -118,9 +118,9 @@ def _together(alpha: AlphaInteraction) -> Claim:
 def _barrier(alpha: AlphaInteraction) -> Claim:
     """Return the claim that min{V : two agents coincide} is above c*, by a lower bound and a search."""
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
-    room = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
+    margin = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())
-    return of_state("barrier", room, _error(alpha, max(_SIZES))).described(
+    return of_state("barrier", margin, _error(alpha, max(_SIZES))).described(
         computed={n: {"together": barrier.together, "ground": barrier.lowest} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         witness="minimised from many starts, an upper bound; the margin is that of a lower bound, which counts pairs",

@@ -37,12 +37,12 @@ def fragments(size: int) -> Iterator[tuple[Site, ...]]:
 
     def grow(chosen: list[Site], untried: list[Site], seen: set[Site]) -> Iterator[tuple[Site, ...]]:
         for k, site in enumerate(untried):
-            grown = [*chosen, site]
-            if len(grown) == size:
-                yield tuple(grown)
+            grown_sites = [*chosen, site]
+            if len(grown_sites) == size:
+                yield tuple(grown_sites)
                 continue
-            fresh = [s for s in (_add(site, step) for step in _STEPS) if s > origin and s not in seen]
-            yield from grow(grown, untried[k + 1 :] + fresh, seen | set(fresh))
+            new_sites = [s for s in (_add(site, step) for step in _STEPS) if s > origin and s not in seen]
+            yield from grow(grown_sites, untried[k + 1 :] + new_sites, seen | set(new_sites))
 
     return grow([], [origin], {origin})  # the least site of each set is the origin
 
@@ -59,17 +59,17 @@ def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
     """Return the numbers of fragments and of non-planar fragments of a size, exactly."""
-    answers: dict[tuple[tuple[int, int], ...], bool] = {}
-    total = bad = 0
+    known_answers: dict[tuple[tuple[int, int], ...], bool] = {}
+    total = failure_count = 0
     for sites in fragments(size):
         total += 1
         edges = site_links(sites)
         if len(edges) < 9:  # K3,3 has nine links, K5 ten
             continue
-        if edges not in answers:
-            answers[edges] = is_planar(size, edges)
-        bad += not answers[edges]
-    return total, bad
+        if edges not in known_answers:
+            known_answers[edges] = is_planar(size, edges)
+        failure_count += not known_answers[edges]
+    return total, failure_count
 
 
 def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerances: Tolerances) -> list[Claim]:

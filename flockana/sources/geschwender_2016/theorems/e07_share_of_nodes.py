@@ -14,16 +14,16 @@ _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and th
 
 def _components(*sizes: int) -> FloatArray:
     """Return rows of agents, connected within each row and out of range between rows."""
-    rows = [_SPACE * k + np.arange(float(size)) for k, size in enumerate(sizes)]
+    rows = [_SPACE * k + np.arange(float(agent_count)) for k, agent_count in enumerate(sizes)]
     return np.concatenate(rows)[:, None]
 
 
 def _share(name: str, share: float, count: int, of: int, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a given number of a total."""
-    stated = f"{count / of:g}" if of == 100 else f"{count}/{of}"
+    stated_value = f"{count / of:g}" if of == 100 else f"{count}/{of}"
     proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
     claim = by_count(name, abs(round(of * share) - count), **proof)
-    return claim.described(computed=share, stated=stated, witness=witness, detail=detail)
+    return claim.described(computed=share, stated=stated_value, witness=witness, detail=detail)
 
 
 @erratum("E7", expected={"refuted": "printed", "verified": "corrected connectivity-1 connectivity-2 share-2"})
@@ -33,20 +33,20 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     where C* = 0.2, as printed.
     """
     # The slides' own examples.
-    few, uneven = "components of 1, 1, 1, 1 and 96 agents", _components(1, 1, 1, 1, 96)
-    both, even = "five components of 20 agents", _components(20, 20, 20, 20, 20)
-    ranks = {few: connectivity(uneven, 1.5), both: connectivity(even, 1.5)}  # which cannot tell the two apart
-    printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
+    few, uneven_split = "components of 1, 1, 1, 1 and 96 agents", _components(1, 1, 1, 1, 96)
+    wording, even = "five components of 20 agents", _components(20, 20, 20, 20, 20)
+    ranks = {few: connectivity(uneven_split, 1.5), wording: connectivity(even, 1.5)}  # which cannot tell the two apart
+    printed, true_value = printed_edge_share(100, links(uneven_split, 1.5)), giant_share(uneven_split, 1.5)
     nodes, edges = giant_share(even, 1.5), printed_edge_share(100, links(even, 1.5))
-    wrong = f"by the printed formula, the share of edges in the giant component, C* is {printed:g}, not 0.96"
+    formula_text = f"by the printed formula, the share of edges in the giant component, C* is {printed:g}, not 0.96"
     text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, as all components are alike"
     five = "five components, whatever their sizes"
     return [
-        _share("printed", printed, 96, 100, few, wrong),
-        _share("corrected", true, 96, 100, few, f"the share of nodes is {true:g}, the example's number"),
+        _share("printed", printed, 96, 100, few, formula_text),
+        _share("corrected", true_value, 96, 100, few, f"the share of nodes is {true_value:g}, the example's number"),
         *(
-            _share(f"connectivity-{k}", C, 95, 99, where, f"C = {round(99.0 * C)}/99 for {where}: {five}")
-            for k, (where, C) in enumerate(ranks.items(), 1)
+            _share(f"connectivity-{k}", C, 95, 99, net_name, f"C = {round(99.0 * C)}/99 for {net_name}: {five}")
+            for k, (net_name, C) in enumerate(ranks.items(), 1)
         ),
-        _share("share-2", nodes, 20, 100, both, text),
+        _share("share-2", nodes, 20, 100, wording, text),
     ]

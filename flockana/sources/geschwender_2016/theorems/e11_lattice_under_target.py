@@ -56,18 +56,18 @@ def _gains(run: Observed) -> Hypothesis:
 def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Return the printed claim, decided by the strain of the certified final minimum."""
     caught = final_basin(seen)
-    room, is_certain = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
+    margin, is_certain = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
     ratio = seen.law.gains.c1_gamma / seen.law.gains.c1_alpha
-    lengths = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
+    length_text = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
     return limit_claim(
         "printed",
         needs,
-        [Certificate(float(room.lo), caught.certificate.text, 0.0)] if is_certain else [],
-        escape=Certificate(float(-room.hi), caught.certificate.text, 0.0) if is_certain else None,
+        [Certificate(float(margin.lo), caught.certificate.text, 0.0)] if is_certain else [],
+        escape=Certificate(float(-margin.hi), caught.certificate.text, 0.0) if is_certain else None,
         computed=end.strain,
         stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
         witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
-        detail=f"with c1γ/c1α = {ratio:.3g} the last state has {'no links' if isnan(end.strain) else lengths}"
+        detail=f"with c1γ/c1α = {ratio:.3g} the last state has {'no links' if isnan(end.strain) else length_text}"
         + ("" if is_certain else f"; {caught.certificate.text}"),
     )
 
@@ -93,15 +93,15 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 def _thresholds(law: Algorithm2) -> Claim:
     """Return the claim that the ratio falls with size: logarithmic brackets lie below each other."""
     brackets = _brackets(law.alpha)
-    about: dict[str, Any] = {
+    claim_details: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
         "witness": "hexagonal patches relaxed by gradient flow, ratio bisected",
     }
     if isinstance(brackets, str):
-        return undecided("threshold", f"no threshold was found: {brackets}", **about)
-    at = Enclosure.between(*np.log(list(brackets.values())).T)
+        return undecided("threshold", f"no threshold was found: {brackets}", **claim_details)
+    log_brackets = Enclosure.between(*np.log(list(brackets.values())).T)
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in brackets.items())
-    return judged("threshold", at[:-1] - at[1:], **about).described(
+    return judged("threshold", log_brackets[:-1] - log_brackets[1:], **claim_details).described(
         computed={n: list(pair) for n, pair in brackets.items()},
         detail=f"ratio c1γ/c1α from which on a hexagonal patch collapses: {table}",
     )

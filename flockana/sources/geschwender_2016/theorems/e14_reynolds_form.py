@@ -28,8 +28,8 @@ def _example() -> Claim:
     """Return the claim on the printed force on the middle agent, before and after a shift of ten lengths."""
     alpha, q = _three()
     here, there = (float(_forces(alpha, q + w, printed=True)[1, 0]) for w in (0.0, _SHIFT * alpha.d))
-    size = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
-    return of_state("translation", -abs(there - here), 16.0 * EPS * size, about="all").described(
+    magnitude = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
+    return of_state("translation", -abs(there - here), 16.0 * EPS * magnitude, about="all").described(
         computed={"here": here, "there": there},
         stated="the force does not depend on where the origin is",
         witness={"q": q.tolist(), "moved by": _SHIFT * alpha.d},
@@ -64,13 +64,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     from flockana.symbolic.errata import reynolds_form
 
-    printed, true = reynolds_form(printed=True), reynolds_form()
+    printed_value, true_value = reynolds_form(printed=True), reynolds_form()
     return [
-        equal("printed", list(printed.residuals), stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻").described(
+        equal("printed", list(printed_value.residuals), stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻").described(
             detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w"
         ),
         _example(),
-        equal("corrected", list(true.residuals)).described(
+        equal("corrected", list(true_value.residuals)).described(
             stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
             detail="for any numbers of positive and negative friends, by sympy",
         ),

@@ -42,8 +42,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False
     (E2): the sum counts every pair twice, and the rate of the surplus has no definite sign.
     """
-    needs = [target_rests(seen.run, any_p_r=False), stays_outside(seen)]
-    by_samples = run_claim(seen, pair_energy, f"{seen.n} agents", needs)
-    if by_samples.status == "refuted":
-        return needs, [by_samples]
-    return needs, [never_rises(seen, needs, rate=_printed_rate, cancels=_cancelling, name="printed-run")]
+    requirements = [target_rests(seen.run, any_p_r=False), stays_outside(seen)]
+    sample_claim = run_claim(seen, pair_energy, f"{seen.n} agents", requirements)
+    if sample_claim.status == "refuted":
+        return requirements, [sample_claim]
+    return requirements, [never_rises(seen, requirements, rate=_printed_rate, cancels=_cancelling, name="printed-run")]

@@ -21,5 +21,5 @@ def theorem(run: Observed, tolerances: Tolerances) -> Checked:
     strained links has an open basin, and λJ strains every lattice of Algorithm 2. A run refutes it where it has come to
     rest at such a minimum.
     """
-    needs = alpha_gain(run)
-    return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]
+    requirements = alpha_gain(run)
+    return requirements, [] if unmet(requirements) else [lattice_limit(run, requirements, tolerances, name="lattice")]

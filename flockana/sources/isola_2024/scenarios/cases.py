@@ -63,20 +63,20 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     """Return the expected statuses of a case; maps have reports only, as the theorems are about flows."""
-    none = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
+    source_claims = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
     if printed and case >= 3:  # the map's orbits part after some 300 steps
-        return none | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
+        return source_claims | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
     if not printed:
-        none |= verified("energy")
+        source_claims |= verified("energy")
     of_the_map = verified if printed else refuted  # in place it adds energy, and has outliers; the flow does not
     if case == 1:
         reports = refuted("source") | verified("source:fragments") | of_the_map("source:top-speed")
         reports |= verified("source:connectivity") | refuted("source:connectivity-as-typeset")
-        return none | ({} if printed else vacuous("os-1")) | reports
+        return source_claims | ({} if printed else vacuous("os-1")) | reports
     if case == 2:
         iv = vacuous("os-3:i", "os-3:ii", "os-3:iii")
         iv |= verified("os-3", "os-3:iv-printed")  # (iv) needs no damping by the γ-agent
-        return none | ({} if printed else iv)
+        return source_claims | ({} if printed else iv)
     source = refuted("source") | of_the_map("source:spikes") | verified("source:connected")
     source |= verified("source:less-connected") if case == 3 else {}
     source |= verified("source:amplitude" if case == 3 else "source:circle") | refuted("source:separated")
@@ -84,40 +84,40 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     theorems = inconclusive("os-3") | verified("os-3:i") | inconclusive("os-3:ii")
     theorems |= verified("os-3:iii", "os-3:iv-printed") | refuted("E12")
     theorems |= verified("E12:predicted", "E12:consistent") | refuted("E12:printed")
-    return none | ({} if printed else theorems) | source
+    return source_claims | ({} if printed else theorems) | source
 
 
 def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: float = 0.0) -> Scenario:
     """Return a case, with optional scaled speed of the γ-agent and offset of the flock."""
     side, end = 50.0 if case <= 2 else 150.0, UPDATES * DT * max(1.0, 1.0 / ensure_positive("speed", speed))
-    continuous = _law(case, speed)
-    law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
+    continuous_law = _law(case, speed)
+    law: Law | DiscreteLaw = MSNDiscretisation(continuous_law, DT) if printed else continuous_law
     q = np.random.default_rng(seed).uniform(0.0, side, (_N, 2))
     q[:, 0] += ensure_finite_scalar("away", away) * _RADIUS
-    how = (
+    description = (
         "as the project ran it: agent by agent in place, with its position update (E9), 539 steps of 0.009 (the first "
         "of its 540 iterations moves nobody)"
         if printed
         else "as a continuous system, over the same 4.851 time units"
     )
     paper = (speed, away) == (1.0, 0.0)
-    changed = (
+    change_text = (
         "" if paper else f" Ours: the γ-agent at {speed:g} times its speed, the flock {away:g} radii to the right."
     )
     name = f"msn-case{case}{'-printed' if printed else ''}"
     title = f"MSN project, case {case}. {_TITLES[case]}{' (its own discretisation)' if printed else ''}"
-    source = (
-        f"MSN project, case {case}, {how}. n = 100 in an area of {side:g} by {side:g} at rest, d = 15, r = 18, "
-        f"ε = 0.1, h = 0.1, a = b = 3. {_SOURCE[case]} The seed is ours.{changed}"
+    source_text = (
+        f"MSN project, case {case}, {description}. n = 100 in an area of {side:g} by {side:g} at rest, d = 15, r = 18, "
+        f"ε = 0.1, h = 0.1, a = b = 3. {_SOURCE[case]} The seed is ours.{change_text}"
     )
     expected = _expected(case, printed=printed) if paper else verified("source:circle")
-    reports = in_source_units(lambda: continuous.scales, REPORTS[case])
+    reports = in_source_units(lambda: continuous_law.scales, REPORTS[case])
     more: dict[str, Any] = {
         "references": _REFERENCES,
         "shipped": {} if not paper or (printed and case >= 3) else _SHIPPED.get(case, {}),
     }
     more["instants"] = tuple(i * DT for i in CAPTURES)
-    return Scenario(name, title, source, law, q, np.zeros_like(q), (0.0, end), seed, expected, reports, **more)
+    return Scenario(name, title, source_text, law, q, np.zeros_like(q), (0.0, end), seed, expected, reports, **more)
 
 
 def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:

@@ -39,8 +39,8 @@ def _agreement(measured: float, stated: float, scatter: float, text: str) -> Cla
 
 @report("connectivity", "rank(A)/n ends at about 0.4")
 def _final_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
-    rank, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
-    text = f"rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
+    rank, true_value = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
+    text = f"rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true_value:.2f}"
     return _agreement(rank, 0.4, _SCATTER[50.0], text)
 
 
@@ -54,9 +54,9 @@ def _final_rank_as_typeset(run: Trajectory, tolerances: Tolerances) -> Claim:
 @report("unit-gains", "with unit gains it ends at about 0.7")
 def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     slow = Gains(c1_alpha=1.0, c2_alpha=1.0)
-    was = run.law
-    printed = isinstance(was, MSNDiscretisation)
-    law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
+    run_law = run.law
+    is_printed_map = isinstance(run_law, MSNDiscretisation)
+    law = replace(run_law, law=replace(run_law.law, gains=slow)) if is_printed_map else replace(run_law, gains=slow)
     rank = _rank(rerun(run, law, **same_accuracy(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
     return _agreement(rank, 0.7, _SCATTER[1.0], text)
@@ -78,8 +78,8 @@ def _connected_from(text: str, iteration: float, stated: str) -> Report:
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         apart = run.t[run.metric("connectivity") < 1.0]
         last = float(apart[-1]) / DT if apart.size else -1.0
-        when = "connected at every sample" if last < 0.0 else f"last not connected at iteration {last:.1f}"
-        return finding(iteration - last, when, computed=last, stated=stated)
+        time_text = "connected at every sample" if last < 0.0 else f"last not connected at iteration {last:.1f}"
+        return finding(iteration - last, time_text, computed=last, stated=stated)
 
     return check
 
@@ -99,8 +99,8 @@ def _swing(run: Trajectory, tolerances: Tolerances) -> Claim:
 @report("fastest", "it is fastest at the target")
 def _fastest_at_target(run: Trajectory, tolerances: Tolerances) -> Claim:
     k = int(np.argmax(lengths(run.p).mean(axis=1)))
-    away = np.linalg.norm(run.q.mean(axis=1) - run.law.target.position(0.0), axis=1)
-    share = float(away[k] / away.max())
+    distance = np.linalg.norm(run.q.mean(axis=1) - run.law.target.position(0.0), axis=1)
+    share = float(distance[k] / distance.max())
     text = (
         f"mean speed peaks at t = {run.t[k]:.3g}, with the centre of mass at {share:.2g} of its swing from the target"
     )
@@ -126,20 +126,20 @@ def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
     norms = lengths(late.p).max(axis=1)
     flock = float(np.linalg.norm(late.p.mean(axis=1), axis=1).mean())
     ratio, k = float(norms.max()) / flock, int(np.argmax(norms))
-    apart = float((late.metric("connectivity") < 1.0).mean())
+    split_share = float((late.metric("connectivity") < 1.0).mean())
     text = (
         f"after iteration 50 the fastest agent reaches {ratio:.3g} times the flock's mean speed (t = {late.t[k]:.3g}); "
-        f"the net is not connected at {apart:.0%} of those samples"
+        f"the net is not connected at {split_share:.0%} of those samples"
     )
     return finding(ratio - _SPIKE, text, computed=ratio, stated="about 4")
 
 
 @report("anticlockwise", "it turns counterclockwise")
 def _anticlockwise(run: Trajectory, tolerances: Tolerances) -> Claim:
-    late = run.window(0.5 * float(run.t[-1]), float(run.t[-1]))
-    x, v = late.q.mean(axis=1) - np.array(CENTRE), late.p.mean(axis=1)
-    turning = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1))
-    worst = float(turning.min())
+    late_run = run.window(0.5 * float(run.t[-1]), float(run.t[-1]))
+    x, v = late_run.q.mean(axis=1) - np.array(CENTRE), late_run.p.mean(axis=1)
+    turning_rates = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1))
+    worst = float(turning_rates.min())
     text = f"sine of the angle from radius to velocity of the centre of mass is {worst:.2f} or more in the second half"
     return finding(worst, text, computed=worst, stated="> 0")
 
@@ -169,16 +169,16 @@ def _less_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the project's connectivity is 1 at every sample."""
     ranks = [_rank(run, k) for k in range(len(run.t))]
-    below = sum(rank < _FULL for rank in ranks)
+    deficient_count = sum(rank < _FULL for rank in ranks)
     text = f"rank(A)/n with a zero diagonal is {min(ranks):.3g} or more at all {len(ranks)} samples"
-    return finding(0.5 - below, text, computed=min(ranks), stated="1.00 throughout")
+    return finding(0.5 - deficient_count, text, computed=min(ranks), stated="1.00 throughout")
 
 
 @report("width", "the flock is about as wide as the sine's period")
 def _width(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the flock is about one period wide, 0.5 to 1.5."""
-    late = run.window(50 * DT, float(run.t[-1]))
-    width = float(np.ptp(late.q[:, :, 0], axis=1).mean())
+    late_run = run.window(50 * DT, float(run.t[-1]))
+    width = float(np.ptp(late_run.q[:, :, 0], axis=1).mean())
     ratio = width / _PERIOD
     text = f"the flock is {width:.3g} wide in the mean, {ratio:.2f} of the sine's period of {_PERIOD:g}"
     return finding(0.5 - abs(ratio - 1.0), text, computed=ratio, stated="about 1 (0.5 to 1.5)")

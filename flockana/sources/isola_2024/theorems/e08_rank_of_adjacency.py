@@ -23,8 +23,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # A path of three agents: connected, so C must be 1.
     q = [[0.0], [1.0], [2.0]]
-    printed, true = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
+    printed_value, true_value = printed_rank_connectivity(3, links(q, 1.5)), connectivity(q, 1.5)
     return [
-        _rank("printed", printed, 3, f"rank(A)/n is {printed:.4g} on a connected path", disproof=_PROOF),
-        _rank("corrected", true, 2, f"rank(L)/(n - 1) of the Laplacian is {true:.4g}", proof=_PROOF),
+        _rank("printed", printed_value, 3, f"rank(A)/n is {printed_value:.4g} on a connected path", disproof=_PROOF),
+        _rank("corrected", true_value, 2, f"rank(L)/(n - 1) of the Laplacian is {true_value:.4g}", proof=_PROOF),
     ]

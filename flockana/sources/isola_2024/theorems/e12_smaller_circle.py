@@ -18,21 +18,21 @@ from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, cond
 
 def measured_ratio(seen: Observed) -> Enclosure:
     """Return the measured ratio of a run, with the fit residual and the second run as error."""
-    (ratio, left), (other, _) = response_ratio(seen.run), response_ratio(seen.other)
+    (ratio, left), (second_ratio, _) = response_ratio(seen.run), response_ratio(seen.other)
     target: Any = seen.law.target
     floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))
-    return Enclosure.around(ratio, np.inf if seen.doubt else left + DOUBT * abs(ratio - other) + floor)
+    return Enclosure.around(ratio, np.inf if seen.doubt else left + DOUBT * abs(ratio - second_ratio) + floor)
 
 
 def _hypotheses(run: Trajectory) -> list[Hypothesis]:
-    applies = type(run.law) is Algorithm2 and not run.law.gains.per_agent
-    kind = f"{run.law.title}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
-    path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
+    is_applicable = type(run.law) is Algorithm2 and not run.law.gains.per_agent
+    kind = f"{run.law.title}{', gains per agent' if not is_applicable and type(run.law) is Algorithm2 else ''}"
+    path, factor = path_and_factor(run.law.target) if is_applicable else (None, 1.0)
     swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
     detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
-    drag = float(run.law.gains.c2_gamma) if applies else 0.0
+    drag = float(run.law.gains.c2_gamma) if is_applicable else 0.0
     return [
-        condition("Algorithm 2 is applied, one gain for all", applies, detail=kind),
+        condition("Algorithm 2 is applied, one gain for all", is_applicable, detail=kind),
         condition("the γ-agent moves on a circle or a sine", swings, detail=detail),
         condition("its p_r is not dq_r/dt", factor != 1.0, detail=detail),
         condition("c2γ > 0: the start is forgotten", drag > 0.0, drag),
@@ -68,17 +68,17 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     assert isinstance(path, SineTarget | CircleTarget)
     omega, gains = 2.0 * pi * path.frequency, law.gains
     consistent = observed(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
-    handed, true = measured_ratio(seen), measured_ratio(consistent)
-    slow = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
+    stated_ratio, true = measured_ratio(seen), measured_ratio(consistent)
+    is_slow_circle = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
     detail = f"with the p_r that was handed over, {factor:g} dq_r/dt"
     return needs, [
-        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
+        _agrees("predicted", stated_ratio, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
         _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
-        judged("printed", 1.0 - true, needs, disproof="tracking-gain" if slow else None).described(
+        judged("printed", 1.0 - true, needs, disproof="tracking-gain" if is_slow_circle else None).described(
             computed=float(true.mid),
             stated="the ratio is below 1 because the γ-agent turns",
-            witness={"handed p_r": float(handed.mid), "true p_r": float(true.mid)},
+            witness={"handed p_r": float(stated_ratio.mid), "true p_r": float(true.mid)},
             detail=f"the same turning γ-agent with its true p_r is followed at {true.mid:.4f} of its size; with the "
-            f"p_r that was handed over, at {handed.mid:.4f}",
+            f"p_r that was handed over, at {stated_ratio.mid:.4f}",
         ),
     ]

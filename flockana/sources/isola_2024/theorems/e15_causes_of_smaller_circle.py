@@ -58,19 +58,19 @@ def _condition() -> Any:
 
 def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
     """Return the claim that the ratios decrease."""
-    values, listed = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
-    detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listed}"
+    values, listing = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
+    detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listing}"
     drops = stacked([a - b for a, b in pairwise(ratios)])
     return judged(name, drops, computed=values, stated=stated, detail=detail, **proof)
 
 
 def _first_grows(ratios: list[Enclosure]) -> Claim:
     """Return the claim that the ratios do not all decrease."""
-    listed = ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
+    listing = ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     return judged("first-grows", stacked([b - a for a, b in pairwise(ratios)]).max(), proof=_PROOF).described(
         computed=_values(ratios),
         stated="with the true p_r the circle first grows with the speed",
-        detail=f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed and its true p_r the ratio is {listed}",
+        detail=f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed and its true p_r the ratio is {listing}",
     )
 
 
@@ -79,11 +79,11 @@ def _values(ratios: list[Enclosure]) -> list[float]:
 
 
 def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) -> Claim:
-    off = stacked([abs(ratio / gain - 1.0) for ratio, gain in zip(ratios, gains, strict=True)])
-    return judged("predicted", tolerances.agreement - off, computed=_values(ratios)).described(
+    deviation = stacked([abs(ratio / gain - 1.0) for ratio, gain in zip(ratios, gains, strict=True)])
+    return judged("predicted", tolerances.agreement - deviation, computed=_values(ratios)).described(
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
         detail="the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
-        f"{off.mid.max():.1g} at most",
+        f"{deviation.mid.max():.1g} at most",
     )
 
 

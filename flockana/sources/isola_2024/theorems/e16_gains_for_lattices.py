@@ -34,9 +34,9 @@ def _least_strain(n: int, contact: float) -> Enclosure:
     rng = np.random.default_rng(0)
     starts = [perturbed(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
     starts += [rng.uniform(-_ALPHA.d, _ALPHA.d, (n, 2)) for _ in range(_STARTS - 1)]
-    ends = [_measured(resting_place(_ALPHA, 1.0, q), 1.0, contact) for q in starts]
+    end_states = [_measured(resting_place(_ALPHA, 1.0, q), 1.0, contact) for q in starts]
     # two agents move apart by √2 of the distance to the minimum at most
-    return stacked([Enclosure.around(end.strain, sqrt(2.0) * end.distance) for end in ends]).min()
+    return stacked([Enclosure.around(end.strain, sqrt(2.0) * end.distance) for end in end_states]).min()
 
 
 def _pair_ratio(strain: float) -> float:

@@ -14,10 +14,10 @@ from flockana.environment.obstacles import Sphere
 
 def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return least signed distances from a ball along straight paths, exact, shape (N,)."""
-    way, away = end - start, np.array(ball.centre) - start
-    length2 = np.sum(way**2, axis=1)
-    share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
-    nearest = np.clip(share, 0.0, 1.0)[:, None] * way - away
+    direction, away = end - start, np.array(ball.centre) - start
+    length2 = np.sum(direction**2, axis=1)
+    share = np.divide(np.sum(direction * away, axis=1), length2, out=np.zeros(len(direction)), where=length2 > 0.0)
+    nearest = np.clip(share, 0.0, 1.0)[:, None] * direction - away
     return np.linalg.norm(nearest, axis=1) - ball.radius
 
 

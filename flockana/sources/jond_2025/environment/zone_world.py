@@ -118,7 +118,7 @@ class ZoneWorld(ShortRepr):
         """
         solids = [o.enclosing_circle() if buffer and isinstance(o, SimplePolygon) else o for o in self.obstacles]
         edges, starts = _chained([o.edges for o in solids if isinstance(o, SimplePolygon)])
-        territory, of_alien = _chained(
+        territory, territory_starts = _chained(
             [np.empty((0, 4)) if a.territory is None else a.territory.edges for a in self.aliens]
         )
         balls = [[*o.centre, o.radius] for o in solids if isinstance(o, Sphere)]
@@ -129,7 +129,7 @@ class ZoneWorld(ShortRepr):
             np.array(balls).reshape(-1, m + 1),
             np.array(box),
             territory,
-            of_alien,
+            territory_starts,
             np.array([a.detection for a in self.aliens]),
             np.array([a.speed for a in self.aliens]),
         )
@@ -148,25 +148,25 @@ class ZoneWorld(ShortRepr):
         taken : ndarray of int, shape (K,)
             Samples from which a way leads to the next one.
         """
-        flat, start, end = (x.reshape(-1, q.shape[2]) for x in (q, q[taken], q[taken + 1]))
-        at, on_way = np.full(q.shape[:2], np.inf), np.full((len(taken), q.shape[1]), np.inf)
+        flat_positions, start, end = (x.reshape(-1, q.shape[2]) for x in (q, q[taken], q[taken + 1]))
+        at, way_clearance = np.full(q.shape[:2], np.inf), np.full((len(taken), q.shape[1]), np.inf)
         for o in self.obstacles:
-            rows = o.clearance(flat).reshape(at.shape)
+            rows = o.clearance(flat_positions).reshape(at.shape)
             if isinstance(o, Sphere):
                 bound = ball_clearance_along(o, start, end)
             else:
                 bound = o.clearance_along(start, end, (rows[taken].ravel(), rows[taken + 1].ravel()))
-            at, on_way = np.minimum(at, rows), np.minimum(on_way, bound.reshape(on_way.shape))
-        return at, on_way
+            at, way_clearance = np.minimum(at, rows), np.minimum(way_clearance, bound.reshape(way_clearance.shape))
+        return at, way_clearance
 
     def check_start(self, q: FloatArray) -> None:
         """Raise if an agent begins outside the box, in an obstacle, or at an alien."""
-        if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
-            i = int(np.argmin(inside))
+        if self.box is not None and (box_clearance := self.box.clearance(q)).min() < 0.0:
+            i = int(np.argmin(box_clearance))
             raise ArgumentError(f"q[{i}] = {q[i]}: expected a point of {self.box}")
         for k, obstacle in enumerate(self.obstacles):
-            if (free := obstacle.clearance(q)).min() <= 0.0:
-                i = int(np.argmin(free))
+            if (start_clearances := obstacle.clearance(q)).min() <= 0.0:
+                i = int(np.argmin(start_clearances))
                 raise ArgumentError(f"q[{i}] = {q[i]}: expected a point outside obstacle {k}, {obstacle}")
         for k, alien in enumerate(self.aliens):
             apart = np.linalg.norm(q - np.array(alien.start), axis=1)
@@ -179,4 +179,4 @@ class ZoneWorld(ShortRepr):
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
     """Return the concatenated rows of all parts, and the start index of each part."""
-    return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])
+    return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(component) for component in parts)])

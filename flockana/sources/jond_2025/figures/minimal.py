@@ -13,8 +13,8 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
         "As in Fig. 10: distances of all pairs (greatest, median and least), which the paper says become constant; "
         "speeds of the agents; C = 1 where all move one way."
     )
-    apart = Chart("distances of pairs (length)", trajectory.t, profile_curves(trajectory))
-    charts = [apart, speeds(trajectory), measured(trajectory, "coordination")]
+    distance_chart = Chart("distances of pairs (length)", trajectory.t, profile_curves(trajectory))
+    charts = [distance_chart, speeds(trajectory), measured(trajectory, "coordination")]
     return (*flock_pictures(trajectory), Picture(caption, panels(charts)))
 
 

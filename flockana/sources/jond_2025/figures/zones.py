@@ -64,8 +64,8 @@ def _middle(run: Trajectory) -> int:
     counts = component_counts(run)
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())
-    near = has_metric(run, "obstacle_clearance")
-    return int(run.metric("obstacle_clearance").argmin()) if near else len(run.t) // 2
+    has_clearance = has_metric(run, "obstacle_clearance")
+    return int(run.metric("obstacle_clearance").argmin()) if has_clearance else len(run.t) // 2
 
 
 PICTURES = {ZoneFlocking: pictures}

@@ -67,13 +67,13 @@ class ZoneRadii(ShortRepr):
         watched = self.s is not None
         object.__setattr__(self, "c", self.r if self.c is None else self.c)
         normalise(self, per_agent, "r", "a", "c", *("s" if watched else ""))
-        sizes = {name: len(v) for name in "rcas" if isinstance(v := getattr(self, name), tuple)}
-        if len(set(sizes.values())) > 1:
-            raise ArgumentError(f"numbers of radii {sizes}: expected one number each, or one for each agent")
-        r, c, a, s = self.arrays(max(sizes.values(), default=1))
-        bad = ~((r <= c) & (c < a) & ((a < s) | (not watched)))
-        if bad.any():
-            i = int(np.argmax(bad))
+        counts = {name: len(v) for name in "rcas" if isinstance(v := getattr(self, name), tuple)}
+        if len(set(counts.values())) > 1:
+            raise ArgumentError(f"numbers of radii {counts}: expected one number each, or one for each agent")
+        r, c, a, s = self.arrays(max(counts.values(), default=1))
+        is_disordered = ~((r <= c) & (c < a) & ((a < s) | (not watched)))
+        if is_disordered.any():
+            i = int(np.argmax(is_disordered))
             text = f"r = {r[i]:g}, c = {c[i]:g}, a = {a[i]:g}" + (f", s = {s[i]:g}" if watched else "")
             raise ArgumentError(f"{text}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
@@ -180,7 +180,7 @@ def _check_sums(name: str, value: Table) -> None:
     if value == 0.0:
         raise ArgumentError(f"{name} {remedy}")
     if isinstance(value, tuple):
-        others = np.array(value) * (1.0 - np.eye(len(value)))
-        empty = others.sum(axis=1) == 0.0
-        if empty.any() and len(value) > 1:
-            raise ArgumentError(f"{name}[{int(np.argmax(empty))}] {remedy}")
+        neighbour_weights = np.array(value) * (1.0 - np.eye(len(value)))
+        is_empty = neighbour_weights.sum(axis=1) == 0.0
+        if is_empty.any() and len(value) > 1:
+            raise ArgumentError(f"{name}[{int(np.argmax(is_empty))}] {remedy}")

@@ -28,12 +28,12 @@ class Cells(NamedTuple):
 def sort_into_cells(q, reach):
     """Return the cells of a flock; four empty arrays for small flocks, which test all agents."""
     n, m = q.shape
-    none = np.empty(0, np.int64)
+    no_agents = np.empty(0, np.int64)
     if n <= _FEW:
-        return Cells(none, none, none, none)
+        return Cells(no_agents, no_agents, no_agents, no_agents)
     order, start, rows = sort_into_grid(q, reach)
     if start.size <= _CROWDED * 3**m:
-        return Cells(none, none, none, none)
+        return Cells(no_agents, no_agents, no_agents, no_agents)
     cell = np.empty(n, np.int64)
     for c in range(start.size - 1):
         for k in range(start[c], start[c + 1]):
@@ -49,15 +49,15 @@ def gather(i, q, reach, cells, near):
         for k in range(n):  # an instant before this one may have had cells
             near[k] = k
         return n
-    count, c, most = 0, cells.cell[i], reach * reach * _SLACK
+    count, c, squared_reach = 0, cells.cell[i], reach * reach * _SLACK
     for row in range(-cells.rows.size, cells.rows.size + 1):
-        to = 0 if row == 0 else cells.rows[row - 1] if row > 0 else -cells.rows[-row - 1]
-        for k in range(cells.start[c + to - 1], cells.start[c + to + 2]):
+        first_cell = 0 if row == 0 else cells.rows[row - 1] if row > 0 else -cells.rows[-row - 1]
+        for k in range(cells.start[c + first_cell - 1], cells.start[c + first_cell + 2]):
             j, d2 = cells.order[k], 0.0
             for axis in range(m):
                 d2 += (q[j, axis] - q[i, axis]) ** 2
             near[count] = j
-            count += d2 <= most
+            count += d2 <= squared_reach
     _sort(near, count)
     return count
 
@@ -70,9 +70,9 @@ def _sort(near, count):
         gap = 3 * gap + 1
     while gap > 0:
         for k in range(gap, count):
-            j, at = near[k], k
-            while at >= gap and near[at - gap] > j:
-                near[at] = near[at - gap]
-                at -= gap
-            near[at] = j
+            j, insert_index = near[k], k
+            while insert_index >= gap and near[insert_index - gap] > j:
+                near[insert_index] = near[insert_index - gap]
+                insert_index -= gap
+            near[insert_index] = j
         gap //= 3

@@ -49,18 +49,18 @@ def _directed(q, first, second, square):
 
 def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Return (head, tail) of every directed edge: agent head[e] perceives agent tail[e] within its own radius."""
-    reach, square = float(radius.max()) * _SLACK, radius * radius
-    parts = [_directed(q, i, j, square) for i, j in pair_blocks(q, reach)]
+    reach, squared_value = float(radius.max()) * _SLACK, radius * radius
+    parts = [_directed(q, i, j, squared_value) for i, j in pair_blocks(q, reach)]
     if len(parts) == 1:
         return parts[0]
-    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+    return np.concatenate([component[0] for component in parts]), np.concatenate([component[1] for component in parts])
 
 
 @kernel
 def edge_forces(q, p, head, tail, mu, rho, align, u):
     """Add μ (1 − ρ/‖x‖) x + a (p_j − p_i) of each edge, x = q_j − q_i, to u_i; return Σ a ‖p_j − p_i‖² over edges."""
     # coincident agents have no bearing: their edge contributes the alignment only
-    dissipated = 0.0
+    dissipated_power = 0.0
     m = q.shape[1]
     for e in range(head.size):
         i, j = head[e], tail[e]
@@ -71,8 +71,8 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
         w = mu[e] * (1.0 - rho[e] / np.sqrt(s2)) if s2 > 0.0 else 0.0
         for c in range(m):
             u[i, c] += w * (q[j, c] - q[i, c]) + align[e] * (p[j, c] - p[i, c])
-        dissipated += align[e] * v2
-    return dissipated
+        dissipated_power += align[e] * v2
+    return dissipated_power
 
 
 @kernel
@@ -93,8 +93,8 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
         i, j = np.uint64(first[k]), np.uint64(second[k])
         s2 = square_between(q, i, j)
         s = np.sqrt(s2)
-        for way in range(2):
-            head, tail = (i, j) if way == 0 else (j, i)
+        for direction in range(2):
+            head, tail = (i, j) if direction == 0 else (j, i)
             if s2 <= square[head]:
                 w = mu * (1.0 - rho[head] / s) if s2 > 0.0 else 0.0
                 for c in range(m):
@@ -103,17 +103,17 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
 
 def perceived_forces(q: FloatArray, p: FloatArray, edges: EqualEdges, u: FloatArray) -> None:
     """Add to u the sum of `edge_forces` over `perceived_edges` of equal weights, without listing the edges."""
-    radius, spacing, shared, mu, sigma, normalised = edges
-    reach, square, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
+    radius, spacing, common_ranges, mu, sigma, normalised_weights = edges
+    reach, squared_value, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
     parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
-    if shared or normalised:
+    if common_ranges or normalised_weights:
         for i, j in parts:
-            _count(q, i, j, square, count)
-    total = sigma * count if normalised else np.ones(len(q))
-    align = np.divide(sigma, total, out=np.zeros(len(q)), where=total > 0.0)
-    rho = spacing * count if shared else spacing
+            _count(q, i, j, squared_value, count)
+    total = sigma * count if normalised_weights else np.ones(len(q))
+    align_weights = np.divide(sigma, total, out=np.zeros(len(q)), where=total > 0.0)
+    rho = spacing * count if common_ranges else spacing
     for i, j in parts:
-        _pull(q, p, i, j, square, mu, rho, align, u)
+        _pull(q, p, i, j, squared_value, mu, rho, align_weights, u)
 
 
 @kernel
@@ -121,9 +121,9 @@ def _squares(x, j, s2):
     """Return squared distances of all agents from agent j; coordinates (m, n)."""
     s2[:] = 0.0
     for c in range(x.shape[0]):
-        here, there = x[c], x[c, j]
+        coordinate, neighbour_coordinate = x[c], x[c, j]
         for i in range(s2.size):
-            s2[i] += (there - here[i]) ** 2
+            s2[i] += (neighbour_coordinate - coordinate[i]) ** 2
 
 
 @kernel
@@ -167,20 +167,20 @@ def _pull_all(x, v, square, mu, rho, align, s2, w, u):
 @kernel
 def _many_steps(x, v, square, edges, dt, steps):
     m, n = x.shape
-    _, spacing, shared, mu, sigma, normalised = edges
+    _, spacing, common_ranges, mu, sigma, normalised_weights = edges
     qs, ps, us = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     count, s2, w, u = np.empty(n), np.empty(n), np.empty(n), np.empty((m, n))
-    rho, align = spacing.copy(), np.full(n, sigma)
+    rho, align_weights = spacing.copy(), np.full(n, sigma)
     for k in range(steps):
-        if shared or normalised:
+        if common_ranges or normalised_weights:
             _numbers(x, square, s2, count)
         for i in range(n):
-            if shared:
+            if common_ranges:
                 rho[i] = spacing[i] * count[i]
-            if normalised:
+            if normalised_weights:
                 total = sigma * count[i]
-                align[i] = sigma / total if total > 0.0 else 0.0
-        _pull_all(x, v, square, mu, rho, align, s2, w, u)
+                align_weights[i] = sigma / total if total > 0.0 else 0.0
+        _pull_all(x, v, square, mu, rho, align_weights, s2, w, u)
         for i in range(n):
             for c in range(m):
                 v[c, i] += dt * u[c, i]
@@ -195,7 +195,7 @@ def semi_implicit_steps(
     """Return semi-implicit Euler steps of few agents: q, p after each and u before, (steps, n, m)."""
     reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter
-    square = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
+    squared_value = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
     x, v = q.T.copy(), p.T.copy()
-    stepped: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, square, edges, dt, steps)
-    return stepped
+    stepped_law: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, squared_value, edges, dt, steps)
+    return stepped_law

@@ -18,8 +18,8 @@ def _pairs(q: FloatArray, reach: float) -> tuple[IndexArray, IndexArray, FloatAr
 def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> FloatArray:
     """Return the mean numbers of agents in an agent's zones of repulsion, conflict, attraction, (T, n, m) -> (T, 3)."""
     counts = np.zeros((len(q), 3))
-    for at, count in zip(q, counts, strict=True):
-        i, j, d = _pairs(at, float(a.max()))
+    for positions, count in zip(q, counts, strict=True):
+        i, j, d = _pairs(positions, float(a.max()))
         for agent in (i, j):
             zone = np.add(d > r[agent], d > c[agent], dtype=np.int64)
             count += np.bincount(zone[d <= a[agent]], minlength=3)
@@ -29,10 +29,10 @@ def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> F
 def fragments(q: FloatArray, a: FloatArray) -> npt.NDArray[np.int64]:
     """Return (components, agents in the largest) over time, (T, 2), with links by the attraction zone."""
     counts = np.zeros((len(q), 2), np.int64)
-    for at, count in zip(q, counts, strict=True):
-        (i, j, d), parent = _pairs(at, float(a.max())), np.arange(q.shape[1], dtype=np.int32)
-        linked = d <= np.maximum(a[i], a[j])
-        unite(parent, i[linked], j[linked])
+    for positions, count in zip(q, counts, strict=True):
+        (i, j, d), parent = _pairs(positions, float(a.max())), np.arange(q.shape[1], dtype=np.int32)
+        is_linked = d <= np.maximum(a[i], a[j])
+        unite(parent, i[is_linked], j[is_linked])
         sizes = np.bincount(labelled(parent))
         count[:] = sizes.size, sizes.max()
     return counts

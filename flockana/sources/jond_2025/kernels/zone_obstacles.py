@@ -50,16 +50,16 @@ def to_segment(x, y, ax, ay, bx, by):
 @kernel
 def to_boundary(x, y, edges, first, last):
     """Return (vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
-    best, gx, gy, inside = inf, 0.0, 0.0, False
+    least_square, gx, gy, is_inside = inf, 0.0, 0.0, False
     for k in range(first, last):
         ax, ay, bx, by = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
         ux, uy = to_segment(x, y, ax, ay, bx, by)
         s2 = ux * ux + uy * uy
-        if s2 < best:
-            best, gx, gy = s2, ux, uy
+        if s2 < least_square:
+            least_square, gx, gy = s2, ux, uy
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
-            inside = not inside
-    return gx, gy, inside
+            is_inside = not is_inside
+    return gx, gy, is_inside
 
 
 @kernel
@@ -71,9 +71,9 @@ def _in_zone(along, across, depth, half):
 @kernel
 def _crosses(zone, edge, literal):
     """Return whether a side of a triangular zone meets a segment; `literal` tests the sides at the agent only."""
-    (x, y, hx, hy, depth, half), (cx, cy, dx, dy) = zone, edge
+    (x, y, hx, hy, depth, half_width), (cx, cy, dx, dy) = zone, edge
     ax, ay = x + depth * hx, y + depth * hy
-    rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
+    rx, ry, lx, ly = x + half_width * hy, y - half_width * hx, x - half_width * hy, y + half_width * hx
     if segments_meet(rx, ry, lx, ly, cx, cy, dx, dy):
         return True
     if literal:
@@ -84,8 +84,8 @@ def _crosses(zone, edge, literal):
 @kernel
 def _holds(zone, px, py):
     """Return whether a triangular zone contains a point."""
-    x, y, hx, hy, depth, half = zone
-    return _in_zone((px - x) * hx + (py - y) * hy, abs((px - x) * hy - (py - y) * hx), depth, half)
+    x, y, hx, hy, depth, half_width = zone
+    return _in_zone((px - x) * hx + (py - y) * hy, abs((px - x) * hy - (py - y) * hx), depth, half_width)
 
 
 @kernel
@@ -101,10 +101,10 @@ def _add_push(gx, gy, c, inside, choices, out):
 @kernel
 def _edge_terms(zone, c, world, first, last, inside, choices, out):
     """Add one term for each edge of a polygon that the zone meets."""
-    literal = choices.trigger == 1
+    is_literal = choices.trigger == 1
     for k in range(first, last):
         edge = (world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3])
-        if _crosses(zone, edge, literal) or (not literal and _holds(zone, edge[0], edge[1])):
+        if _crosses(zone, edge, is_literal) or (not is_literal and _holds(zone, edge[0], edge[1])):
             gx, gy = to_segment(zone[0], zone[1], edge[0], edge[1], edge[2], edge[3])
             _add_push(gx, gy, c, inside, choices, out)
 
@@ -147,7 +147,7 @@ def push(distance, c, inside, choices):
 @kernel
 def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`."""
-    m, buffer, outward, literal = x.size, choices.obstacle_zone == 1, choices.inside == 0, choices.trigger == 1
+    m, buffer, outward, is_literal = x.size, choices.obstacle_zone == 1, choices.inside == 0, choices.trigger == 1
     for k in range(m):
         out[k] = 0.0
     for o in range(world.starts.size - 1):
@@ -157,10 +157,10 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         s2 = gx * gx + gy * gy
         if s2 == 0.0 or (s2 > (depth + half) ** 2 and not inside):
             continue
-        if choices.polygons == 1 and not (inside and outward and not literal):  # (21); out of one the nearest leads
+        if choices.polygons == 1 and not (inside and outward and not is_literal):  # (21); out of one the nearest leads
             if moving:
                 _edge_terms(zone, c, world, first, last, inside, choices, out)
-        elif (inside and not literal) or (moving and zone_meets_polygon(zone, world.edges, first, last, literal)):
+        elif (inside and not is_literal) or (moving and zone_meets_polygon(zone, world.edges, first, last, is_literal)):
             _add_push(gx, gy, c, inside, choices, out)
     for o in range(world.balls.shape[0]):
         s2, along = 0.0, 0.0
@@ -173,7 +173,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         inside = apart < radius
         if apart == 0.0 or apart == radius:
             continue
-        is_met = moving and zone_meets_ball(along, across, depth, half, radius, literal)
+        is_met = moving and zone_meets_ball(along, across, depth, half, radius, is_literal)
         if inside or (apart - radius <= c if buffer else is_met):
             # b points away from the centre where the agent is inside
             sign = -1.0 if inside else 1.0
@@ -186,7 +186,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
 @kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one push term for each wall within the zone, or for the nearest wall."""
-    buffer, nearest, close = choices.obstacle_zone == 1, choices.walls == 1, inf
+    buffer, nearest, is_close = choices.obstacle_zone == 1, choices.walls == 1, inf
     axis, force = -1, 0.0
     for k in range(x.size):
         for side in range(2):
@@ -197,12 +197,12 @@ def _walls(x, h, moving, depth, half, c, box, choices, out):
                 reach = max(0.0, depth * normal * h[k], half * sqrt(max(0.0, 1.0 - h[k] * h[k])))
             if not (distance <= c if buffer else distance < reach or distance < 0.0):
                 continue
-            beyond = distance < 0.0
-            toward = -normal if beyond else normal
-            term = push(abs(distance), c, beyond, choices) * toward
+            is_outside = distance < 0.0
+            wall_direction = -normal if is_outside else normal
+            term = push(abs(distance), c, is_outside, choices) * wall_direction
             if not nearest:
                 out[k] += term
-            elif distance < close:
-                close, axis, force = distance, k, term
+            elif distance < is_close:
+                is_close, axis, force = distance, k, term
     if axis >= 0:
         out[axis] += force

@@ -143,7 +143,7 @@ def _neighbours(i, near, flock, step, rules, out):
     """
     q, p, a, zones, settings = flock.q, flock.p, flock.reach[i], rules.zones, rules.settings
     m, bearing = q.shape[1], rules.choices.form == 1
-    r, c, nearest, chance = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
+    r, c, nearest, chance_weight = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
     total_c, total_a = 0.0, 0.0
     for j in near:
         if j == i:
@@ -154,7 +154,7 @@ def _neighbours(i, near, flock, step, rules, out):
             continue
         if d <= c:
             w = _weight(zones.separation, i, j) * (d - c)
-            if chance:
+            if chance_weight:
                 w *= _noise_factor(settings, step, i, j, SEPARATION)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
@@ -163,7 +163,7 @@ def _neighbours(i, near, flock, step, rules, out):
         if d < nearest:
             nearest = d
         w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
-        if chance:
+        if chance_weight:
             w_c *= _noise_factor(settings, step, i, j, COHESION)
             w_a *= _noise_factor(settings, step, i, j, ALIGNMENT)
         total_c += w_c
@@ -239,20 +239,20 @@ def behave(i, near, flock, step, rules, out):
     moving = _length(heading[i]) > 0.0
     c = zones.c[i]
     depth = altitude(speed, zones.r[i], c, zones.a[i], settings, choices)
-    rest = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
-    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, rest, world, choices, out[OBSTACLE])
+    obstacle_term = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
+    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, obstacle_term, world, choices, out[OBSTACLE])
     w_o = zones.obstacle[i] * _noise_factor(settings, step, i, 0, OBSTACLE)
     w_s = zones.speed[i] * _noise_factor(settings, step, i, 0, SPEED)
     own2 = 0.0
     for k in range(m):
         out[OBSTACLE, k] *= w_o
-        others = (
+        other_terms = (
             out[COHESION, k] + out[ALIGNMENT, k] + out[SEPARATION, k] + out[STRATEGIC, k] + out[OBSTACLE, k]
         )  # (16)
         if choices.own_velocity == 2:  # (17)
-            estimate[i, k] += settings.dt * others
+            estimate[i, k] += settings.dt * other_terms
         else:
-            estimate[i, k] = p[i, k] + (settings.dt * others if choices.own_velocity == 1 else 0.0)
+            estimate[i, k] = p[i, k] + (settings.dt * other_terms if choices.own_velocity == 1 else 0.0)
         own2 += estimate[i, k] ** 2
     if own2 > 0.0:
         for k in range(m):
@@ -266,12 +266,12 @@ def behaviours(flock, step, rules):
     """Return the six behaviours of all agents at one instant, shape (6, n, m); headings and estimates change."""
     q, reach = flock.q, flock.reach
     n, m = q.shape
-    components, out = np.empty((6, n, m)), np.empty((6, m))
-    cells, near = sort_into_cells(q, reach.max()), np.empty(n, np.int64)
+    components, outputs = np.empty((6, n, m)), np.empty((6, m))
+    cells, near_agents = sort_into_cells(q, reach.max()), np.empty(n, np.int64)
     for i in range(n):
-        count = gather(i, q, reach[i], cells, near)
-        behave(i, near[:count], flock, step, rules, out)
-        components[:, i] = out
+        count = gather(i, q, reach[i], cells, near_agents)
+        behave(i, near_agents[:count], flock, step, rules, outputs)
+        components[:, i] = outputs
     return components
 
 
@@ -295,22 +295,22 @@ def _move_aliens(alien, q, dt, world):
     """Move every alien towards the nearest detected agent, within its territory."""
     m = q.shape[1]
     for e in range(alien.shape[0]):
-        best, prey = world.detection[e] ** 2, -1
+        least_square, prey_index = world.detection[e] ** 2, -1
         for i in range(q.shape[0]):
             d2 = 0.0
             for k in range(m):
                 d2 += (q[i, k] - alien[e, k]) ** 2
-            if d2 <= best and (prey < 0 or d2 < best):
-                best, prey = d2, i
-        if prey < 0 or best == 0.0:
+            if d2 <= least_square and (prey_index < 0 or d2 < least_square):
+                least_square, prey_index = d2, i
+        if prey_index < 0 or least_square == 0.0:
             continue
-        pace = dt * world.pace[e] / sqrt(best)
+        pace_step = dt * world.pace[e] / sqrt(least_square)
         for k in range(m):
-            alien[e, k] += pace * (q[prey, k] - alien[e, k])
-        first, last = world.territory_starts[e], world.territory_starts[e + 1]
-        if last > first:
-            gx, gy, inside = to_boundary(alien[e, 0], alien[e, 1], world.territory, first, last)
-            if not inside:
+            alien[e, k] += pace_step * (q[prey_index, k] - alien[e, k])
+        first_index, last_edge = world.territory_starts[e], world.territory_starts[e + 1]
+        if last_edge > first_index:
+            gx, gy, is_inside = to_boundary(alien[e, 0], alien[e, 1], world.territory, first_index, last_edge)
+            if not is_inside:
                 alien[e, 0] += gx
                 alien[e, 1] += gy
 
@@ -319,7 +319,7 @@ def _move_aliens(alien, q, dt, world):
 def _take_step(flock, u, step, cells, near, rules, out, total):
     """Advance all agents by one step, then the aliens, with one cell list for the step."""
     (q, p, _, _, reach, alien), (zones, settings, choices, world) = flock, rules
-    (n, m), in_turn, literal = q.shape, choices.order == 1, choices.speed_bound == 1
+    (n, m), is_sequential, is_literal = q.shape, choices.order == 1, choices.speed_bound == 1
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
         nearest = behave(i, near[:count], flock, step, rules, out)
@@ -332,11 +332,11 @@ def _take_step(flock, u, step, cells, near, rules, out, total):
         factor = saturation(_length(total), settings.u_max)
         for k in range(m):
             u[i, k] = factor * total[k]
-        if in_turn:
-            _move(i, q, p, u, step, settings, literal)
-    if not in_turn:
+        if is_sequential:
+            _move(i, q, p, u, step, settings, is_literal)
+    if not is_sequential:
         for i in range(n):
-            _move(i, q, p, u, step, settings, literal)
+            _move(i, q, p, u, step, settings, is_literal)
     _move_aliens(alien, q, settings.dt, world)
 
 
@@ -350,14 +350,14 @@ def run(flock, first, rules, steps):
     settings, choices = rules.settings, rules.choices
     n, m = q.shape
     states = np.empty((5, steps, n, m))
-    aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
-    u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
-    near = np.empty(n, np.int64)
-    further = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
+    aliens, reach_series = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
+    u, outputs, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
+    near_agents = np.empty(n, np.int64)
+    step_bound = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
     for count in range(steps):
-        step, cells = first + count, sort_into_cells(q, reach.max() + further)
-        _take_step(flock, u, step, cells, near, rules, out, total)
+        step, cells = first + count, sort_into_cells(q, reach.max() + step_bound)
+        _take_step(flock, u, step, cells, near_agents, rules, outputs, total)
         for k, row in enumerate((q, p, u, heading, estimate)):
             states[k, count] = row
-        reaches[count], aliens[count] = reach, alien
-    return states[0], states[1], states[2], states[3], states[4], reaches, aliens
+        reach_series[count], aliens[count] = reach, alien
+    return states[0], states[1], states[2], states[3], states[4], reach_series, aliens

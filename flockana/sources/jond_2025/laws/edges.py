@@ -33,8 +33,8 @@ def weighed_edges(law: Any, head: npt.NDArray[np.int64], tail: npt.NDArray[np.in
     else:
         count = np.bincount(head)[head]
         rho = count if law.beta is None else of_agent(law.beta) * of_agent(law.radius) * count
-    align = of_pair(law.sigma)
+    align_weights = of_pair(law.sigma)
     if law.normalised:
-        total = np.bincount(head, align)[head]
-        align = np.divide(align, total, out=np.zeros_like(align), where=total > 0.0)
-    return EdgeData(head, tail, of_pair(law.mu), np.full(head.size, rho, dtype=np.float64), align)
+        total = np.bincount(head, align_weights)[head]
+        align_weights = np.divide(align_weights, total, out=np.zeros_like(align_weights), where=total > 0.0)
+    return EdgeData(head, tail, of_pair(law.mu), np.full(head.size, rho, dtype=np.float64), align_weights)

@@ -99,10 +99,10 @@ class MinimalFlocking(Law):
     @property
     def scales(self) -> Scales:
         """Length and time scales: longest spacing or perception radius, time of the stiffest spring or of alignment."""
-        length = float(np.max(self.radius if self.spacing is None else self.spacing))
-        heard = float(np.max(self.sigma))
-        rate = max(float(np.sqrt(np.max(self.mu))), float(heard > 0.0) if self.normalised else heard)
-        return Scales(length, 1.0 / rate if rate > 0.0 else 1.0)
+        length_scale = float(np.max(self.radius if self.spacing is None else self.spacing))
+        sight_range = float(np.max(self.sigma))
+        rate = max(float(np.sqrt(np.max(self.mu))), float(sight_range > 0.0) if self.normalised else sight_range)
+        return Scales(length_scale, 1.0 / rate if rate > 0.0 else 1.0)
 
     functions = ()  # neighbours are chosen by radii of agents
 
@@ -129,12 +129,12 @@ class MinimalFlocking(Law):
                 f"time = {time:g}: normalised alignment has the rate 1 per time unit, as printed, and no "
                 "parameter for it; expected time = 1, or a law with normalised=False"
             )
-        changed = scaled_fields(self, length, time)
+        changed_fields = scaled_fields(self, length, time)
         if not self.normalised:
-            changed["sigma"] = times(self.sigma, 1.0 / time)
+            changed_fields["sigma"] = times(self.sigma, 1.0 / time)
         if self.beta is None and self.spacing is None:  # the default 1/r_i is that of the unit in which it was given
-            changed["beta"] = 1.0 / np.array(self.radius)
-        return MinimalFlocking(**changed)
+            changed_fields["beta"] = 1.0 / np.array(self.radius)
+        return MinimalFlocking(**changed_fields)
 
     @cached_property
     def _sizes(self) -> dict[str, int]:
@@ -158,12 +158,12 @@ class MinimalFlocking(Law):
         if not isinstance(self.sigma, tuple) or not self.normalised:
             return
         sigma = np.array(self.sigma)
-        heard = ~np.eye(len(sigma), dtype=bool) if self.edges is None else np.zeros(sigma.shape, dtype=bool)
+        is_neighbour = ~np.eye(len(sigma), dtype=bool) if self.edges is None else np.zeros(sigma.shape, dtype=bool)
         for j, i in self.edges or ():
-            heard[i, j] = True
-        silent = heard.any(axis=1) & ((sigma * heard).sum(axis=1) == 0.0)
-        if silent.any() and sigma.any():
-            i = int(np.argmax(silent))
+            is_neighbour[i, j] = True
+        is_silent = is_neighbour.any(axis=1) & ((sigma * is_neighbour).sum(axis=1) == 0.0)
+        if is_silent.any() and sigma.any():
+            i = int(np.argmax(is_silent))
             raise ArgumentError(
                 f"sigma[{i}] sums to zero over the agents that {i} may perceive: expected a weight > 0; for separation "
                 "alone give sigma=0"
@@ -211,8 +211,8 @@ class MinimalFlocking(Law):
         # units.
         if self.edges is None:
             return False
-        what = dict(zip(self.edges, np.array(self._frozen[2:]).T, strict=True))
-        pairs = [(value, what.get((i, j))) for (j, i), value in what.items()]
+        edge_values = dict(zip(self.edges, np.array(self._frozen[2:]).T, strict=True))
+        pairs = [(value, edge_values.get((i, j))) for (j, i), value in edge_values.items()]
         return all(back is not None and np.allclose(value, back, rtol=_EQUAL, atol=0.0) for value, back in pairs)
 
     @property
@@ -224,9 +224,9 @@ class MinimalFlocking(Law):
         """Return the parameters of a law with equal weights."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
-        lengths = np.full(n, 1.0 if spacing is None else spacing)
+        link_lengths = np.full(n, 1.0 if spacing is None else spacing)
         mu, sigma = float(self.mu), float(self.sigma)  # type: ignore[arg-type]  # numbers, as all weights are equal
-        return kernel.EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
+        return kernel.EqualEdges(radius, link_lengths, self.spacing is None, mu, sigma, self.normalised)
 
     def block(self, solver: Any) -> Block | None:
         """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used."""
@@ -236,7 +236,7 @@ class MinimalFlocking(Law):
         def steps(times: FloatArray, q: FloatArray, p: FloatArray, wanted: IndexArray) -> Any:
             if not self.steps_many(len(q)):
                 return None
-            return tuple(part[wanted - 1] for part in self.semi_implicit(q, p, solver.dt, len(times)))
+            return tuple(component[wanted - 1] for component in self.semi_implicit(q, p, solver.dt, len(times)))
 
         return steps
 
@@ -258,8 +258,8 @@ class MinimalFlocking(Law):
         if self._one_weight:
             kernel.perceived_forces(q, p, self._alike(len(q)), u)
             return u, float("nan")
-        dissipated = kernel.edge_forces(q, p, *self.edge_data(q), u)
-        return u, -0.5 * dissipated if self.reciprocal else float("nan")
+        dissipated_power = kernel.edge_forces(q, p, *self.edge_data(q), u)
+        return u, -0.5 * dissipated_power if self.reciprocal else float("nan")
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
         """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked."""
@@ -280,8 +280,8 @@ class MinimalFlocking(Law):
 
     def _net_series(self, q: FloatArray) -> dict[str, Any]:
         """Return connectivity of the perception graph and share of its largest component over time."""
-        labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
-        parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
+        labels = [components(q.shape[1], np.column_stack(self.edge_data(label)[:2])) for label in q]
+        parts, largest = (np.array([f(np.bincount(label)) for label in labels], float) for f in (np.size, np.max))
         n = q.shape[1]
         return {
             "connectivity": ("C = rank(L)/(n − 1), directions forgotten", (n - parts) / max(n - 1, 1)),
@@ -302,26 +302,26 @@ class MinimalFlocking(Law):
         from scipy.sparse import coo_array
 
         n, m = q.shape
-        head, tail, mu, rho, align = self.edge_data(q)
+        head, tail, mu, rho, align_weights = self.edge_data(q)
         x = q[tail] - q[head]
-        length = np.linalg.norm(x, axis=1)[:, None, None]
-        if not length.all():
-            e = int(np.argmin(length))
+        distance = np.linalg.norm(x, axis=1)[:, None, None]
+        if not distance.all():
+            e = int(np.argmin(distance))
             raise ArgumentError(f"agents {tail[e]} and {head[e]} coincide: expected distinct ones, for a derivative")
-        bearing = x[:, :, None] / length
-        ratio, identity = rho[:, None, None] / length, np.eye(m)
+        bearing = x[:, :, None] / distance
+        ratio, identity = rho[:, None, None] / distance, np.eye(m)
         stiffness = mu[:, None, None] * ((1.0 - ratio) * identity + ratio * bearing * bearing.transpose(0, 2, 1))
         rows, columns = (m * head[:, None] + np.arange(m))[:, :, None], (m * tail[:, None] + np.arange(m))[:, None, :]
-        place = (m * head[:, None] + np.arange(m))[:, None, :]
+        block_rows = (m * head[:, None] + np.arange(m))[:, None, :]
 
         def summed(blocks: FloatArray) -> Any:
             """Return Σ over edges of a block at (i, j) and its negative at (i, i)."""
             entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
-            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, place)]
+            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, block_rows)]
             indices = np.concatenate(at[:2]), np.concatenate(at[2:])
             return coo_array((entries, indices), shape=(n * m, n * m)).tocsr()
 
-        return summed(stiffness), summed(align[:, None, None] * identity)
+        return summed(stiffness), summed(align_weights[:, None, None] * identity)
 
     def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
         """Return the law as a discrete map, as simulated in the paper."""
@@ -330,9 +330,9 @@ class MinimalFlocking(Law):
 
 def _profile(q: FloatArray) -> dict[str, Any]:
     """Return median and largest distance of all pairs, as in Fig. 10."""
-    middle, largest = pair_distance_profile(q, (0.5, 1.0)).T
+    median, largest = pair_distance_profile(q, (0.5, 1.0)).T
     return {
-        "median_distance": ("median distance of two agents (length)", middle),
+        "median_distance": ("median distance of two agents (length)", median),
         "largest_distance": ("largest distance of two agents (length)", largest),
     }
 

@@ -153,8 +153,8 @@ class ZoneFlocking(DiscreteLaw):
     @property
     def scales(self) -> Scales:
         """Length and time scales: the radius of attraction, and the time to cross it at the greatest speed."""
-        length = self.radii.reach[2]
-        return Scales(length, length / self.v_max)
+        length_scale = self.radii.reach[2]
+        return Scales(length_scale, length_scale / self.v_max)
 
     @classmethod
     def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:
@@ -175,8 +175,8 @@ class ZoneFlocking(DiscreteLaw):
         'tanh'
         """
         letter: dict[str, Any] = {name: names[-1] for name, names in CHOICES.items() if name not in _OURS}
-        summed = options.get("form", letter["form"]) == "bearing"  # (21) is a sum over edges, (8) has one point
-        letter |= dict.fromkeys(("walls", "polygons"), "each" if summed else "nearest")
+        is_summed = options.get("form", letter["form"]) == "bearing"  # (21) is a sum over edges, (8) has one point
+        letter |= dict.fromkeys(("walls", "polygons"), "each" if is_summed else "nearest")
         gains = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
         return cls(radii or _radii_of_section_5(), weights or gains, **(letter | options))
 
@@ -221,8 +221,8 @@ class ZoneFlocking(DiscreteLaw):
 
     def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
         """Return the memory without unneeded parts."""
-        needs = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
-        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needs[name]}
+        requirements = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
+        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if requirements[name]}
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one step (Algorithm 1 of the paper), unchecked.
@@ -232,8 +232,8 @@ class ZoneFlocking(DiscreteLaw):
         memory : mapping of str to ndarray
             ``heading``, ``estimate`` and, if there are aliens, ``alien``; as `start` gives it.
         """
-        q, p, u, after = self.iterate(t, q, p, memory, 1)
-        return q[0], p[0], u[0], {name: values[0] for name, values in after.items()}
+        q, p, u, next_state = self.iterate(t, q, p, memory, 1)
+        return q[0], p[0], u[0], {name: values[0] for name, values in next_state.items()}
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         flock, first = self._state(q, p, memory)
@@ -265,9 +265,9 @@ class ZoneFlocking(DiscreteLaw):
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
         parts, counts = fragments(q, a), cache(lambda: populations(q, r, c, a))
-        connected = (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0]
+        connected_share = (n - parts[:, 0]) / (n - 1) if n > 1 else parts[:, 0]
         series = {
-            "connectivity": ("C = rank(L)/(n − 1), of agents within a", connected),
+            "connectivity": ("C = rank(L)/(n − 1), of agents within a", connected_share),
             "giant_share": ("C*, share of nodes", parts[:, 1] / n),
         }
         for k, zone in enumerate(("repulsion", "conflict", "attraction")):
@@ -278,8 +278,8 @@ class ZoneFlocking(DiscreteLaw):
         if self.world.obstacles:
             series |= self._clearances(t, q)
         if self.world.box is not None:
-            inside = self.world.box.clearance(q.reshape(-1, q.shape[2])).reshape(q.shape[:2]).min(axis=1)
-            series["wall_distance"] = ("least distance from a wall, negative outside the box", inside)
+            box_clearance = self.world.box.clearance(q.reshape(-1, q.shape[2])).reshape(q.shape[:2]).min(axis=1)
+            series["wall_distance"] = ("least distance from a wall, negative outside the box", box_clearance)
         return series
 
     def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, Any]]:
@@ -288,11 +288,11 @@ class ZoneFlocking(DiscreteLaw):
         @cache
         def measured() -> tuple[FloatArray, FloatArray]:
             short = np.flatnonzero(np.diff(t) < 1.5 * self.dt)  # between samples further apart the way is not known
-            every, ways = self.world.clearances(q, short)
-            at = every.min(axis=1)
-            on_way = np.append(at[:1], np.full(len(t) - 1, np.nan))
-            on_way[short + 1] = ways.min(axis=1)
-            return at, on_way
+            all_clearances, way_clearances = self.world.clearances(q, short)
+            least_clearances = all_clearances.min(axis=1)
+            way_clearance = np.append(least_clearances[:1], np.full(len(t) - 1, np.nan))
+            way_clearance[short + 1] = way_clearances.min(axis=1)
+            return least_clearances, way_clearance
 
         return {
             "obstacle_clearance": ("least distance from an obstacle, negative inside", lambda: measured()[0]),
@@ -309,17 +309,17 @@ class ZoneFlocking(DiscreteLaw):
         """
         speeds = np.linalg.norm(checks.ensure_points("p", p), axis=1)
         r, c, a, _ = self.radii.arrays(len(speeds))
-        by_speed: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
-        lengths = {"conflict": c, "attraction": a, "speed": by_speed}
-        return lengths[self.zone_length]
+        speed_altitudes: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
+        length_by_zone = {"conflict": c, "attraction": a, "speed": speed_altitudes}
+        return length_by_zone[self.zone_length]
 
     def _state(self, q: FloatArray, p: FloatArray, memory: Mapping[str, Any]) -> tuple[compiled.Flock, int]:
         """Return copies of the state, and the number of the next step."""
         unknown = {"reach": self.radii.arrays(len(q))[2], "alien": np.empty((0, q.shape[1])), "step": 0}
-        whole: dict[str, Any] = unknown | dict(memory)
+        full_memory: dict[str, Any] = unknown | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
-        arrays = (np.array(whole[name], float) for name in names)
-        return compiled.Flock(np.array(q), np.array(p), *arrays), int(whole["step"])
+        arrays = (np.array(full_memory[name], float) for name in names)
+        return compiled.Flock(np.array(q), np.array(p), *arrays), int(full_memory["step"])
 
     def _zones(self, n: int) -> compiled.Zones:
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
@@ -328,8 +328,8 @@ class ZoneFlocking(DiscreteLaw):
         """Return the numbers of the compiled step."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
         chance = self.noise.weights, self.noise.velocities
-        numbers = self.dt, self.desired_speed, self.u_max, self.v_max
-        settings = compiled.Settings(*numbers, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
+        step_parameters = self.dt, self.desired_speed, self.u_max, self.v_max
+        settings = compiled.Settings(*step_parameters, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
         choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
         world = self.world.arrays(m, buffer=self.obstacle_zone == "buffer")
         return compiled.Rules(self._zones(n), settings, choices, world)

@@ -93,8 +93,8 @@ def _(law: Any, trajectory: Trajectory) -> FloatArray:
 def _corners(world: ZoneWorld, m: int) -> FloatArray:
     """Return points that must be in view: obstacles and box."""
     corners = [np.empty((0, m))]
-    for solid in world.obstacles:
-        corners.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
+    for obstacle in world.obstacles:
+        corners.append(bounds([obstacle]) if isinstance(obstacle, Sphere) else np.array(obstacle.vertices))
     if world.box is not None:
         corners += [np.array([world.box.low]), np.array([world.box.high])]
     return np.vstack(corners)
@@ -103,29 +103,29 @@ def _corners(world: ZoneWorld, m: int) -> FloatArray:
 def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
     """Draw the obstacle zone ahead of every agent that has a heading."""
     _, c, _, _ = law.radii.arrays(len(q))
-    ahead = heading * law.altitudes(p)[:, None]
-    aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
-    corners = np.stack([q + ahead, q + aside, q - aside], axis=1)[heading.any(axis=1)]
+    forward_vectors = heading * law.altitudes(p)[:, None]
+    side_vectors = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
+    corners = np.stack([q + forward_vectors, q + side_vectors, q - side_vectors], axis=1)[heading.any(axis=1)]
     ax.add_collection(PolyCollection(list(corners), facecolors=BLUE, edgecolors=BLUE, alpha=0.25, linewidths=0.6))
 
 
 def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> None:
     """Draw obstacles, buffers, territories and box."""
     grey: dict[str, Any] = {"facecolor": FAINT, "edgecolor": MUTED, "linewidth": 0.8, "zorder": 1}
-    for solid in world.obstacles:
-        disc = solid if isinstance(solid, Sphere) else solid.enclosing_circle()
-        if isinstance(solid, Sphere):
+    for obstacle in world.obstacles:
+        disc = obstacle if isinstance(obstacle, Sphere) else obstacle.enclosing_circle()
+        if isinstance(obstacle, Sphere):
             ax.add_patch(Circle(disc.centre, disc.radius, **grey))
         else:
-            ax.add_patch(Polygon(solid.vertices, **grey))
+            ax.add_patch(Polygon(obstacle.vertices, **grey))
         if buffer:
             ax.add_patch(Circle(disc.centre, disc.radius, fill=False, edgecolor=PURPLE, linestyle="--", linewidth=1.0))
     for alien in world.aliens:
-        if (land := alien.territory) is not None:
-            ax.add_patch(Polygon(land.vertices, facecolor=ORANGE, edgecolor=ORANGE, alpha=0.25, linewidth=0.8))
+        if (territory := alien.territory) is not None:
+            ax.add_patch(Polygon(territory.vertices, facecolor=ORANGE, edgecolor=ORANGE, alpha=0.25, linewidth=0.8))
     if world.box is not None:
-        size = np.subtract(world.box.high, world.box.low).tolist()
-        ax.add_patch(Rectangle(world.box.low, *size, fill=False, edgecolor=INK, linewidth=1.2))
+        box_size = np.subtract(world.box.high, world.box.low).tolist()
+        ax.add_patch(Rectangle(world.box.low, *box_size, fill=False, edgecolor=INK, linewidth=1.2))
 
 
 def _space(ax: Any, world: ZoneWorld) -> None:
@@ -144,13 +144,13 @@ def zone_distances(trajectory: Trajectory, ax: Any) -> None:
     Of more than some hundred agents the profile is drawn (`pair_distances`), as lines would be one blot.
     """
     law, t = _law(trajectory), trajectory.t
-    first, second = np.triu_indices(trajectory.n, 1)
-    if first.size > _AS_LINES:
+    first_agents, second_agents = np.triu_indices(trajectory.n, 1)
+    if first_agents.size > _AS_LINES:
         pair_distances(trajectory, ax=ax)
     else:
-        apart = lengths(trajectory.q[:, first] - trajectory.q[:, second])
-        hairlines(ax, t, apart, "pairs", crowd=2)
-        curves(ax, t, [(apart.min(axis=1), "least (D)", INK, "-")] if first.size else ())
+        distances = lengths(trajectory.q[:, first_agents] - trajectory.q[:, second_agents])
+        hairlines(ax, t, distances, "pairs", crowd=2)
+        curves(ax, t, [(distances.min(axis=1), "least (D)", INK, "-")] if first_agents.size else ())
     levels(ax, zip(law.radii.reach, "rca", (VERMILLION, PURPLE, GREEN), ("--", "-.", ":"), strict=True))
     ax.set_ylim(bottom=0.0)
 

@@ -51,8 +51,8 @@ def _collision_free(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
     before = int(np.searchsorted(run.t, run.t[-1] - 0.1 * (run.t[-1] - run.t[0])))
     i, j = np.triu_indices(run.n, 1)
-    old, new = (np.linalg.norm(run.q[k, i] - run.q[k, j], axis=1) for k in (before, -1))
-    change = float(np.abs(new / old - 1.0).max())
+    old_distance, new_distance = (np.linalg.norm(run.q[k, i] - run.q[k, j], axis=1) for k in (before, -1))
+    change = float(np.abs(new_distance / old_distance - 1.0).max())
     detail = f"from t = {run.t[before]:.3g} s on, a distance between two agents still changes by {change:.2g} of itself"
     return finding(_SETTLED - change, detail, computed=change, stated=f"<= {_SETTLED:g}")
 
@@ -60,7 +60,7 @@ def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _flock(m: int, *, printed: bool) -> Builder:
     law = MinimalFlocking() if printed else MinimalFlocking(**j11.RECOMMENDED)
     duration = j11.DURATION[m] if printed else j11.LONGER
-    how = (
+    run_options = (
         f"r = 10 m, β = 1/r, σ = μ = 1, {duration:g} s in steps of 0.1 s"
         if printed
         else f"Ours: r = 15 m, one spacing of 5 m, μ = 0.4, velocity differences summed with σ = 0.1, {duration:g} s"
@@ -74,14 +74,14 @@ def _flock(m: int, *, printed: bool) -> Builder:
     kind = "printed" if printed else "recommended"
     name = f"minimal-{m}d{'-printed' if printed else ''}"
     title = f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}"
-    source = (
-        f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {how}. "
+    source_text = (
+        f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {run_options}. "
         "Velocity first, then position, all agents at once; the seed is ours."
     )
     reports = in_source_units(lambda: law.scales, (_cohesive, _collision_free, _aligned, _stable))
-    more: dict[str, Any] = {"references": _REFERENCES, "seeds": 200, "settings": f"{kind} settings"}
+    entry_options: dict[str, Any] = {"references": _REFERENCES, "seeds": 200, "settings": f"{kind} settings"}
     draw = partial(j11.minimal_start, m)
-    return entry(name, title, source, law.discrete(j11.DT), draw, duration, expected, reports, **more)
+    return entry(name, title, source_text, law.discrete(j11.DT), draw, duration, expected, reports, **entry_options)
 
 
 def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
@@ -91,12 +91,12 @@ def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
         "zone-1-printed:velocities", "zone-1-corrected", "zone-1-corrected:lengths", "zone-1-corrected:spectrum"
     )
     title = f"Theorem 1 of the bearing-distance paper on a directed tree of {n} agents"
-    source = (
+    source_text = (
         "Ours: a random rooted out-tree that never changes, α_i r_i = 2 m for all, σ = μ = 1, q uniform in a box of "
         "6 m, p in [-1, 1] m/s."
     )
     q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
-    return Scenario("zone-tree", title, source, law, q, p, (0.0, 100.0), seed, expected, references=_REFERENCES)
+    return Scenario("zone-tree", title, source_text, law, q, p, (0.0, 100.0), seed, expected, references=_REFERENCES)
 
 
 def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
@@ -106,13 +106,13 @@ def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
         "zone-1-corrected", "zone-1-corrected:energy", "zone-1-corrected:lengths", "zone-1-corrected:spectrum"
     )
     title = f"The corrected Theorem 1 of the bearing-distance paper on an undirected path of {n} agents"
-    source = (
+    source_text = (
         "Ours: a path that never changes, mutual forces (velocity differences summed), α_i r_i = 2 m for all, "
         "σ = μ = 1, q uniform in a box of 6 m, p in [-1, 1] m/s."
     )
     law = MinimalFlocking(edges=path, spacing=2.0, normalised=False)
     q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
-    return Scenario("zone-path", title, source, law, q, p, (0.0, 200.0), seed, expected, references=_REFERENCES)
+    return Scenario("zone-path", title, source_text, law, q, p, (0.0, 200.0), seed, expected, references=_REFERENCES)
 
 
 SCENARIOS: dict[str, Builder] = {

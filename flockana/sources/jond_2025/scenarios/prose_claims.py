@@ -68,18 +68,18 @@ def _walled(run: Trajectory, tolerances: Tolerances) -> Claim:
 @report("hazards", "each agent keeps the distance from an alien that its own weight gives")
 def _distance_from_alien(run: Trajectory, tolerances: Tolerances) -> Claim:
     gaps = lengths(run.q[:, : len(_HAZARD)] - run.extra["alien"][:, :1]).min(axis=0)
-    stated = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
-    off = float(np.abs(gaps - stated).max()) / _SEEN
+    stated_value = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
+    deviation = float(np.abs(gaps - stated_value).max()) / _SEEN
     text = f"agents with w^ss = 12, 15, 20 keep {', '.join(f'{gap:.3f}' for gap in gaps)} m from the alien, as s - v^d "
-    return finding(_AS_FAR - off, text + "w^ga/w^ss has it", computed=gaps.tolist(), stated=stated.tolist())
+    return finding(_AS_FAR - deviation, text + "w^ga/w^ss has it", computed=gaps.tolist(), stated=stated_value.tolist())
 
 
 @report("gives-way", "of two agents that meet, the one with the larger weight for the other gives way")
 def _right_of_way(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that after a head-on meeting both agents follow the one with the smaller weight for the other."""
     end = run.p[-1, len(_HAZARD) :, 0].reshape(-1, 2)
-    forward = np.array([1.0 if first < second else -1.0 for first, second in _GIVES_WAY])
-    slowest = float((end * forward[:, None]).min()) / _SPEED
+    order_signs = np.array([1.0 if first_zone < second_zone else -1.0 for first_zone, second_zone in _GIVES_WAY])
+    slowest = float((end * order_signs[:, None]).min()) / _SPEED
     text = "; ".join(
         f"w^ls = {w[0]:g}, {w[1]:g}: both at {v[0]:.3g}, {v[1]:.3g}" for w, v in zip(_GIVES_WAY, end, strict=True)
     )
@@ -90,16 +90,16 @@ def _right_of_way(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _repeats(run: Trajectory, tolerances: Tolerances) -> Claim:
     if "step" in run.extra and run.extra["step"][0] != 0.0:
         return finding(float("nan"), "the run does not begin with step 0", stated="the same to the bit")
-    first, second = (rerun(run, run.law).q[-1] for _ in range(2))
-    same = bool((first == second).all())
+    first_end, second_end = (rerun(run, run.law).q[-1] for _ in range(2))
+    same = bool((first_end == second_end).all())
     text = f"a second run ends {'the same to the bit' if same else 'elsewhere'}"
     return finding(0.5 if same else -0.5, text, stated="the same to the bit")
 
 
 @report("unpredictable", "chance makes motions less predictable")
 def _unpredictable(run: Trajectory, tolerances: Tolerances) -> Claim:
-    other = replace(run.law, noise=replace(run.law.noise, seed=run.law.noise.seed + 1))
-    end = rerun(run, other).q[-1]
+    reseeded_law = replace(run.law, noise=replace(run.law.noise, seed=run.law.noise.seed + 1))
+    end = rerun(run, reseeded_law).q[-1]
     distance = float(np.linalg.norm(end - run.q[-1], axis=1).max()) / float(np.max(run.law.radii.a))
     text = f"with another seed of the noise an agent ends {distance:.3g} a from where it ends here"
     return finding(distance - _MOVED, text, computed=distance, stated="less predictable motions")
@@ -118,16 +118,16 @@ def _head_on(seed: int) -> Start:
     """Return three agents heading for the origin, and far away two pairs heading for each other."""
     directions = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     pairs = [(x, y) for y in _LANES for x in (-10.0, 10.0)]
-    ways = [(way * _SPEED, 0.0) for _ in _LANES for way in (1.0, -1.0)]
-    return np.vstack([_OFF * directions, pairs]), np.vstack([-_SPEED * directions, ways])
+    velocities = [(direction * _SPEED, 0.0) for _ in _LANES for direction in (1.0, -1.0)]
+    return np.vstack([_OFF * directions, pairs]), np.vstack([-_SPEED * directions, velocities])
 
 
 def _own_weights() -> ZoneFlocking:
     n = len(_HAZARD) + 2 * len(_GIVES_WAY)
     separation = np.full((n, n), 5.0)
-    for k, (first, second) in enumerate(_GIVES_WAY):
+    for k, (first_zone, second_zone) in enumerate(_GIVES_WAY):
         i = len(_HAZARD) + 2 * k
-        separation[i, i + 1], separation[i + 1, i] = first, second
+        separation[i, i + 1], separation[i + 1, i] = first_zone, second_zone
     aliens = (Alien((0.0, 0.0), detection=1e-3),)
     weights = ZoneWeights(
         separation=tuple(map(tuple, separation.tolist())),
@@ -145,32 +145,32 @@ def _informed(seed: int = 0, informed: int = _INFORMED) -> Scenario:
         raise ArgumentError(f"informed = {count}: expected 1 to {N}, the number of agents")
     weights = ZoneWeights(speed=tuple([5.0] * count + [0.0] * (N - count)))
     title = f"{count} of {N} agents are informed of the desired speed"
-    source = (
+    source_text = (
         "section 2.1 says that neighbours adjust and a new global speed results; start and settings as zone-51, "
         "w^ga = 0 for those that are not informed, 60 s (J14)."
     )
     law, expected, reports = ZoneFlocking(FREE, weights), verified("source:bounds"), (keeps_speed, _together, bounds)
-    return zone_entry("zone-51-informed", title, source, law, apart, 60.0, expected, reports)(seed)
+    return zone_entry("zone-51-informed", title, source_text, law, apart, 60.0, expected, reports)(seed)
 
 
 def _scaled(seed: int = 0, n: int = 500) -> Scenario:
-    size = ensure_count("n", n)
-    source = (
+    agent_count = ensure_count("n", n)
+    source_text = (
         "the abstract calls the flocking scalable. Settings of zone-51; n agents, 500 if not given, as dense as the "
         "ten of section 5.1 and more than 2 m apart, velocities in (0, 1) (J18)."
     )
     expected, reports = verified("source:speed", "source:bounds"), (*OPEN[1:], distances, _together)
 
     def draw(seed: int) -> Start:
-        return lazy_state((size, 2), lambda: crowd_start(seed, size))
+        return lazy_state((agent_count, 2), lambda: crowd_start(seed, agent_count))
 
-    title, law = f"{size} agents", ZoneFlocking(FREE)
-    return zone_entry("zone-scaled", title, source, law, draw, 20.0, expected, reports, settings="")(seed)
+    title, law = f"{agent_count} agents", ZoneFlocking(FREE)
+    return zone_entry("zone-scaled", title, source_text, law, draw, 20.0, expected, reports, settings="")(seed)
 
 
 def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scenario:
     title = "stochastic weights and perturbed velocities"
-    source = (
+    source_text = (
         "the conclusions propose stochastic weights and random perturbations in velocities. Settings of zone-51; in "
         f"each step each weight is multiplied by a number in 1 ± {weights:g}, and each component of a velocity gets "
         f"{velocities:g} m/s (standard deviation), both ours; the scenario's seed is that of the noise too."
@@ -178,8 +178,8 @@ def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scen
     law = ZoneFlocking(FREE, noise=ZoneNoise(weights=weights, velocities=velocities, seed=seed))
     reports, as_it_is = (_unpredictable, *OPEN), (_repeats,)
     expected = verified("source:repeats", "source:unpredictable", "source:speed", "source:bounds")
-    build = zone_entry("zone-51-noisy", title, source, law, apart, 20.0, expected, reports, as_it_is=as_it_is)
-    return build(seed)
+    builder = zone_entry("zone-51-noisy", title, source_text, law, apart, 20.0, expected, reports, as_it_is=as_it_is)
+    return builder(seed)
 
 
 _UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)

@@ -70,8 +70,8 @@ def _radius(run: Trajectory, tolerances: Tolerances) -> Claim:
     r = _late(run, run.metric("cohesion_radius"), 5.0)
     ratio = float(r.max() / r.min())
     text = f"from t = 5 on the cohesive radius lies between {r.min():.3g} and {r.max():.3g}"
-    stated = f"stable (by a factor of {tolerances.cohesion:g})"
-    return finding(tolerances.cohesion - ratio, text, computed=ratio, stated=stated)
+    stated_value = f"stable (by a factor of {tolerances.cohesion:g})"
+    return finding(tolerances.cohesion - ratio, text, computed=ratio, stated=stated_value)
 
 
 @report("speed", "the mean speed is close to the desired 3 m/s")
@@ -94,9 +94,9 @@ def bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
     """Return component counts, and the first sample that splits after a connected one; -1 without one."""
     counts = component_counts(run)
-    together = np.flatnonzero(counts == 1)
-    apart = np.flatnonzero(counts[together[0] :] > 1) if together.size else together
-    return counts, int(together[0] + apart[0]) if apart.size else -1
+    joined_samples = np.flatnonzero(counts == 1)
+    split_samples = np.flatnonzero(counts[joined_samples[0] :] > 1) if joined_samples.size else joined_samples
+    return counts, int(joined_samples[0] + split_samples[0]) if split_samples.size else -1
 
 
 @report("fragments", "the alien breaks the flock up for a while")
@@ -117,13 +117,13 @@ def _reunites(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("range", "distances reach up to 10 m when the flock is cohesive")
 def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
-    whole = component_counts(run) == 1
-    if not whole.any():
+    connected_samples = component_counts(run) == 1
+    if not connected_samples.any():
         return finding(float("nan"), "the flock is never cohesive", stated="up to 10 when cohesive")
-    spans = diameters(run.q[whole])
+    spans = diameters(run.q[connected_samples])
     text = f"while the flock is one component its largest distance is {spans.min():.3g} to {spans.max():.3g}"
-    most = float(spans.max())
-    return finding(10.0 - most, text, computed=most, stated="up to 10 when cohesive")
+    maximum = float(spans.max())
+    return finding(10.0 - maximum, text, computed=maximum, stated="up to 10 when cohesive")
 
 
 @report("contained", "the agents stay in the box and off the obstacle")
@@ -141,9 +141,9 @@ def passed(run: Trajectory) -> int:
     """Return the number of agents that pass the gap between slab and wall upwards."""
     corners = np.array(_SLAB.vertices)
     x, y = run.q[:, :, 0], run.q[:, :, 1]
-    inside = (x > corners[:, 0].max()) & (y > corners[:, 1].mean())
-    first = np.where(inside.any(axis=0), inside.argmax(axis=0), len(run.t))
-    return sum(bool((y[k:, i] > corners[:, 1].max()).any()) for i, k in enumerate(first))
+    is_inside = (x > corners[:, 0].max()) & (y > corners[:, 1].mean())
+    first_passage = np.where(is_inside.any(axis=0), is_inside.argmax(axis=0), len(run.t))
+    return sum(bool((y[k:, i] > corners[:, 1].max()).any()) for i, k in enumerate(first_passage))
 
 
 @report("passes", "the flock passes a narrow gap beside the obstacle")
@@ -236,11 +236,11 @@ def zone_entry(
 
 def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Builder:
     """Return the run of a paper section in a given reading, both by name."""
-    where, place, end, reports, instants = _SECTIONS[name[5:7]]
-    how, text, draw, seeds, settings = _READINGS[name[7:]]
-    title, source = f"{where}, {how}", f"{PRINTED}{parameters}. {text}{place}"
-    more: dict[str, Any] = {"seeds": seeds, "settings": settings, "instants": instants}
-    return zone_entry(name, title, source, law, draw, end, expected, reports, **more)
+    place_text, position_error, end, reports, instants = _SECTIONS[name[5:7]]
+    description, text, draw, seeds, settings = _READINGS[name[7:]]
+    title, source_text = f"{place_text}, {description}", f"{PRINTED}{parameters}. {text}{position_error}"
+    entry_options: dict[str, Any] = {"seeds": seeds, "settings": settings, "instants": instants}
+    return zone_entry(name, title, source_text, law, draw, end, expected, reports, **entry_options)
 
 
 _UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)

@@ -44,13 +44,13 @@ def stacked_form(edges: Edges) -> Derivation:
     u = sp.zeros(D.rows, 1)
     for e, (j, i) in enumerate(edges):
         u[i] += w[e, e] * (p[j] - p[i]) + a[e, e] * (v[j] - v[i])
-    stacked = -D_in * w * D.T * p - D_in * a * D.T * v
+    stacked_force = -D_in * w * D.T * p - D_in * a * D.T * v
     steps = (
         Step("Each agent sums over the edges that it receives:", u),
-        Step("The same, stacked: only the receivers' rows remain.", stacked),
+        Step("The same, stacked: only the receivers' rows remain.", stacked_force),
         Step(r"$L = D D^T$ forgets the directions; the loop holds", D_in * D.T),
     )
-    return Derivation("Stacked form (35)", steps, D_in * D.T, tuple(sp.expand(u - stacked)))
+    return Derivation("Stacked form (35)", steps, D_in * D.T, tuple(sp.expand(u - stacked_force)))
 
 
 def separation_forms(edges: Edges) -> dict[str, Derivation]:
@@ -127,8 +127,8 @@ def spacing_spectrum(m: int) -> Derivation:
     """Derive the spectrum of an edge at |x| = rho in m dimensions: s^2 + s + mu once, s^2 + s the other m - 1 times."""
     x = sp.Matrix(sp.symbols(f"x_0:{m}", real=True))
     force = MU * (1 - RHO / sp.sqrt(x.dot(x))) * x
-    at = {x[0]: RHO, **{x[k]: 0 for k in range(1, m)}}
-    stiffness = force.jacobian(x).subs(at).applyfunc(sp.simplify)
+    substitution = {x[0]: RHO, **{x[k]: 0 for k in range(1, m)}}
+    stiffness = force.jacobian(x).subs(substitution).applyfunc(sp.simplify)
     expected = (S**2 + S + MU) * (S**2 + S) ** (m - 1)
     determinant = (S**2 * sp.eye(m) + S * sp.eye(m) + stiffness).det()
     steps = (

@@ -30,7 +30,7 @@ def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
     d = sp.sqrt(gap.dot(gap))
     b = gap / d
     flow = list(zip([*p_i, *p_j], [*v_i, *v_j], strict=True))
-    d_rate, *b_rate = (sp.Add(*(each.diff(x) * v for x, v in flow)) for each in (d, *b))
+    d_rate, *b_rate = (sp.Add(*(item.diff(x) * v for x, v in flow)) for item in (d, *b))
     return d, b, d_rate, sp.Matrix(b_rate)
 
 
@@ -63,8 +63,8 @@ def estimate_gap() -> sp.Expr:
     """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation."""
     # (17) adds δ u^aux, the input without the global speed term: Remark 3's equivalence fails (J8)
     aux = sp.Symbol("u^aux", real=True)
-    drive = GAIN * (SPEED * sp.sign(OWN) - OWN)
-    return sp.factor(sp.expand(OWN + STEP * (aux + drive) - (OWN + STEP * aux)), STEP, GAIN)
+    drive_force = GAIN * (SPEED * sp.sign(OWN) - OWN)
+    return sp.factor(sp.expand(OWN + STEP * (aux + drive_force) - (OWN + STEP * aux)), STEP, GAIN)
 
 
 def saturation(norm: sp.Expr = _X, *, bound: sp.Expr = BOUND) -> sp.Expr:

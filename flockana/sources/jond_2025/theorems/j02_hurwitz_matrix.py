@@ -47,7 +47,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
 
     eigenvalues = {ratio: frozen_eigenvalues(sp.Rational(ratio)) for ratio in ("1/2", "1", "2")}
     abscissas = {ratio: sp.re(values[0]) for ratio, values in eigenvalues.items()}
-    measured = _two_agents_abscissa(0.5)
+    measured_abscissa = _two_agents_abscissa(0.5)
     return [
         exact(
             "hurwitz",
@@ -56,10 +56,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             stated="A_cl is Hurwitz, whatever the edges' lengths",
             margin=-float(abscissas["1/2"]),
             error=0.0,
-            witness={"|x|/αr": 0.5, "largest real part of the law's Jacobian there": measured},
+            witness={"|x|/αr": 0.5, "largest real part of the law's Jacobian there": measured_abscissa},
             disproof="bearing-distance-printed",
             detail=f"two agents at half the spacing: eigenvalue {float(abscissas['1/2']):.3f}, unstable (the law's own "
-            f"Jacobian: {measured:.3f}); at the spacing {abscissas['1']}, singular",
+            f"Jacobian: {measured_abscissa:.3f}); at the spacing {abscissas['1']}, singular",
         ),
         exact(
             "outside",

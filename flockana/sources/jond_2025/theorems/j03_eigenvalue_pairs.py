@@ -17,13 +17,13 @@ def path_matrices(mu: float) -> tuple[FloatArray, FloatArray]:
     """Return (A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four with edges 2.05, 2.7, 2.05."""
     links = ((0, 1), (1, 2), (2, 3))
     law = MinimalFlocking(edges=both_ways(links), spacing=_PATH_SPACING, mu=mu)
-    head, tail, weight, rho, align = law.edge_data(np.empty((4, 1)))
+    head, tail, weight, rho, align_weights = law.edge_data(np.empty((4, 1)))
     w = weight * (1.0 - rho / np.repeat(_PATH_LENGTHS, 2))
     T = np.zeros((3, 4))  # x = T p
     for e, (j, i) in enumerate(links):
         T[e, j], T[e, i] = 1.0, -1.0
     matrices = []
-    for coefficients in (w, align):
+    for coefficients in (w, align_weights):
         u = np.zeros((4, 4))
         np.add.at(u, (head, tail), coefficients)
         np.add.at(u, (head, head), -coefficients)
@@ -36,13 +36,13 @@ def _pairing(mu: float) -> tuple[float, float]:
     from scipy.optimize import linear_sum_assignment
 
     stiffness, damping = path_matrices(mu)
-    true = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
-    best = np.inf
+    true_value = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
+    least_error = np.inf
     for gammas in permutations(np.linalg.eigvals(stiffness)):
         pairs = zip(np.linalg.eigvals(damping), gammas, strict=True)
-        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - true)
-        best = min(best, float(gap[linear_sum_assignment(gap)].max()))
-    return best, float(true.real.max())
+        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - true_value)
+        least_error = min(least_error, float(gap[linear_sum_assignment(gap)].max()))
+    return least_error, float(true_value.real.max())
 
 
 @erratum("J3", expected={"refuted": "printed hurwitz", "verified": "trees"})

@@ -15,7 +15,7 @@ _PROOF = "bearing-distance-printed"
 def _desired_lengths(law: MinimalFlocking) -> FloatArray:
     """Return the desired lengths of the edge between an end and the middle, for each of the two agents."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
-    spacing = {(int(j), int(i)): float(length) for i, j, length in zip(head, tail, rho, strict=True)}
+    spacing = {(int(j), int(i)): float(distance) for i, j, distance in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
 
 
@@ -23,10 +23,10 @@ def _error(law: MinimalFlocking, seed: int) -> Enclosure:
     """Return the distance of a run's end from the predicted equilibrium: edges of length 5/3, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
-    seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END), rtol=1e-11)
-    u = seen.series(lambda run: lengths(run.u), floor=8.0 * float(seen.shape_error.max()))[-1]
-    apart = seen.distances([0, 0, 1], [2, 1, 2])[-1]
-    return stacked([abs(apart - _RUNAWAY).max(), abs(u - _THRUST).max()]).max()
+    observation = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END), rtol=1e-11)
+    u = observation.series(lambda run: lengths(run.u), floor=8.0 * float(observation.shape_error.max()))[-1]
+    final_distances = observation.distances([0, 0, 1], [2, 1, 2])[-1]
+    return stacked([abs(final_distances - _RUNAWAY).max(), abs(u - _THRUST).max()]).max()
 
 
 def _rate(law: MinimalFlocking) -> float:
@@ -45,8 +45,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # The ends of an undirected path of three want their edges at length 1, the middle at 2: both become 5/3.
     law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))
-    lengths_wanted, off = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
-    worst, rate = float(off.mid.max()), _rate(law)
+    lengths_wanted, deviation = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
+    worst, rate = float(deviation.mid.max()), _rate(law)
     return [
         judged(
             "printed",
@@ -61,7 +61,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
                 f"differs from one of the two by {0.5 * abs(lengths_wanted[1] - lengths_wanted[0]):g} or more"
             ),
         ),
-        judged("runaway", tolerances.lattice - off).described(
+        judged("runaway", tolerances.lattice - deviation).described(
             computed={"largest error": worst, "attracts at the rate": rate},
             stated=f"at t = {_END:g} ends together, 5/3 behind the middle, all with the acceleration 2/3",
             witness={"starts": _STARTS, "t": _END},

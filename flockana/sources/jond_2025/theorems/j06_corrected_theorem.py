@@ -16,11 +16,11 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
     """Return theorem zone-1-corrected on a run of a tree of five in m dimensions, as one claim."""
     corrected, rng = zone_1_corrected.theorem, np.random.default_rng(m)
     q, p = rng.uniform(-2.0, 2.0, (5, m)), rng.uniform(-0.5, 0.5, (5, m))
-    seen = observed(law, q, p, (0.0, 80.0))
-    verdict = Verdict(corrected.id, *with_resolution(*corrected.examine(seen, tolerances), seen))
+    observation = observed(law, q, p, (0.0, 80.0))
+    verdict = Verdict(corrected.id, *with_resolution(*corrected.examine(observation, tolerances), observation))
     statuses = [claim.status for claim in verdict.claims]
-    wrong, zeros = statuses.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
-    return counted(f"{name}-{m}", 0, wrong, wrong + statuses.count("inconclusive")).described(
+    refuted_count, zeros = statuses.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
+    return counted(f"{name}-{m}", 0, refuted_count, refuted_count + statuses.count("inconclusive")).described(
         computed={claim.name: claim.status for claim in verdict.claims},
         stated=f"every claim of zone-1-corrected, with {4 * (m - 1)} zero modes",
         witness={"edges": _TREE, "q(0)": q.tolist(), "p(0)": p.tolist()},

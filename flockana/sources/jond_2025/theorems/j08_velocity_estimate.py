@@ -31,10 +31,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     bounds: estimates drift away from the velocities, and the flock disperses.
     """
     laws = (ZoneFlocking(own_velocity=name) for name in ("estimated", "measured"))
-    estimated, measured = map(runs_from_random_starts, laws)
-    drift = [float(np.linalg.norm(run.extra["estimate"][-1] - run.p[-1], axis=1).mean()) for run in estimated]
-    flocks = [int(components(run.n, links(run.q[-1], 5.0)).max()) + 1 for run in estimated]
-    connected = [not components(run.n, links(run.q[-1], 5.0)).any() for run in measured]
+    estimated_runs, measured_runs = map(runs_from_random_starts, laws)
+    drift = [float(np.linalg.norm(run.extra["estimate"][-1] - run.p[-1], axis=1).mean()) for run in estimated_runs]
+    flocks = [int(components(run.n, links(run.q[-1], 5.0)).max()) + 1 for run in estimated_runs]
+    is_connected = [not components(run.n, links(run.q[-1], 5.0)).any() for run in measured_runs]
     return [
         _forms(tolerances),
         always(
@@ -49,5 +49,5 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             f"with (17) the flock is one component ({np.median(flocks):g} in the median)",
             "the flock stays together with the estimate as well",
         ).described(witness={"components by seed": flocks}),
-        mostly("measured", connected, "with the true velocity the flock is one component", "odometry repairs it"),
+        mostly("measured", is_connected, "with the true velocity the flock is one component", "odometry repairs it"),
     ]

@@ -16,14 +16,14 @@ _STRONG = ZoneWeights(separation=20.0, cohesion_gain=0.5, alignment_gain=4.0)  #
 
 def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
     """Return (least signed gap of an agent head on at a resting alien, least distance of ten agents by seed)."""
-    resting = ZoneWorld((), None, (Alien((20.0, 0.0), detection=1e-3),))
-    lone = ZoneFlocking(_WATCHFUL, ZoneWeights(), resting, surveillance=surveillance, u_max=_UNBOUNDED)
-    head_on = observed(lone, [[0.0, 0.0]], [[3.0, 0.0]], (0.0, DURATION)).run
-    hunting = ZoneWorld((), None, (Alien((16.0, 16.0)),))
-    flock = ZoneFlocking(_WATCHFUL, _STRONG, hunting, surveillance=surveillance, u_max=10.0)
+    resting_world = ZoneWorld((), None, (Alien((20.0, 0.0), detection=1e-3),))
+    lone_law = ZoneFlocking(_WATCHFUL, ZoneWeights(), resting_world, surveillance=surveillance, u_max=_UNBOUNDED)
+    head_on_run = observed(lone_law, [[0.0, 0.0]], [[3.0, 0.0]], (0.0, DURATION)).run
+    hunting_world = ZoneWorld((), None, (Alien((16.0, 16.0)),))
+    flock = ZoneFlocking(_WATCHFUL, _STRONG, hunting_world, surveillance=surveillance, u_max=10.0)
     gaps = [run.q[:, :, None] - run.extra["alien"][:, None] for run in runs_from_random_starts(flock)]
     nearest = [float(np.linalg.norm(gap, axis=3).min()) for gap in gaps]
-    return float((20.0 - head_on.q[:, 0, 0]).min()), nearest
+    return float((20.0 - head_on_run.q[:, 0, 0]).min()), nearest
 
 
 @erratum("J9", expected={"refuted": "printed flock", "verified": "corrected"})
@@ -31,12 +31,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """N_i^s contains the aliens at a_i < d <= s_i: one that comes closer exerts no force and passes through the flock.
     With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss.
     """
-    (through, annulus), (gap, disc) = (_nearest_alien(name) for name in ("annulus", "disc"))
+    (passing_distance, annulus), (gap, disc) = (_nearest_alien(name) for name in ("annulus", "disc"))
     stand_off = 6.0 - 3.0 * 5.0 / 5.0  # s − v^d w^ga/w^ss
-    clear = sum(d > a for d, a in zip(disc, annulus, strict=True))
+    clear_count = sum(d > a for d, a in zip(disc, annulus, strict=True))
     return [
-        of_map("printed", through / stand_off, _ROUNDING, about="all", disproof="stand-off").described(
-            computed=through,
+        of_map("printed", passing_distance / stand_off, _ROUNDING, about="all", disproof="stand-off").described(
+            computed=passing_distance,
             stated="an agent keeps clear of an alien that it sees",
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
@@ -49,7 +49,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             "flock",
             [distance > 1.5 for distance in annulus],
             f"as printed ten agents keep more than 1.5 m from a hunting alien ({np.median(annulus):.2f} m in the "
-            f"median; as corrected {np.median(disc):.2f} m, farther in {clear} of {len(disc)})",
+            f"median; as corrected {np.median(disc):.2f} m, farther in {clear_count} of {len(disc)})",
             "the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
         ).described(witness={"printed": annulus, "corrected": disc}),
     ]

@@ -28,14 +28,14 @@ def _outward(law: ZoneFlocking, point: tuple[float, float], outward: tuple[float
 def _inside(reading: str) -> tuple[float, float, float]:
     """Return (outward force in an obstacle, inward force beyond a wall, distance beyond the wall after 3 s)."""
     weights = ZoneWeights(speed=0.0)
-    among = ZoneFlocking(_RADII, weights, ZoneWorld((_OBSTACLE,)), inside=reading, u_max=_UNBOUNDED)
-    walled = ZoneFlocking(_RADII, weights, ZoneWorld(box=_BOX), inside=reading, u_max=_UNBOUNDED)
+    obstacle_law = ZoneFlocking(_RADII, weights, ZoneWorld((_OBSTACLE,)), inside=reading, u_max=_UNBOUNDED)
+    walled_law = ZoneFlocking(_RADII, weights, ZoneWorld(box=_BOX), inside=reading, u_max=_UNBOUNDED)
     q, p = np.array([[50.1, 25.0]]), np.array([[1e-3, 0.0]])
-    memory = walled.start(q, p)
-    inward = _outward(walled, (50.1, 25.0), (-1.0, 0.0))
+    memory = walled_law.start(q, p)
+    inward_force = _outward(walled_law, (50.1, 25.0), (-1.0, 0.0))
     for k in range(30):
-        q, p, _, memory = walled.step(k * walled.dt, q, p, memory)
-    return _outward(among, (10.5, 0.3), (-1.0, 0.0)), inward, float(q[0, 0]) - 50.0
+        q, p, _, memory = walled_law.step(k * walled_law.dt, q, p, memory)
+    return _outward(obstacle_law, (10.5, 0.3), (-1.0, 0.0)), inward_force, float(q[0, 0]) - 50.0
 
 
 def _head_on(law: ZoneFlocking) -> tuple[float, float]:
@@ -73,23 +73,23 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     damp the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes to
     c - v^d w^ga/w from it. At the printed 5, 5, 3, 3 that is 0 at a wall, and two agents pass through each other.
     """
-    outward, inward, beyond = _inside("literal")
+    outward, inward, outer_force = _inside("literal")
     mended_outward, mended_inward, mended_beyond = _inside("outward")
     error, stand_offs = _stand_offs()
     at_wall, (_, least_gap) = _at_wall(5.0, 5.0), _head_on(_separation_only(5.0, 5.0))
     force, c = 5.0 * _RADII.reach[1], _RADII.reach[1]  # w^oa c and c: the scales of force and length
-    printed, clearance = max(outward, inward) / force, min(at_wall, least_gap) / c
-    mended = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
+    printed_value, clearance = max(outward, inward) / force, min(at_wall, least_gap) / c
+    mended_force = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
     return [
-        of_state("printed", printed, _ROUNDING, disproof="stand-off").described(
+        of_state("printed", printed_value, _ROUNDING, disproof="stand-off").described(
             computed={"outward force in an obstacle": outward, "inward force beyond a wall": inward},
             stated="(8) repels an agent from an obstacle and from a wall",
             witness={"in an obstacle": (10.5, 0.3), "beyond the wall x = 50": (50.1, 25.0)}
-            | {"beyond it after 3 s": beyond},
+            | {"beyond it after 3 s": outer_force},
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
-            f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
+            f"beyond a wall, and after 3 s the agent is {outer_force:.3g} m beyond it",
         ),
-        of_map("corrected", mended, _ROUNDING).described(
+        of_map("corrected", mended_force, _ROUNDING).described(
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",

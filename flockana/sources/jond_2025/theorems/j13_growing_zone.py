@@ -44,12 +44,12 @@ def _head_on(law: ZoneFlocking) -> FloatArray:
 
 
 def _letter() -> Claim:
-    between = 0.5 * (_C + _A)
-    braking = _braking(_law("attraction", "literal"), between, _DESIRED)
+    middle_distance = 0.5 * (_C + _A)
+    braking = _braking(_law("attraction", "literal"), middle_distance, _DESIRED)
     return of_state("letter", braking, _ROUNDING, computed=braking).described(
         stated="with an altitude of a_i an agent is repelled by what comes within it",
-        witness={"distance from the wall": between, "c": _C, "a": _A},
-        detail=f"(8) is w (d - c): at d = {between:g}, beyond c = {_C:g}, it attracts, by {-braking:.3g} w c",
+        witness={"distance from the wall": middle_distance, "c": _C, "a": _A},
+        detail=f"(8) is w (d - c): at d = {middle_distance:g}, beyond c = {_C:g}, it attracts, by {-braking:.3g} w c",
     )
 
 
@@ -68,16 +68,16 @@ def _clamped() -> Claim:
 def _reaching() -> Claim:
     """Return the claim that an agent brakes just within its altitude and not just beyond, at every speed."""
     law = _law("speed", "reaching")
-    wrong, rows = [], {}
+    wrong_rows, rows = [], {}
     for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
         reach = _R + (_A - _R) * min(1.0, speed / _V_MAX)
-        within, beyond = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
+        inner_distance, outer_distance = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
         expected = _NEAR * reach / _C  # of w (h − d) over w c
-        wrong += [abs(within / expected - 1.0), abs(beyond) / expected]
+        wrong_rows += [abs(inner_distance / expected - 1.0), abs(outer_distance) / expected]
         rows[speed] = reach
     return of_state(
         "reaching",
-        1e-6 - float(np.max(wrong)),
+        1e-6 - float(np.max(wrong_rows)),
         1e-8,  # relative: of a difference of positions, a thousandth of their distance
         computed=rows,
         stated="an agent at speed v reacts from h = r + (a - r) v/v^max on",
@@ -90,9 +90,9 @@ def _reaching() -> Claim:
 def _slow() -> Claim:
     """Return the claim that an agent at rest has the short zone and stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
-    stated = _R - _DESIRED * _DRIVE / _WEIGHT
-    return of_map("stand-off", 1e-6 - abs(measured - stated) / _C, _ROUNDING, computed=measured).described(
-        stated=stated,
+    stated_value = _R - _DESIRED * _DRIVE / _WEIGHT
+    return of_map("stand-off", 1e-6 - abs(measured - stated_value) / _C, _ROUNDING, computed=measured).described(
+        stated=stated_value,
         witness={"w^ga": _DRIVE, "w^oa": _WEIGHT, "v^d": _DESIRED},
         detail=f"braked, the zone contracts to r: the agent stops {measured:.4f} m from the wall, at "
         "r - v^d w^ga/w^oa, nearer than at c - v^d w^ga/w^oa",

@@ -18,32 +18,32 @@ _NEAR = 0.05  # a mean speed this close, relative, is "about" the desired one
 
 def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
     """Return speeds over time of two agents side by side, some of them informed: simulated, and by x' = M x."""
-    drives = tuple(_DRIVE if k < informed else 0.0 for k in range(2))
-    weights = ZoneWeights(speed=drives, cohesion_gain=0.0, alignment_gain=_GAIN)
+    drive_gains = tuple(_DRIVE if k < informed else 0.0 for k in range(2))
+    weights = ZoneWeights(speed=drive_gains, cohesion_gain=0.0, alignment_gain=_GAIN)
     law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, v_max=_UNBOUNDED, desired_speed=_DESIRED)
     q, p = np.array([[0.0, 0.0], [0.0, _APART]]), np.column_stack([speeds, [0.0, 0.0]])
     run = law.iterate(0.0, q, p, law.start(q, p), _STEPS)[1][:, :, 0]
-    matrix = np.array([[-_GAIN - drives[0], _GAIN], [_GAIN, -_GAIN - drives[1]]])
-    predicted, x = [], np.array(speeds)
+    matrix = np.array([[-_GAIN - drive_gains[0], _GAIN], [_GAIN, -_GAIN - drive_gains[1]]])
+    predicted_value, x = [], np.array(speeds)
     for _ in range(_STEPS):
-        x = x + law.dt * (matrix @ x + _DESIRED * np.array(drives))
-        predicted.append(x)
-    return run, np.array(predicted)
+        x = x + law.dt * (matrix @ x + _DESIRED * np.array(drive_gains))
+        predicted_value.append(x)
+    return run, np.array(predicted_value)
 
 
 def _informed_or_not() -> list[Claim]:
-    informed, predicted = _pair(1, (1.0, 1.0))
-    off = float(np.abs(informed - predicted).max()) / _DESIRED
-    left = float(np.abs(informed[-1] - _DESIRED).max()) / _DESIRED
+    informed_speed, predicted_value = _pair(1, (1.0, 1.0))
+    deviation = float(np.abs(informed_speed - predicted_value).max()) / _DESIRED
+    left = float(np.abs(informed_speed[-1] - _DESIRED).max()) / _DESIRED
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
-        of_map("one-informed", _SAME - float(np.maximum(off, left)), _ROUNDING).described(
-            computed=informed[-1].tolist(),
+        of_map("one-informed", _SAME - float(np.maximum(deviation, left)), _ROUNDING).described(
+            computed=informed_speed[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
             detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
-            f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
+            f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {deviation:.1g})",
         ),
         of_map("none-informed", _SAME - spread, _ROUNDING, computed=alone[-1].tolist(), stated=1.5).described(
             witness={"informed": "none", "p(0)": (1.0, 2.0)},
@@ -69,19 +69,19 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     that are not informed of v^d. True: all agents that alignment reaches adopt v^d from a single informed agent. If
     none is informed, the flock agrees on a mean of its own velocities, and not on v^d.
     """
-    two, none = _speeds(2), _speeds(0)
+    two_informed_speeds, speeds_without = _speeds(2), _speeds(0)
     return [
         *_informed_or_not(),
         mostly(
             "two-of-ten",
-            [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],
+            [abs(v / _DESIRED - 1.0) <= _NEAR for v in two_informed_speeds],
             "with two informed agents of ten the mean speed is about v^d",
             "the flock adopts the speed of the informed agents",
-        ).described(witness={"mean speed by seed": two}),
+        ).described(witness={"mean speed by seed": two_informed_speeds}),
         mostly(
             "none-of-ten",
-            [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
-            f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
+            [abs(v / _DESIRED - 1.0) > _NEAR for v in speeds_without],
+            f"with none informed the mean speed is not about v^d ({np.median(speeds_without):.2f} in the median)",
             "a flock without informed agents does not fly at the desired speed",
-        ).described(witness={"mean speed by seed": none}),
+        ).described(witness={"mean speed by seed": speeds_without}),
     ]

@@ -34,24 +34,24 @@ def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
 def _sliding() -> Claim:
     """Return the claim that strong cohesion, off below r, makes a pair chatter at the distance r."""
     late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
-    off = float(np.abs(late / r - 1.0).max())
-    return of_map("sliding", _SLIDES - off, _ROUNDING, computed=[float(late.min()), float(late.max())]).described(
+    deviation = float(np.abs(late / r - 1.0).max())
+    return of_map("sliding", _SLIDES - deviation, _ROUNDING, computed=[float(late.min()), float(late.max())]).described(
         stated=f"beyond g_c = w^ls (c/r - 1) a pair slides at r = {r:g}",
         witness={"w^ls": _STRONG[0], "g_c": _STRONG[1], "dt": _FINE},
         detail=f"with g_c = {_STRONG[1]:g} the balance would be at {_C * _STRONG[0] / sum(_STRONG):.3g} m, nearer "
-        f"than r, where cohesion is off: the pair stays within {off:.1%} of r",
+        f"than r, where cohesion is off: the pair stays within {deviation:.1%} of r",
     )
 
 
 def _pair() -> list[Claim]:
     rows = {f"w^ls = {w:g}, g_c = {g:g}": [_C * w / (w + g), _rest(w, g)] for w, g in _CASES}
-    error = float(np.max([abs(stated - value) for stated, value in rows.values()]))
-    printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
+    error = float(np.max([abs(stated_value - value) for stated_value, value in rows.values()]))
+    printed_value, lone_distance = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
-        of_map("printed", printed / _C - 1.0, _ROUNDING, computed=printed).described(
+        of_map("printed", printed_value / _C - 1.0, _ROUNDING, computed=printed_value).described(
             stated=f"a separation of at least c = {_C:g} m is maintained",
             witness={"w^ls": 5.0, "w^lc": "any, as it cancels", "c": _C},
-            detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed:.4g} "
+            detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed_value:.4g} "
             f"m apart, not {_C:g}",
         ),
         of_map("rest", _SAME - error / _C, _ROUNDING).described(
@@ -62,7 +62,7 @@ def _pair() -> list[Claim]:
             "m): below c for any cohesion",
         ),
         _sliding(),
-        of_map("alone", _SAME - abs(alone / _C - 1.0), _ROUNDING, computed=alone, stated=_C).described(
+        of_map("alone", _SAME - abs(lone_distance / _C - 1.0), _ROUNDING, computed=lone_distance, stated=_C).described(
             witness={"g_c": 0.0, "q(0)": "2 m apart"},
             detail="without cohesion (6) drives a pair towards c, where it vanishes, as the paper says",
         ),

@@ -31,19 +31,19 @@ def _at_walls() -> Claim:
     q, p = np.array([[_C, 25.0], [_SIDE - _C, 25.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     g, w, dt = float(np.max(_PRINTED.speed)), float(np.max(_PRINTED.obstacle)), law.dt
     step = np.array([[1.0 - g * dt, w * dt], [-dt * (1.0 - g * dt), 1.0 - w * dt**2]])
-    fast, slow = np.sort(np.linalg.eigvals(step))
+    fast, slow_root = np.sort(np.linalg.eigvals(step))
     e = _SPEED * g / w  # d - d* at d = c
     states = np.array([np.linalg.matrix_power(step, k) @ (_SPEED, e) for k in range(1, _STEPS_AT_WALLS + 1)])
     path = _positions(law, q, p, _STEPS_AT_WALLS)[:, :, 0]
     depths = np.stack([_C - path[:, 0], path[:, 1] - (_SIDE - _C)])
     off = float(np.abs(depths - (e - states[:, 1])).max())
-    real = bool(np.isrealobj(fast) and 0.0 < fast < slow < 1.0)
+    real = bool(np.isrealobj(fast) and 0.0 < fast < slow_root < 1.0)
     margin = min(e / _SPEED - (fast - step[0, 0]) / step[0, 1], 1.0 - off / _LINEAR) if real else -1.0
     return limit_claim(
         "at-walls",
         [],
         escape=Certificate(float(margin), "their speeds towards the walls stay positive at all later times", _ROUNDING),
-        computed={"steps off the linear recursion by": off, "eigenvalues": [float(fast.real), float(slow.real)]},
+        computed={"steps off the linear recursion by": off, "eigenvalues": [float(fast.real), float(slow_root.real)]},
         stated=_REUNITE,
         witness={"q(0)": q.tolist(), "p(0)": p.tolist(), "bound of inputs": _UNBOUNDED},
         detail=f"two agents that head for opposite walls at v^d come to rest at them, {_SIDE - 2.0 * _C:g} m apart "
@@ -94,13 +94,13 @@ def _pairs() -> Claim:
     q = np.array([[0.0, 0.0], [0.0, 2.5], [20.0, 0.0], [20.0, 2.5]])  # 2.5 = c w^ls/(w^ls + g_c): no force
     p = _SPEED * np.array([[-1.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
     gap = _positions(law, q, p, 600)[-1]
-    parted = float(gap[2, 0] - gap[0, 0])
-    straight = 20.0 + 2.0 * _SPEED * 60.0
-    return of_map("fragments", 0.5 - parted / straight, _ROUNDING, computed=parted).described(
+    end_gap = float(gap[2, 0] - gap[0, 0])
+    straight_distance = 20.0 + 2.0 * _SPEED * 60.0
+    return of_map("fragments", 0.5 - end_gap / straight_distance, _ROUNDING, computed=end_gap).described(
         stated="growing radii of attraction keep the flock one",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
-        detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {parted:.4g} m "
-        f"apart after a minute, as in straight flight ({straight:g})",
+        detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {end_gap:.4g} m "
+        f"apart after a minute, as in straight flight ({straight_distance:g})",
     )
 
 

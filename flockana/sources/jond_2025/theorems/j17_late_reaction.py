@@ -20,10 +20,10 @@ def _meeting(s: float) -> tuple[float, float, float]:
     q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])
     qs, ps, _, memory = law.iterate(0.0, q, p, law.start(q, p), _STEPS)
     gap = np.abs(memory["alien"][:, 0, 0] - qs[:, 0, 0])
-    hunted = first_step(memory["alien"][:, 0, 0] != _AT)
+    hunt_step = first_step(memory["alien"][:, 0, 0] != _AT)
     # the input of step k is that of the state after step k − 1
-    heeded = first_step(ps[:, 0, 0] < _SPEED * (1.0 - _ROUNDING))
-    return law.dt * hunted, law.dt * heeded, float(gap.min())
+    reaction_step = first_step(ps[:, 0, 0] < _SPEED * (1.0 - _ROUNDING))
+    return law.dt * hunt_step, law.dt * reaction_step, float(gap.min())
 
 
 def first_step(happens: npt.NDArray[np.bool_]) -> float:
@@ -36,8 +36,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed
     reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer.
     """
-    (hunted, heeded, near), (hunted_too, at_once, far) = _meeting(_SHORT), _meeting(_DETECTION)
-    delay, none = heeded - hunted, at_once - hunted_too
+    (hunt_step, reaction_step, near), (second_hunt_step, prompt_step, far) = _meeting(_SHORT), _meeting(_DETECTION)
+    delay, none = reaction_step - hunt_step, prompt_step - second_hunt_step
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
     return [
         of_map("delay", 1.75 * step - abs(delay - predicted), _ROUNDING, computed=delay, stated=predicted).described(

@@ -45,13 +45,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     velocities: its own, in (0, 1), are half aligned already, and from initial velocities of all directions a large
     flock breaks up into many.
     """
-    ends = {n: _ends(n) for n in _SIZES}
-    some, many = (float(ends[n][:, 3].mean()) for n in _SIZES[1:])
+    end_states = {n: _ends(n) for n in _SIZES}
+    some, many = (float(end_states[n][:, 3].mean()) for n in _SIZES[1:])
     turned = _ends(_SIZES[-1], any_direction=True)
     return [
-        *(_flocks(n, ends[n]) for n in _SIZES),
+        *(_flocks(n, end_states[n]) for n in _SIZES),
         of_map("local", _MORE - many / some, _ROUNDING).described(
-            computed={n: float(ends[n][:, 3].mean()) for n in _SIZES},
+            computed={n: float(end_states[n][:, 3].mean()) for n in _SIZES},
             stated="an agent interacts with no more agents in a flock five times as large",
             witness={"agents within a_i, mean over seeds": (some, many)},
             detail=f"an agent has {some:.3g} others within a_i among {_SIZES[1]}, and {many:.3g} among {_SIZES[2]}: "

@@ -30,21 +30,21 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from its root the root is reached from nowhere. Right is that edges lead from the root to all others.
     """
     trees = out_trees(_NODES)
-    is_root = [globally_reachable(tree) for tree in trees]
-    roots, connected = sum(0 in nodes for nodes in is_root), sum(map(bool, is_root))
+    root_sets = [globally_reachable(tree) for tree in trees]
+    roots, connected_count = sum(0 in nodes for nodes in root_sets), sum(map(bool, root_sets))
     star = next(tree for tree in trees if tree.out_degree(0) == _NODES - 1)
-    from_root = sum(globally_reachable(tree.reverse()) == {0} for tree in trees)
+    rooted_count = sum(globally_reachable(tree.reverse()) == {0} for tree in trees)
     return [
         exact("root", roots == len(trees), computed=roots).described(
             stated=f"the root of each of the {len(trees)} trees on {_NODES} nodes is globally reachable",
             detail=f"the root is globally reachable in {roots} of {len(trees)}",
         ),
-        exact("star", connected == len(trees), computed=connected).described(
+        exact("star", connected_count == len(trees), computed=connected_count).described(
             stated="a graph with a spanning tree is connected as defined",
             witness=sorted(star.edges),
-            detail=f"{connected} of {len(trees)} have a globally reachable node: the paths; a star has none",
+            detail=f"{connected_count} of {len(trees)} have a globally reachable node: the paths; a star has none",
         ),
-        exact("corrected", from_root == len(trees), computed=from_root).described(
+        exact("corrected", rooted_count == len(trees), computed=rooted_count).described(
             stated="from the root edges lead to every other node",
             detail=f"so it is in all {len(trees)}, and from no other node",
         ),

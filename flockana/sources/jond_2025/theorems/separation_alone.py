@@ -27,17 +27,17 @@ def _pair(tolerances: Tolerances) -> Claim:
     period = 2.0 * pi / sqrt(2.0 * _MU)
     times = np.linspace(0.0, _PERIODS * period, _PER_PERIOD * _PERIODS + 1)
     start = np.array([[0.0, 0.0], [_RHO + _STRETCH, 0.0]])
-    seen = observed(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
-    y = seen.distances([0], [1])[:, 0] - _RHO
-    measured = float(np.diff(_crossings(seen.t, y.mid)).mean())
+    observation = observed(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
+    y = observation.distances([0], [1])[:, 0] - _RHO
+    measured_period = float(np.diff(_crossings(observation.t, y.mid)).mean())
     amplitude = float(np.abs(y.mid[-_PER_PERIOD:]).max())
     return judged(
         "alone",
         tolerances.agreement - abs(y - _STRETCH * np.cos(2.0 * pi / period * times)) / _STRETCH,
-        computed={"period": measured, "amplitude at the end": amplitude},
+        computed={"period": measured_period, "amplitude at the end": amplitude},
         stated={"period": period, "amplitude": _STRETCH},
         witness={"q(0)": start.tolist(), "p(0)": "0"},
-        detail=f"two agents swing about ρ with period {measured:.5g} = 2π/sqrt(2μ), with amplitude "
+        detail=f"two agents swing about ρ with period {measured_period:.5g} = 2π/sqrt(2μ), with amplitude "
         f"{amplitude:.4g} after {_PERIODS} periods, as at the start",
     )
 
@@ -51,12 +51,12 @@ def _path_energy(sigma: float) -> Enclosure:
 
 def _conserved(tolerances: Tolerances) -> Claim:
     """Return the claim on five agents on a path: H is conserved without alignment, and lost with it."""
-    alone, aligned = map(_path_energy, (0.0, 1.0))
-    drift, left = abs(alone / alone[0] - 1.0).max(), aligned[-1] / aligned[0]
+    lone_energy, aligned_energy = map(_path_energy, (0.0, 1.0))
+    drift, left = abs(lone_energy / lone_energy[0] - 1.0).max(), aligned_energy[-1] / aligned_energy[0]
     return judged("energy", tolerances.energy - stacked([drift, left])).described(
         computed={"drift of H without alignment": float(drift.mid), "H(T)/H(0) with it": float(left.mid)},
         stated=f"H keeps its value by separation alone, and with alignment {tolerances.energy:g} of it is left at most",
-        witness={"agents": 5, "graph": "a frozen undirected path", "H(0)": float(alone.mid[0])},
+        witness={"agents": 5, "graph": "a frozen undirected path", "H(0)": float(lone_energy.mid[0])},
         detail=f"on a path of five H keeps its value to {drift.mid:.1g} over 60 time units; with alignment "
         f"{left.mid:.1g} of it is left",
     )
@@ -69,17 +69,17 @@ def _resonance(tolerances: Tolerances) -> Claim:
     start = np.array([[0.0], [_RHO + a], [2.0 * _RHO + a]])
     end = 2.0 * pi * _PERIODS / omega
     times = np.linspace(0.0, end, _PER_PERIOD * _PERIODS + 1)
-    seen = observed(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
-    y = seen.distances([1], [2])[:, 0] - _RHO
-    ratio, stated = float(np.abs(y.mid[-_PER_PERIOD:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
+    observation = observed(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
+    y = observation.distances([1], [2])[:, 0] - _RHO
+    ratio, stated_value = float(np.abs(y.mid[-_PER_PERIOD:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
     return judged(
         "chain",
-        tolerances.agreement - abs(y / a - 0.5 * omega * times * np.sin(omega * times)) / stated,
+        tolerances.agreement - abs(y / a - 0.5 * omega * times * np.sin(omega * times)) / stated_value,
         computed=ratio,
-        stated=stated,
+        stated=stated_value,
         witness={"q(0)": start.tolist(), "edges": law.edges},
         detail=f"on a directed chain the second edge swings {ratio:.4g} times as far as the first after {_PERIODS} "
-        f"periods, and ever farther: resonance, ω t/2 = {stated:.4g}",
+        f"periods, and ever farther: resonance, ω t/2 = {stated_value:.4g}",
     )
 
 

@@ -27,21 +27,21 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
-    length, energy = case.lengths(seen.run.q[-1]), kept(case, seen.end)
+    distance, energy = case.lengths(seen.run.q[-1]), kept(case, seen.end)
     text = f"one edge never falls below {energy:.4g} of its desired length"
     return limit_claim("edges", needs, escape=Certificate(energy, text, 0.0)).described(
-        computed=[float(length.min()), float(length.max())],
+        computed=[float(distance.min()), float(distance.max())],
         stated="|x_e| -> 0 on every edge",
         witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[-1])},
-        detail=f"at t = {seen.t[-1]:g} edges are {length.min():.6g} to {length.max():.6g} long",
+        detail=f"at t = {seen.t[-1]:g} edges are {distance.min():.6g} to {distance.max():.6g} long",
     )
 
 
 def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
     """Return the largest real part of the eigenvalues of A_cl, s² + a s + μ (1 − ρ/‖x_e‖) over all edges (J3)."""
     abscissa = -inf
-    for length, rho, mu, a in zip(lengths, case.rho, case.mu, case.align, strict=True):
-        w = mu * (1.0 - rho / length) if length > 0.0 else -inf
+    for distance, rho, mu, a in zip(lengths, case.rho, case.mu, case.align, strict=True):
+        w = mu * (1.0 - rho / distance) if distance > 0.0 else -inf
         abscissa = max(abscissa, 0.5 * (sqrt(max(a * a - 4.0 * w, 0.0)) - a))
     return abscissa
 
@@ -75,14 +75,14 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     zero from any initial condition, since A_cl is Hurwitz. False: x = 0 is collision; at rest with every edge at its
     desired length nothing moves; A_cl is Hurwitz only where all edges are longer than that.
     """
-    needs, case = tree_hypotheses(seen)
+    requirements, case = tree_hypotheses(seen)
     if case is not None and case.root is None:
-        needs[1] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
-    if case is None or unmet(needs):
-        return needs, []
-    return needs, [
-        _at_rest(case, seen, needs),
-        _edges_vanish(case, seen, needs),
-        velocity_claim(case, seen, needs, stated="x' -> 0 on every edge"),
-        _hurwitz(case, seen, needs),
+        requirements[1] = Hypothesis("the graph is a spanning tree", "unmet", detail="undirected: no agent is a root")
+    if case is None or unmet(requirements):
+        return requirements, []
+    return requirements, [
+        _at_rest(case, seen, requirements),
+        _edges_vanish(case, seen, requirements),
+        velocity_claim(case, seen, requirements, stated="x' -> 0 on every edge"),
+        _hurwitz(case, seen, requirements),
     ]

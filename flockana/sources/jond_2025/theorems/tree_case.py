@@ -34,33 +34,33 @@ class TreeCase:
     @cached_property
     def walk(self) -> tuple[tuple[int, int, int], ...]:
         """Edges as (edge, agent nearer to the root, agent farther from it), from the root outwards."""
-        visited, outwards = {self.links[0][0] if self.root is None else self.root}, []
+        visited_agents, outward_edges = {self.links[0][0] if self.root is None else self.root}, []
         left = dict(enumerate(self.links))
         while left:
             for e, (j, i) in list(left.items()):
-                if j in visited or i in visited:
-                    outwards.append((e, j, i) if j in visited else (e, i, j))
-                    visited |= {j, i}
+                if j in visited_agents or i in visited_agents:
+                    outward_edges.append((e, j, i) if j in visited_agents else (e, i, j))
+                    visited_agents |= {j, i}
                     del left[e]
-        return tuple(outwards)
+        return tuple(outward_edges)
 
     def on_manifold(self, q: FloatArray) -> FloatArray:
         """Return a configuration with the bearings of q and every edge at its desired length."""
         x = edge_vectors(q, self.links)
-        length = np.linalg.norm(x, axis=1, keepdims=True)
-        bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
+        distance = np.linalg.norm(x, axis=1, keepdims=True)
+        bearing = np.divide(x, distance, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=distance > 0.0)
         placed: FloatArray = np.zeros_like(x, shape=q.shape)
         for e, near, far in self.walk:
-            way = self.rho[e] * bearing[e]  # from the head of the edge to its tail
-            placed[far] = placed[near] - way if self.links[e] == (near, far) else placed[near] + way
+            direction = self.rho[e] * bearing[e]  # from the head of the edge to its tail
+            placed[far] = placed[near] - direction if self.links[e] == (near, far) else placed[near] + direction
         return placed
 
     def edge_system(self, q: FloatArray) -> FloatArray:
         """Return the matrix A of the edge dynamics (x, x') at an equilibrium."""
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
-        twice = np.kron(np.eye(2), T)
-        return twice @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
+        doubled_tree = np.kron(np.eye(2), T)
+        return doubled_tree @ linearise(self.law, q).A @ np.kron(np.eye(2), np.linalg.pinv(T))
 
     def lengths(self, q: FloatArray) -> FloatArray:
         """Return ‖x_e‖ of each edge, shape (..., n − 1)."""
@@ -69,8 +69,8 @@ class TreeCase:
     def edges_of(self, x: FloatArray, error: FloatArray) -> Enclosure:
         """Return enclosures of the length of x_j − x_i over each edge, for vectors with given errors."""
         tails, heads = np.array(self.links, dtype=np.intp).T
-        apart = np.linalg.norm(x[..., heads, :] - x[..., tails, :], axis=-1)
-        return Enclosure.around(apart, error[..., tails] + error[..., heads] + 4.0 * EPS * apart).clip(0.0)
+        distances = np.linalg.norm(x[..., heads, :] - x[..., tails, :], axis=-1)
+        return Enclosure.around(distances, error[..., tails] + error[..., heads] + 4.0 * EPS * distances).clip(0.0)
 
     def energies(self, lengths: Enclosure, rates: Enclosure) -> Enclosure:
         """Return V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖."""
@@ -89,9 +89,9 @@ def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
     links = law.edges if root is not None else tuple((j, i) for j, i in law.edges if j < i)
     if root is None and not (law.reciprocal and len(links) == n - 1 and is_connected(n, links)):
         return None
-    where = [law.edges.index(link) for link in links]
-    _, _, mu, rho, align = law.edge_data(np.empty((n, 1)))
-    return TreeCase(law, n, links, rho[where], mu[where], align[where], root)
+    edge_indices = [law.edges.index(link) for link in links]
+    _, _, mu, rho, align_weights = law.edge_data(np.empty((n, 1)))
+    return TreeCase(law, n, links, rho[edge_indices], mu[edge_indices], align_weights[edge_indices], root)
 
 
 def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]]) -> float:
@@ -99,8 +99,8 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     radius = 4.0 * max(abs(b) + sqrt(abs(c)) for b, c in factors)  # far outside all roots, where nothing cancels
     points = radius * np.exp(2j * np.pi * np.arange(len(A) + 1) / (len(A) + 1))
     determinants = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
-    stated = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
-    return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated) - 1.0).max())
+    stated_value = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
+    return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated_value) - 1.0).max())
 
 
 def minimal_law(seen: Observed) -> Hypothesis:
@@ -114,12 +114,12 @@ def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:
         kind = "an undirected tree" if case.root is None else f"an out-tree from agent {case.root}, which reaches all"
-    needs = [
+    requirements = [
         condition("the graph never changes", frozen, detail="" if frozen else "perceived"),
         condition("the graph is a spanning tree", case is not None, detail=kind),
     ]
     if case is not None:
         for name, weights in (("μ > 0", case.mu), ("alignment weights are positive", case.align)):
             smallest = float(weights.min())
-            needs.append(condition(name, smallest > 0.0, smallest))
-    return needs, case
+            requirements.append(condition(name, smallest > 0.0, smallest))
+    return requirements, case

@@ -30,18 +30,18 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
     """Return the claim that V of an edge from the root falls, and keeps the edge from length 0."""
     if seen.doubt:
         return undecided("root-edge", "the edges' energies are not known", needs)
-    lengths, rates = case.edges_of(seen.run.q, seen.shape_error), case.edges_of(seen.run.p, seen.speed_error)
-    energies = case.energies(lengths, rates)
-    below = energies.hi[0] < case.barrier
-    edges = [e for e, (j, _) in enumerate(case.links) if j == case.root and below[e]]
+    link_lengths, rates = case.edges_of(seen.run.q, seen.shape_error), case.edges_of(seen.run.p, seen.speed_error)
+    energies = case.energies(link_lengths, rates)
+    below_barrier = energies.hi[0] < case.barrier
+    edges = [e for e, (j, _) in enumerate(case.links) if j == case.root and below_barrier[e]]
     if not edges:
         return vacuous("root-edge", condition("an edge from the root starts below μρ²/2", False))
     V, start = energies[:, edges], energies[0, edges]
-    room = _room(case, seen, start, edges, tolerances.energy)
+    margin = _room(case, seen, start, edges, tolerances.energy)
     falls = (V[:-1] - V[1:] + tolerances.energy * start) / case.barrier[edges]
     rises = float((np.diff(V.mid, axis=0) / case.barrier[edges]).max(initial=0.0))
-    return judged("root-edge", stacked([room.worst, falls.worst]), needs, proof=proof_of(case, seen.m)).described(
-        computed={"least distance to the bound": float(room.worst.mid), "largest rise of V in a step": rises},
+    return judged("root-edge", stacked([margin.worst, falls.worst]), needs, proof=proof_of(case, seen.m)).described(
+        computed={"least distance to the bound": float(margin.worst.mid), "largest rise of V in a step": rises},
         stated="|x(t)| >= ρ - sqrt(2V(0)/μ) > 0 on edges from the root, with V never rising",
         witness={f"edge {case.links[e]}": {"V(0)": float(V.mid[0, k])} for k, e in enumerate(edges)},
         detail=f"{len(edges)} edges from the root start below μρ²/2; V rises by at most {rises:.1g} of this from "
@@ -51,9 +51,9 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
 
 def _springs_rounding(case: TreeCase, seen: Observed) -> float:
     """Return the rounding error of ½ Σ μ (|x| − ρ)² far from the origin."""
-    off = 16.0 * EPS * float(np.abs(seen.run.q).max())
+    rounding_error = 16.0 * EPS * float(np.abs(seen.run.q).max())
     stretch = np.abs(case.lengths(seen.run.q) - case.rho)
-    return float((case.mu * (stretch + off) * off).sum(axis=1).max())
+    return float((case.mu * (stretch + rounding_error) * rounding_error).sum(axis=1).max())
 
 
 def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
@@ -62,19 +62,19 @@ def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolera
         return undecided("energy", "the run carries no integral of dH/dt", needs)
     H, largest, rate = seen.run.energy(), float(seen.run.energy().max()), float(seen.run.energy_rate().max())
     residual = abs(seen.residual.widened(_springs_rounding(case, seen)))
-    off = float(residual.mid.max())
-    balanced = tolerances.energy - residual.max() / Enclosure.around(largest, _springs_rounding(case, seen))
-    apart = float(case.shortest(seen).lo.min()) > 0.0  # the proof is silent on edges of length 0
+    deviation = float(residual.mid.max())
+    balance_margin = tolerances.energy - residual.max() / Enclosure.around(largest, _springs_rounding(case, seen))
+    stays_apart = float(case.shortest(seen).lo.min()) > 0.0  # the proof is silent on edges of length 0
     return judged(
         "energy",
-        balanced if rate <= 0.0 else Enclosure.of(-1.0),  # a sum of squares: no rounding turns its sign
+        balance_margin if rate <= 0.0 else Enclosure.of(-1.0),  # a sum of squares: no rounding turns its sign
         needs,
         computed=rate,
         stated="dH/dt = -Σ σ |v_i - v_j|² <= 0",
-        witness={"H(0)": float(H[0]), "H(T)": float(H[-1]), "residual": off},
-        proof=proof_of(case, seen.m) if apart else None,
+        witness={"H(0)": float(H[0]), "H(T)": float(H[-1]), "residual": deviation},
+        proof=proof_of(case, seen.m) if stays_apart else None,
         detail=f"H falls from {H[0]:.4g} to {H[-1]:.3g}; its rate is never above {rate:.1g}, and accounts for H to "
-        f"{off:.1g}",
+        f"{deviation:.1g}",
     )
 
 

@@ -37,36 +37,36 @@ def state(q: FloatArray, p: FloatArray) -> End:
 
 def edge_shares(case: TreeCase, end: End) -> FloatArray:
     """Return V̂/(½μρ²) of each edge (below 1 the length never reaches 0); ∞ where unknown."""
-    lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
+    link_lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
     if case.root is not None:
-        return _directed(case, case.energies(lengths, rates).hi)
+        return _directed(case, case.energies(link_lengths, rates).hi)
     speeds = np.linalg.norm(end.p - end.p.mean(axis=0), axis=1)
     off = end.p_error + sqrt(end.p.shape[1]) * frame_error(end.p)
-    H = 0.5 * Enclosure.around(speeds, off).square().sum() + case.energies(lengths, 0.0 * rates).sum()
+    H = 0.5 * Enclosure.around(speeds, off).square().sum() + case.energies(link_lengths, 0.0 * rates).sum()
     return H.hi * (1.0 + case.n * EPS) / case.barrier
 
 
 def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
     """Return bounds of each edge's energy over its barrier, from the root outwards."""
-    shares, felt = np.full(len(case.links), inf), {case.root: 0.0}
+    shares, felt_accelerations = np.full(len(case.links), inf), {case.root: 0.0}
     for e, parent, child in case.walk:
-        W, mu, a = felt[parent], float(case.mu[e]), float(case.align[e])
-        most = float(start[e]) + W / (2.0 * a)
-        shares[e] = most / case.barrier[e]
-        felt[child] = inf
+        W, mu, a = felt_accelerations[parent], float(case.mu[e]), float(case.align[e])
+        maximum = float(start[e]) + W / (2.0 * a)
+        shares[e] = maximum / case.barrier[e]
+        felt_accelerations[child] = inf
         if shares[e] < 1.0:
             theta = sqrt(shares[e])
-            P, bend = 2.0 * most / a, max(1.0, theta / (1.0 - theta))
-            stretch = 4.0 * most / sqrt(mu) + 2.0 * (bend + a * a / mu) * P + 2.0 * W / mu
-            felt[child] = 2.0 * (mu * stretch + a * a * P)
+            P, growth_limit = 2.0 * maximum / a, max(1.0, theta / (1.0 - theta))
+            stretch = 4.0 * maximum / sqrt(mu) + 2.0 * (growth_limit + a * a / mu) * P + 2.0 * W / mu
+            felt_accelerations[child] = 2.0 * (mu * stretch + a * a * P)
     return shares
 
 
 def settles(case: TreeCase, end: End) -> Certificate:
     """Return a certificate that all edges reach their desired lengths and velocity differences decay."""
     share = float(edge_shares(case, end).max())
-    never = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
-    text = f"{never}: edges have at most {share:.2g} of the energy needed"
+    end_text = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
+    text = f"{end_text}: edges have at most {share:.2g} of the energy needed"
     return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
 
 

@@ -38,8 +38,8 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
     A = _in_units_of(case.edge_system(q), unit)
     springs = [(float(a) * unit, float(mu) * unit**2) for a, mu in zip(case.align, case.mu, strict=True)]
     residual = characteristic_residual(A, springs + [(a, 0.0) for a, _ in springs for _ in range(m - 1)])
-    singular = np.linalg.svd(A, compute_uv=False)[::-1]
-    zeros, kernel, rounding = _kernel(singular, (case.n - 1) * (m - 1))
+    singular_values = np.linalg.svd(A, compute_uv=False)[::-1]
+    zeros, kernel, rounding = _kernel(singular_values, (case.n - 1) * (m - 1))
     slowest = min(0.5 * (a - sqrt(max(a * a - 4.0 * mu, 0.0))) for a, mu in springs) / unit
     error = max(rounding, 64.0 * len(A) ** 2 * EPS / POLYNOMIAL)  # of a determinant far outside the spectrum
     return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), error)
@@ -52,19 +52,19 @@ def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
     m, unit = q.shape[1], 1.0 / sqrt(float(case.mu.max()))
     jacobian = np.asarray(case.law.jacobian(0.0, q, np.zeros_like(q)))[q.size :]
     K, C = -jacobian[:, : q.size] * unit**2, -jacobian[:, q.size :] * unit
-    rigid, damped = np.linalg.eigvalsh(0.5 * (K + K.T)), np.linalg.eigvalsh(0.5 * (C + C.T))
+    rigid, damping_values = np.linalg.eigvalsh(0.5 * (K + K.T)), np.linalg.eigvalsh(0.5 * (C + C.T))
     zeros, kernel, rounding = _kernel(rigid, (case.n - 1) * (m - 1) + m)
-    _, still, blur = _kernel(damped, m)
+    _, neutral_count, blur = _kernel(damping_values, m)
     A = case.edge_system(q)
     moving = np.sort(np.linalg.eigvals(A).real)[: len(A) - (case.n - 1) * (m - 1)]
-    skew = float(max(np.abs(K - K.T).max(), np.abs(C - C.T).max() / max(np.abs(C).max(), EPS)))
-    return Spectrum(zeros - m, -float(moving.max()), 0.0, min(kernel, still), max(rounding, blur) + skew)
+    skew_size = float(max(np.abs(K - K.T).max(), np.abs(C - C.T).max() / max(np.abs(C).max(), EPS)))
+    return Spectrum(zeros - m, -float(moving.max()), 0.0, min(kernel, neutral_count), max(rounding, blur) + skew_size)
 
 
 def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
     """Return the matrix A of (x, x') with time in another unit."""
-    half = len(A) // 2
-    scale = np.concatenate([np.ones(half), np.full(half, unit)])
+    half_dimension = len(A) // 2
+    scale = np.concatenate([np.ones(half_dimension), np.full(half_dimension, unit)])
     return A * (scale[:, None] * unit) / scale[None, :]
 
 
@@ -74,8 +74,8 @@ def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, 
     # is not clear which are.
     largest = float(np.abs(values).max())
     rounding = 64.0 * len(values) * EPS
-    zero, clear = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest
-    if not (zero | clear).all():
+    zero, has_gap = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest
+    if not (zero | has_gap).all():
         return int(zero.sum()), nan, rounding
     if int(zero.sum()) != expected or values[0] < -rounding * largest:
         return int(zero.sum()), -1.0, rounding

@@ -75,11 +75,11 @@ def force(s, par):
 @register_jitable
 def repulsive_part(s, b, par):
     """Return ∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, stable also at η = 0."""
-    at_s, at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
-    gap = (b - s) * (b + s) / (at_s + at_b)
-    near = b < 2.0 * s  # else nothing cancels, and 1 + x would round
-    ratio = log1p((b - s) / s) if near else log(b / s)
-    roots = log1p(-par[ETA] * gap / (1.0 + at_b)) if near else log((1.0 + at_s) / (1.0 + at_b))
+    root_at_s, root_at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
+    gap = (b - s) * (b + s) / (root_at_s + root_at_b)
+    is_small = b < 2.0 * s  # else nothing cancels, and 1 + x would round
+    ratio = log1p((b - s) / s) if is_small else log(b / s)
+    roots = log1p(-par[ETA] * gap / (1.0 + root_at_b)) if is_small else log((1.0 + root_at_s) / (1.0 + root_at_b))
     return 2.0 * par[K_R] * (ratio + roots) + par[K_DELTA] * gap
 
 
@@ -87,12 +87,12 @@ def repulsive_part(s, b, par):
 def attractive_part(a, s, par):
     """Return ∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
     eta, r_d = par[ETA], par[R_D]
-    big = 1.0 + eta * r_d * r_d
-    at_s, at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(big)
-    pole = r_d / big * (at_s / (r_d - s) - at_a / (r_d - a))
-    ratio = (1.0 + eta * r_d * s + root * at_s) / (1.0 + eta * r_d * a + root * at_a)
-    logarithm = (log(ratio) + log((r_d - a) / (r_d - s))) / (big * root)
-    return 2.0 * par[K_R] * (pole - logarithm) + par[K_DELTA] * (s - a) * (s + a) / (at_s + at_a)
+    squared_scale = 1.0 + eta * r_d * r_d
+    root_at_s, root_at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(squared_scale)
+    pole = r_d / squared_scale * (root_at_s / (r_d - s) - root_at_a / (r_d - a))
+    ratio = (1.0 + eta * r_d * s + root * root_at_s) / (1.0 + eta * r_d * a + root * root_at_a)
+    logarithm = (log(ratio) + log((r_d - a) / (r_d - s))) / (squared_scale * root)
+    return 2.0 * par[K_R] * (pole - logarithm) + par[K_DELTA] * (s - a) * (s + a) / (root_at_s + root_at_a)
 
 
 @register_jitable
@@ -115,11 +115,11 @@ def potential(s, par, panels):
 @register_jitable
 def pair_dead_zone(s2, par):
     """Return (weight of q_j − q_i, a_ij) of a pair at squared distance s2 within range, without branches."""
-    s, steep = sqrt(s2), 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300
-    ramped = max(0.0, min(1.0, (s - par[D_2]) * steep)) - max(0.0, min(1.0, (par[D_1] - s) * steep))
+    s, ramp_slope = sqrt(s2), 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300
+    ramped_dot = max(0.0, min(1.0, (s - par[D_2]) * ramp_slope)) - max(0.0, min(1.0, (par[D_1] - s) * ramp_slope))
     gap = s if s < par[D_1] else par[R_D] - s
     gap2 = gap * gap
-    weight = ramped * (2.0 * par[K_R] + par[K_DELTA] * gap2) / (gap2 * sqrt(1.0 + par[ETA] * s2)) + par[K_1]
+    weight = ramped_dot * (2.0 * par[K_R] + par[K_DELTA] * gap2) / (gap2 * sqrt(1.0 + par[ETA] * s2)) + par[K_1]
     return weight, 1.0
 
 
@@ -146,12 +146,12 @@ def pair_dead_zone_adjacency_slope(s2, par):
 def zones(q, par):
     """Return the zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
     n = len(q)
-    out, k = np.empty(n * (n - 1) // 2, np.int8), 0
+    zone_codes, k = np.empty(n * (n - 1) // 2, np.int8), 0
     for i in range(n):
         for j in range(i + 1, n):
-            out[k] = zone_of(sqrt(square_between(q, i, j)), par)
+            zone_codes[k] = zone_of(sqrt(square_between(q, i, j)), par)
             k += 1
-    return out
+    return zone_codes
 
 
 @kernel

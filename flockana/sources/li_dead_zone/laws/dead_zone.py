@@ -80,8 +80,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""
         q, p = ensure_state(q, p)
         n = len(q)
-        apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
-        return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
+        distant_pairs = n * (n - 1) // 2 - len(links(q, self.interaction.r))
+        return self.hamiltonian(0.0, q, p) - distant_pairs * self.interaction.far_potential
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
         def literal() -> FloatArray:
@@ -129,10 +129,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
         step = np.where(margins.inside < 0.0, np.where(margins.upper, 1, -1), 0)
-        after = pieces + step
+        next_pieces = pieces + step
         if self.interaction.d2 >= self.interaction.r:  # there is no zone of attraction
-            after = np.where(after == ATTRACTION, np.where(step > 0, OUT, DEAD), after)
-        return after.astype(np.int8)
+            next_pieces = np.where(next_pieces == ATTRACTION, np.where(step > 0, OUT, DEAD), next_pieces)
+        return next_pieces.astype(np.int8)
 
     def held_speed(self, push: float) -> float:  # noqa: D102
         return float(np.sqrt(2.0 * SLIDES * self.interaction.d1 * push))

@@ -98,7 +98,7 @@ class LedDeadZoneFlocking(SumOfTerms):
         value = getattr(self, name)
         if isinstance(value, str | bytes) or not isinstance(value, Iterable):
             raise ArgumentError(f"{name} = {value!r}: expected a sequence of whole numbers, such as (0, 1)")
-        object.__setattr__(self, name, tuple(ensure_index(f"{name} has", one, count, what) for one in value))
+        object.__setattr__(self, name, tuple(ensure_index(f"{name} has", item, count, what) for item in value))
 
     @property
     def scales(self) -> Scales:
@@ -108,8 +108,8 @@ class LedDeadZoneFlocking(SumOfTerms):
     @cached_property
     def ties(self) -> Leaders:
         """Term that couples agents to their leaders."""
-        numbers = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
-        return Leaders(self.interaction, self.k2, *numbers)
+        tie_parameters = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
+        return Leaders(self.interaction, self.k2, *tie_parameters)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -119,19 +119,19 @@ class LedDeadZoneFlocking(SumOfTerms):
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)
         self.terms[0].act(t, q, p, u)
-        exchanged = -float(np.sum(u * self.ties.led(t)[1]))
-        return u, exchanged + self.ties.act(t, q, p, u)
+        exchanged_power = -float(np.sum(u * self.ties.led(t)[1]))
+        return u, exchanged_power + self.ties.act(t, q, p, u)
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         return self.potential_energy(t, q) + 0.5 * float(np.sum((p - self.ties.led(t)[1]) ** 2))
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         led = [self.ties.led(float(time)) for time in t]
-        off, slip = (
-            np.array([np.linalg.norm(own_p - each[k], axis=1).max() for own_p, each in zip(state, led, strict=True)])
+        deviation, slip = (
+            np.array([np.linalg.norm(own_p - item[k], axis=1).max() for own_p, item in zip(state, led, strict=True)])
             for k, state in enumerate((q, p))
         )
         return {
-            "leader_distance": ("largest distance of an agent from its leader", off),
+            "leader_distance": ("largest distance of an agent from its leader", deviation),
             "leader_slip": ("largest difference of velocity from one's leader", slip),
         }

@@ -23,9 +23,9 @@ def _slip(run: Trajectory) -> FloatArray:
     """Return each agent's velocity error to its leader, relative to half the leaders' velocity difference."""
     law = _law(run)
     leader_velocity = law.ties.led(float(run.t[-1]))[1]
-    parting = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
-    slip: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting
-    return slip
+    parting_speed = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
+    velocity_difference: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting_speed
+    return velocity_difference
 
 
 def _carried_off(run: Trajectory) -> int:
@@ -44,14 +44,14 @@ def _same(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("different-leaders", "agents with different leaders do not match")
 def _different(run: Trajectory, tolerances: Tolerances) -> Claim:
-    lost = _carried_off(run)
-    mixed = lost * (run.n - lost) > 0
+    lost_agents = _carried_off(run)
+    is_mixed = lost_agents * (run.n - lost_agents) > 0
     detail = (
-        f"{lost} agents match their neighbours of the other leader, as pair forces hold together whoever is near"
-        if mixed
+        f"{lost_agents} agents match their neighbours of the other leader, as pair forces hold together whoever is near"
+        if is_mixed
         else "no agent moves with one of another leader"
     )
-    return finding(-0.5 if mixed else 0.5, detail, computed=lost, stated="they do not match")
+    return finding(-0.5 if is_mixed else 0.5, detail, computed=lost_agents, stated="they do not match")
 
 
 @report("pinned", "pinned agents follow their leaders")
@@ -87,7 +87,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
     q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
     q[group == 1, 0] += shift
     start = [(0.5 * _BOX + number * shift, 0.5 * _BOX) for number in (0, 1)]
-    leaders = [LinearTarget(at, (way * _SPEED, 0.0)) for at, way in zip(start, (-1.0, 1.0), strict=True)]
+    leaders = [LinearTarget(at, (direction * _SPEED, 0.0)) for at, direction in zip(start, (-1.0, 1.0), strict=True)]
     law = LedDeadZoneFlocking(leaders=leaders, group=group.tolist(), pinned=range(_PINNED), c1=2.0, c2=3.0)
     expected = verified("source:pinned", "source:parts")
     if shift == 0.0:
@@ -96,7 +96,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
         expected |= verified("source:same-leader", "source:different-leaders")
     where = "in one box" if shift == 0.0 else f"in boxes of side {_BOX:g}, {gap:g} apart"
     title = "Dead zone, two leaders: a third of the agents pinned, the others follow nearby agents"
-    source = (
+    source_text = (
         "Li, Yuan and Liu, sections IV and VI, in words only: agents with different leaders do not match, and to pin a "
         "fraction is enough where the leaders' acceleration is known. Equation (9) has neither; the three terms are "
         f"ours, and so are: {_N} agents, every other one with the second leader, {where}, {_PINNED} pinned with c1 = 2 "
@@ -106,7 +106,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
     steps = SemiImplicitEuler(law, DT)
     options = {"t_eval": np.linspace(0.0, _END, 121)}
     name, references = "dead-zone-leaders", ("li-dead-zone",)
-    return Scenario(name, title, source, steps, q, p, (0.0, _END), seed, expected, _REPORTS, options, references)
+    return Scenario(name, title, source_text, steps, q, p, (0.0, _END), seed, expected, _REPORTS, options, references)
 
 
 SCENARIOS = {"dead-zone-leaders": _leaders}

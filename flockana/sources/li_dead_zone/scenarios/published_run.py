@@ -51,8 +51,8 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
 @report("consensus", "speeds converge to the same value")
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that all velocities agree in the limit."""
-    seen = Observed.alone(run)
-    return velocities_match(seen, final_components(seen, _law(run)), [], name="consensus")
+    observation = Observed.alone(run)
+    return velocities_match(observation, final_components(observation, _law(run)), [], name="consensus")
 
 
 @report("together", "the agents swarm together")
@@ -71,13 +71,13 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
 @report("safe", "agents hold safe distances all the time")
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Return the claim that distances stay above half of the repulsion distance."""
-    d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
-    ever = at if run.law.is_map else run.closest_approach().lower
+    d1, least_distance = _law(run).interaction.d1, float(run.metric("min_distance").min())
+    ever = least_distance if run.law.is_map else run.closest_approach().lower
     is_seen = ever > 0.5 * d1 and not thinned(run)
-    margin = ever / d1 - 0.5 if is_seen else at / d1 - 0.5 if at < 0.5 * d1 else float("nan")
+    margin = ever / d1 - 0.5 if is_seen else least_distance / d1 - 0.5 if least_distance < 0.5 * d1 else float("nan")
     detail = f"agents come as near as {ever:.3g}, where repulsion begins at d1 = {d1:g}"
-    stated = "safe distances all the time (over d1/2)"
-    return finding(margin, detail, computed=ever, stated=stated, error=_rounding(run, d1))
+    stated_value = "safe distances all the time (over d1/2)"
+    return finding(margin, detail, computed=ever, stated=stated_value, error=_rounding(run, d1))
 
 
 @report("lattice", "the agents form an α-lattice")
@@ -143,7 +143,7 @@ def _case(
 
 
 def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
-    build = _case(
+    builder = _case(
         "dead-zone-hard",
         "Dead zone with the printed jumps: contacts chatter",
         f"{_PRINTED} Here the jumps are as printed.",
@@ -155,7 +155,7 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
         own=(50, 40.0, 0.0),
         settings="printed settings: force jumps",
     )
-    return build(seed, n, box)
+    return builder(seed, n, box)
 
 
 SCENARIOS = {

@@ -41,17 +41,17 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
     """Return the components of the net at the end of a run, with certificates, cached with the run."""
     dt = seen.law.dt if seen.is_map else None
     q, p, q_error, p_error = seen.end
-    late = seen.window(seen.t[-1] - seen.scales.time, seen.t[-1])
+    late_run = seen.window(seen.t[-1] - seen.scales.time, seen.t[-1])
 
     def energy_off(agents: npt.NDArray[np.intp]) -> float:
         def energies(run: Trajectory) -> list[float]:
             return [law.hamiltonian(0.0, q[agents], p[agents]) for q, p in zip(run.q, run.p, strict=True)]
 
-        return float(late.series(energies, floor=0.0 if seen.is_map else seen.floors.work).half_width[-1])
+        return float(late_run.series(energies, floor=0.0 if seen.is_map else seen.floors.work).half_width[-1])
 
     def compute() -> Components:
-        off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
-        return components_of(q, p, law, dt, off=off, p_off=p_off, energy_off=energy_off)
+        position_error, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
+        return components_of(q, p, law, dt, off=position_error, p_off=p_off, energy_off=energy_off)
 
     return seen.cached("dead-zone components", compute)
 
@@ -87,7 +87,7 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
         distance, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
     else:
         distance, time = least_distance(seen), seen.run.closest_approach().time
-    where = "at the samples" if seen.is_map else "ever"
+    place_text = "at the samples" if seen.is_map else "ever"
     distance = distance.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
     if seen.n == 1:
         margin = Enclosure.of(1.0)  # a single agent has no distances
@@ -95,7 +95,7 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
         margin = (distance / bound).log()
     else:
         margin = distance / unit if distance.lo > 0.0 else Enclosure(-inf, distance.mid / unit, inf)
-    text = f"no two agents come closer than {distance.lo:.4g} {where}; the bound is {bound.mid:.3g}"
+    text = f"no two agents come closer than {distance.lo:.4g} {place_text}; the bound is {bound.mid:.3g}"
     return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
         computed=float(distance.lo), stated=f"every distance > {bound.mid:.4g}", witness={"time": time}, detail=text
     )

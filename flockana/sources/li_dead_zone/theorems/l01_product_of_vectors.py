@@ -21,7 +21,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     # The forces on three agents before and after the axes are turned, as printed and as corrected.
     pair = DeadZoneInteraction(k1=0.0)
     q = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])
-    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+    rotation = np.array([[0.6, -0.8], [0.8, 0.6]])
 
     def printed(x: FloatArray) -> FloatArray:
         """Return u_i = Σ_j φ_zi ∘ n_ij with φ_zi = Σ_j f_ij n_ij, the only product of (7) and (9) that is a vector."""
@@ -38,7 +38,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
 
     def change_by_turning(u: Any) -> float:
         """Return the largest change of a force by a rotation, relative to the largest force."""
-        return float(np.abs(u(q @ turn.T) - u(q) @ turn.T).max() / np.abs(u(q)).max())
+        return float(np.abs(u(q @ rotation.T) - u(q) @ rotation.T).max() / np.abs(u(q)).max())
 
     printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)
     return [

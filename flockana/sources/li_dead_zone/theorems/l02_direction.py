@@ -21,12 +21,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     attraction = -float(pair.force(start)) / pair.contact_force
     level = float(pair.energy(start))
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
-    fall = quad(lambda x: 3.0 * x / sqrt(pair.energy(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
+    fall_time = quad(lambda x: 3.0 * x / sqrt(pair.energy(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
     return [
-        of_state("printed", attraction, _ROUNDING, about="all", disproof=PROOF, computed=fall).described(
+        of_state("printed", attraction, _ROUNDING, about="all", disproof=PROOF, computed=fall_time).described(
             stated="repulsion below r_b - δ",
             detail=f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and "
-            f"meet after {fall:.4g}",
+            f"meet after {fall_time:.4g}",
         ),
         of_state("corrected", -attraction, _ROUNDING).described(
             detail=f"with n = q_j - q_i the same agents' force is {attraction:.4g} of that of a contact: it repels"

@@ -29,20 +29,20 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # Check a pair of agents that separates, and the share of flocks that end connected by the width of their start.
     law, q, p = parting_pair()
-    seen = observed(law, q, p, (0.0, 10.0))
-    end = final_components(seen, law)
+    observation = observed(law, q, p, (0.0, 10.0))
+    end = final_components(observation, law)
     narrow, wide = (connected_count(box, seeds=_SEEDS) for box in (40.0, 150.0))
-    smallest, most = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
-    radius = 0.5 * min_distance(seen.end.q)
+    smallest, maximum = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
+    radius = 0.5 * min_distance(observation.end.q)
     return [
         limit_claim("printed", [], escape=end.separation, disproof=PROOF, computed=radius).described(
             stated="no agent farther than r from the leader",
             detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} separate: at t = 10 "
             f"they are {radius:.4g} from their centre",
         ),
-        of_map("wide-starts", smallest - most, INTERVAL_ERROR, computed=[narrow, wide]).described(
+        of_map("wide-starts", smallest - maximum, INTERVAL_ERROR, computed=[narrow, wide]).described(
             stated="the share of connected flocks falls with the box",
             detail=f"of {_SEEDS} starts in a box of 40 m {narrow} end connected, of {_SEEDS} in one of 150 m {wide}: "
-            f"shares of at least {smallest:.2f} and at most {most:.2f} (95 %)",
+            f"shares of at least {smallest:.2f} and at most {maximum:.2f} (95 %)",
         ),
     ]

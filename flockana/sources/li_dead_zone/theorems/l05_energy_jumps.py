@@ -22,20 +22,20 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from flockana.sources.li_dead_zone.symbolic import saturated_energy_identity
 
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))  # so that the switch is located
-    seen = observed(law, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0))
-    far = law.interaction.far_potential
-    energy = seen.series(lambda run: list(map(law.literal_energy, run.q, run.p)), floor=seen.floors.work)
+    observation = observed(law, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0))
+    far_energy = law.interaction.far_potential
+    energy = observation.series(lambda run: list(map(law.literal_energy, run.q, run.p)), floor=observation.floors.work)
     rise = float(np.diff(energy.mid).max())
     identities = [saturated_energy_identity(m) for m in (1, 2, 3)]
     return [
-        judged("printed", (energy[:-1] - energy[1:]) / far, disproof=PROOF, computed=rise).described(
+        judged("printed", (energy[:-1] - energy[1:]) / far_energy, disproof=PROOF, computed=rise).described(
             stated="H never rises",
-            detail=f"as two agents come into range, H of neighbours rises by {rise:.4g}, and ψ(r) = {far:.4g}",
+            detail=f"as two agents come into range, H of neighbours rises by {rise:.4g}, and ψ(r) = {far_energy:.4g}",
         ),
         exact("corrected", all(derivation.holds for derivation in identities), proof=PROOF).described(
             stated="dH̄/dt = -k₂ pᵀL̂p",
             witness=[str(derivation.residuals) for derivation in identities],
             detail="the identity holds for a generic pair, so for every n, in 1, 2 and 3 dimensions",
         ),
-        balance(seen, [], tolerances, name="across-the-switch"),
+        balance(observation, [], tolerances, name="across-the-switch"),
     ]

@@ -24,9 +24,9 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     speeds, closest, bounds = (5.0, 20.0, 40.0), [], []
     for speed in speeds:
         p = np.array([[speed, 0.0], [-speed, 0.0]])
-        seen = observed(law, [[0.0, 0.0], [6.0, 0.0]], p, (0.0, 6.0 / speed), **_TIGHT)
-        closest.append(least_distance(seen))
-        bounds.append(distance_bound(seen, law))
+        observation = observed(law, [[0.0, 0.0], [6.0, 0.0]], p, (0.0, 6.0 / speed), **_TIGHT)
+        closest.append(least_distance(observation))
+        bounds.append(distance_bound(observation, law))
     gaps, bound = stacked(closest), stacked(bounds)
     gap = abs(gaps / bound - 1.0)
     distances = ", ".join(f"{a:.3g}" for a in gaps.mid)

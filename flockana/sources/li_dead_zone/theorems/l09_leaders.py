@@ -28,8 +28,8 @@ def led_run(
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
-    tied: dict[str, Any] = {"leaders": leaders, "group": group, "pinned": middle, "feedforward": feedforward}
-    law = LedDeadZoneFlocking(pair, c1=2.0, c2=3.0, **tied)
+    tie_options: dict[str, Any] = {"leaders": leaders, "group": group, "pinned": middle, "feedforward": feedforward}
+    law = LedDeadZoneFlocking(pair, c1=2.0, c2=3.0, **tie_options)
     return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
@@ -38,8 +38,8 @@ def _slip(run: Trajectory) -> FloatArray:
     law = run.law.continuous
     rows = []
     for t, p in zip(run.t[1:], run.p[1:], strict=True):
-        led = law.ties.led(float(t))[1]
-        rows.append((np.linalg.norm(p - led, axis=1) / np.linalg.norm(led, axis=1)).max())
+        leader_state = law.ties.led(float(t))[1]
+        rows.append((np.linalg.norm(p - leader_state, axis=1) / np.linalg.norm(leader_state, axis=1)).max())
     return np.array(rows)
 
 
@@ -55,11 +55,11 @@ def _printed() -> Claim:
 
 @lru_cache(maxsize=1)
 def _runs() -> dict[str, Observed]:
-    straight, circle = LinearTarget((3.0, 0.0), (0.5, 0.0)), CircleTarget((-4.0, 0.0), 4.0, frequency=0.05)
-    apart = LinearTarget((0.0, 0.0), (-1.0, 0.0)), LinearTarget((_APART, 0.0), (1.0, 0.0))
+    straight_target, circle = LinearTarget((3.0, 0.0), (0.5, 0.0)), CircleTarget((-4.0, 0.0), 4.0, frequency=0.05)
+    leader_targets = LinearTarget((0.0, 0.0), (-1.0, 0.0)), LinearTarget((_APART, 0.0), (1.0, 0.0))
     return {
-        "one": led_run((straight,), ((0.0, 0.0),)),
-        "two": led_run(apart, ((0.0, 0.0), (_APART, 0.0))),
+        "one": led_run((straight_target,), ((0.0, 0.0),)),
+        "two": led_run(leader_targets, ((0.0, 0.0), (_APART, 0.0))),
         "known": led_run((circle,), ((0.0, 0.0),)),
         "unknown": led_run((circle,), ((0.0, 0.0),), feedforward=False),
     }
@@ -76,8 +76,8 @@ def _follow(name: str, seen: Observed, stated: str, what: str) -> Claim:
 
 def _apart(seen: Observed) -> Claim:
     group = np.array(seen.law.continuous.group)
-    first, second = (seen.end.p[group == leader].mean(axis=0) for leader in (0, 1))
-    difference = float(np.linalg.norm(first - second))
+    first_velocity, second_velocity = (seen.end.p[group == leader].mean(axis=0) for leader in (0, 1))
+    difference = float(np.linalg.norm(first_velocity - second_velocity))
     return of_map("different-leaders", difference / 2.0 - (1.0 - _CLOSE), _ROUNDING, computed=difference).described(
         stated=f"at t = {seen.t[-1]:g} agents with different leaders do not match, under the law with leaders",
         detail=f"two groups {_APART:g} m apart whose leaders separate at 2 m/s separate at {difference:.4g} m/s; in "
@@ -118,7 +118,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.energy_balances import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
-    one, turning = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"
+    one, turning_text = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"
     deaf, late = float(_slip(runs["unknown"].run).min()), runs["unknown"].t[1:]
     return [
         _printed(),
@@ -130,7 +130,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
         _follow("one-leader", runs["one"], one, "with 1 of 7 pinned"),
         _apart(runs["two"]),
         _fraction(),
-        _follow("acceleration", runs["known"], f"{turning}, its acceleration known", "with feedforward"),
+        _follow("acceleration", runs["known"], f"{turning_text}, its acceleration known", "with feedforward"),
         of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING, computed=deaf).described(
             stated="not all follow a leader that turns if its acceleration is not known",
             detail=f"without feedforward a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} "

@@ -18,8 +18,8 @@ def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
     """Return two agents in contact that separate with twice the escape energy under strong damping."""
     law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
     q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
-    rest = law.hamiltonian(0.0, q, np.zeros_like(q))
-    speed = float(np.sqrt(_TIMES * law.interaction.far_potential - rest))  # each: H = 2 · ½ v² + rest
+    remaining_power = law.hamiltonian(0.0, q, np.zeros_like(q))
+    speed = float(np.sqrt(_TIMES * law.interaction.far_potential - remaining_power))  # each: H = 2 · ½ v² + rest
     return law, q, np.array([[-speed, 0.0], [speed, 0.0]])
 
 
@@ -43,14 +43,14 @@ def _is_finite_apart() -> bool | None:
 
 def _necessary() -> Claim:
     """Return the claim that the condition excludes some start, by algebra."""
-    nothing, stated = _is_finite_apart(), "the condition leaves some start out"
-    if nothing is None:
+    finite_claim, stated = _is_finite_apart(), "the condition leaves some start out"
+    if finite_claim is None:
         return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)
     detail = (
         "a pair's potential is finite at every distance > 0: every start from distinct positions meets the stated "
         "condition, which as a necessary one excludes nothing; no other is stated"
     )
-    return exact("printed-necessary", not nothing, stated=stated, detail=detail)
+    return exact("printed-necessary", not finite_claim, stated=stated, detail=detail)
 
 
 @erratum(
@@ -65,21 +65,21 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary.
     law, q, p = parting_pair()
-    away = final_components(observed(law, q, p, (0.0, 10.0)), law)
-    wild, x, v = escaping_pair()
-    share = energy_share(wild, x, v)
-    later = observed(wild, x, v, (0.0, 10.0))
-    bond = final_components(later, wild).members[0].bond
+    distance = final_components(observed(law, q, p, (0.0, 10.0)), law)
+    wild_law, x, v = escaping_pair()
+    share = energy_share(wild_law, x, v)
+    later_run = observed(wild_law, x, v, (0.0, 10.0))
+    bond = final_components(later_run, wild_law).members[0].bond
     left = bond.text.replace("its energy", "the energy left")
-    calm = Component(law, x, 0.1 * v)
+    calm_component = Component(law, x, 0.1 * v)
     return [
-        limit_claim("printed-sufficient", [], escape=away.separation).described(
+        limit_claim("printed-sufficient", [], escape=distance.separation).described(
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
             detail=f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
             "neither stay together nor match velocities (L4, L7)",
         ),
         _necessary(),
-        limit_claim("sufficient", [], [calm.bond], computed=energy_share(law, x, 0.1 * v)).described(
+        limit_claim("sufficient", [], [calm_component.bond], computed=energy_share(law, x, 0.1 * v)).described(
             stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
             detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s",
         ),
@@ -89,6 +89,6 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             computed=share,
             stated="the condition is not necessary: a flock with more energy may stay together",
             detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "
-            f"they are {min_distance(later.end.q):.3g} apart",
+            f"they are {min_distance(later_run.end.q):.3g} apart",
         ),
     ]

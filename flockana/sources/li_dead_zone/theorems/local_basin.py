@@ -42,28 +42,28 @@ def hold(
         return basins.ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:
         return _UNKNOWN
-    curvature, stiffest = basins.curvatures(law.interaction.hessian(q).toarray(), rigid_motions(q))
+    curvature, upper_curvature = basins.curvatures(law.interaction.hessian(q).toarray(), rigid_motions(q))
     if not curvature > 0.0:
         return _UNKNOWN
-    force = _force(law, q, stiffest)
+    force = _force(law, q, upper_curvature)
     distance = 2.0 * force / curvature
     nearer = law.interaction.r - sqrt(2.0) * distance  # links shorter than this are links at the minimum too
     if distance >= basins.gyration(q) or not basins.connected_within(q, nearer):
         return _UNKNOWN
-    room = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
-    windows = [*(w for w in law.interaction.d1 * basins.WINDOWS if w < room), room]
-    leaving, lipschitz = basins.barrier(curvature, distance, windows, partial(_lipschitz, law, q), off=off)
-    stability = 1.0 if dt is None else _stability(law, q, stiffest, dt)
-    height = basins.excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
-    return basins.Basin(height, leaving, distance + off, curvature, stability)
+    margin = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
+    windows = [*(w for w in law.interaction.d1 * basins.WINDOWS if w < margin), margin]
+    barrier_level, lipschitz = basins.barrier(curvature, distance, windows, partial(_lipschitz, law, q), off=off)
+    stability = 1.0 if dt is None else _stability(law, q, upper_curvature, dt)
+    height = basins.excess(p, p_off, force, curvature, off, upper_curvature, lipschitz) if barrier_level > 0.0 else inf
+    return basins.Basin(height, barrier_level, distance + off, curvature, stability)
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
     """Return ‖∇U‖ over all coordinates, plus a bound of its rounding."""
     pair, pairs = law.interaction, links(q, law.interaction.r)
     pulls = np.abs(pair.force(link_lengths(q, pairs)))
-    most = float(np.bincount(pairs.ravel(), weights=np.repeat(pulls, 2), minlength=1).max())
-    rounding = (len(q) + 16.0) * EPS * (most + stiffest * pair.r)
+    maximum = float(np.bincount(pairs.ravel(), weights=np.repeat(pulls, 2), minlength=1).max())
+    rounding = (len(q) + 16.0) * EPS * (maximum + stiffest * pair.r)
     u = law.flow(0.0, q, np.zeros_like(q))[0]
     return float(np.linalg.norm(u)) + sqrt(q.size) * rounding
 
@@ -77,8 +77,8 @@ def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
     if pair.d2 < pair.r or pair.k1 > 0.0:
         kinks.append(pair.r)
     i, j = np.triu_indices(len(q), 1)
-    lengths = np.linalg.norm(q[j] - q[i], axis=1)
-    return float(np.abs(lengths[:, None] - np.array(kinks)).min())
+    link_lengths = np.linalg.norm(q[j] - q[i], axis=1)
+    return float(np.abs(link_lengths[:, None] - np.array(kinks)).min())
 
 
 def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
@@ -91,19 +91,19 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
     """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
     # It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
     # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
-    third, pair = np.zeros(lengths.shape), law.interaction
+    third_value, pair = np.zeros(lengths.shape), law.interaction
     zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
     for zone in np.unique(zones):
-        here = np.flatnonzero(zones == zone)
-        ends = lengths[here] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
-        s = Enclosure.between(np.maximum(ends[:-1], 0.0), ends[1:])
-        action, slope, bend = _action(pair, int(zone), s)
+        zone_pairs = np.flatnonzero(zones == zone)
+        length_bounds = lengths[zone_pairs] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
+        s = Enclosure.between(np.maximum(length_bounds[:-1], 0.0), length_bounds[1:])
+        action, slope, second_slope = _action(pair, int(zone), s)
         root = (1.0 + pair.eta * s.square()).sqrt()
         cube = root * root.square()
-        curve = bend * s / root + 2.0 * slope / cube - 3.0 * pair.eta * s * action / (cube * root.square())
-        across = slope / root - pair.eta * s * action / cube
-        third[here] = (abs(curve) + 2.0 / sqrt(3.0) * abs(across)).max(axis=0).hi
-    return third
+        curve = second_slope * s / root + 2.0 * slope / cube - 3.0 * pair.eta * s * action / (cube * root.square())
+        transverse_term = slope / root - pair.eta * s * action / cube
+        third_value[zone_pairs] = (abs(curve) + 2.0 / sqrt(3.0) * abs(transverse_term)).max(axis=0).hi
+    return third_value
 
 
 def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
@@ -112,20 +112,20 @@ def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosu
         return 0.0 * s, 0.0 * s, 0.0 * s
     near = zone < 2
     way = s if near else pair.r_d - s
-    square = way.square()
-    full = 2.0 * pair.k_r / square + pair.k_delta
-    turn = -1.0 if near else 1.0  # the full action grows towards its pole
-    slope, bend = turn * (4.0 * pair.k_r / (square * way)), 12.0 * pair.k_r / square.square()
+    squared_value = way.square()
+    full = 2.0 * pair.k_r / squared_value + pair.k_delta
+    growth_sign = -1.0 if near else 1.0  # the full action grows towards its pole
+    slope, bend = growth_sign * (4.0 * pair.k_r / (squared_value * way)), 12.0 * pair.k_r / squared_value.square()
     if zone in (1, 3):
         share, rise = (pair.d1 - s, -1.0) if near else (s - pair.d2, 1.0)
         share, rise = share / pair.ramp, rise / pair.ramp
         full, slope, bend = full * share, slope * share + rise * full, bend * share + 2.0 * rise * slope
-    return turn * full, turn * slope, turn * bend
+    return growth_sign * full, growth_sign * slope, growth_sign * bend
 
 
 def _stability(law: DeadZoneFlocking, q: FloatArray, stiffest: float, dt: float) -> float:
     """Return 1 − (dt²Λ + 2 dt Γ)/2, positive where every mode of the map decays."""
     m = q.shape[1]
-    by_agent = law.interaction.laplacian(q).toarray()[::m, ::m]  # each component has the same
-    dissipation = law.k2 * float(np.linalg.eigvalsh(by_agent)[-1])
+    agent_laplacian = law.interaction.laplacian(q).toarray()[::m, ::m]  # each component has the same
+    dissipation = law.k2 * float(np.linalg.eigvalsh(agent_laplacian)[-1])
     return 1.0 - 0.5 * (dt * dt * stiffest + 2.0 * dt * dissipation)

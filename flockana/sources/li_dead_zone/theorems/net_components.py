@@ -63,9 +63,9 @@ class Component:
     @cached_property
     def _out_of_range(self) -> float:
         """Upper bound H̄/ψ̄(r) of the number of pairs that the energy can drive out of range."""
-        far = self.law.interaction.far_potential
+        far_energy = self.law.interaction.far_potential
         energy: float = self.law.hamiltonian(0.0, self.q, self.p) + self.energy_off
-        return energy / far if far > 0.0 else inf
+        return energy / far_energy if far_energy > 0.0 else inf
 
     @property
     def bond(self) -> Certificate:
@@ -75,8 +75,8 @@ class Component:
         if self.dt is not None or self.law.k2 == 0.0:
             return Certificate(-1.0, "no energy holds it together")
         margin = max(-1.0, 1.0 - self._out_of_range / (self.size - 1.0))
-        able = "too few to break it up" if margin > 0.0 else "which might break it up"
-        text = f"its energy can put {self._out_of_range:.3g} pairs out of range, {able}"
+        energy_text = "too few to break it up" if margin > 0.0 else "which might break it up"
+        text = f"its energy can put {self._out_of_range:.3g} pairs out of range, {energy_text}"
         return Certificate(margin, text, _WHOLE + self.size**2 * EPS)
 
     @property
@@ -90,8 +90,8 @@ class Component:
         if self.size == 1:
             return 0.0
         if self.basin.certificate.certain:
-            far = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
-            return far + 2.0 * self.off + self.basin.reach
+            flock_radius = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
+            return flock_radius + 2.0 * self.off + self.basin.reach
         pairs, n = self._out_of_range * (1.0 + _WHOLE) + _WHOLE, self.size
         return self.law.interaction.r * (n - 1 + floor(pairs)) / n if pairs < n - 1 else inf
 
@@ -116,9 +116,9 @@ class Components:
     @cached_property
     def drift(self) -> float:
         """Mismatch K̃ of the centres, ½ Σ n_c‖v_c − v̄‖²/n, the limit of K̃ if no two components meet."""
-        sizes, velocity = self._sizes, np.array([component.p.mean(axis=0) for component in self.members])
-        mean = np.average(velocity, axis=0, weights=sizes)
-        return 0.5 * float(sizes @ np.sum((velocity - mean) ** 2, axis=1)) / float(sizes.sum())
+        agent_counts, velocity = self._sizes, np.array([component.p.mean(axis=0) for component in self.members])
+        mean = np.average(velocity, axis=0, weights=agent_counts)
+        return 0.5 * float(agent_counts @ np.sum((velocity - mean) ** 2, axis=1)) / float(agent_counts.sum())
 
     @property
     def apart(self) -> Certificate:
@@ -155,9 +155,9 @@ class Components:
         if self.count == 1:
             return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed
-        blur, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
-        slip = 4.0 * blur * (sqrt(drift) + blur) + 64.0 * EPS * drift
-        margin, error = min(self._clearance, (drift, slip), key=lambda pair: pair[0] - pair[1])
+        rounding_width, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
+        velocity_difference = 4.0 * rounding_width * (sqrt(drift) + rounding_width) + 64.0 * EPS * drift
+        margin, error = min(self._clearance, (drift, velocity_difference), key=lambda pair: pair[0] - pair[1])
         text = f"{self.count} {self.apart.text}, and their centres keep a K̃ of {self.drift:.4g}"
         return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 

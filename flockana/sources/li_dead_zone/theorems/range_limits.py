@@ -30,20 +30,20 @@ def first_entry(seen: Observed, r: float) -> RangeEntry:
     if seen.doubt or len(run.t) == 1:  # nothing was seen to happen
         return RangeEntry(None, None, True)
     pairs = run.n * (run.n - 1) // 2
-    was_out, unsure = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
+    was_outside, is_doubtful = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
     noise = 16.0 * EPS * (float(np.abs(run.q).max()) + r)
     if run.law.is_map:
         for k, q in enumerate(run.q):
-            pair = follow_steps(q, r, noise, was_out, unsure)
+            pair = follow_steps(q, r, noise, was_outside, is_doubtful)
             if pair[0] >= 0:
                 return RangeEntry(pair, float(run.t[k]), True)
-        return RangeEntry(None, None, thinned(run) or bool(unsure.any()))
+        return RangeEntry(None, None, thinned(run) or bool(is_doubtful.any()))
     t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
     noise_levels = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
     for k in range(len(t) - 1):
         start, end = (q[k], p[k], u[k]), (q[k + 1], p[k + 1], u[k + 1])
-        pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, noise_levels, was_out, unsure)
+        pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, noise_levels, was_outside, is_doubtful)
         if pair[0] >= 0:
             return RangeEntry(pair, float(t[k + 1]), True)
-    return RangeEntry(None, None, bool(unsure.any()))
+    return RangeEntry(None, None, bool(is_doubtful.any()))

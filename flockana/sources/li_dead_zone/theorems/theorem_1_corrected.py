@@ -11,11 +11,11 @@ from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tole
 
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that −k₂ pᵀL̂p never is positive; as a sum of squares its sign has no rounding."""
-    worst, rising, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
-    return by_count("rate", rising, needs, proof=None if seen.is_map else case.PROOF).described(
+    worst, rising_count, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
+    return by_count("rate", rising_count, needs, proof=None if seen.is_map else case.PROOF).described(
         computed=float(rate[worst]),
         stated="dH̄/dt = -k₂ pᵀL̂p <= 0, across all switches",
-        witness={"time": float(seen.t[worst]), "samples at which it is positive": rising},
+        witness={"time": float(seen.t[worst]), "samples at which it is positive": rising_count},
         detail=f"the saturated energy goes from {energy[0]:.6g} to {energy[-1]:.6g}",
     )
 
@@ -50,14 +50,14 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     as ψ(r) is finite); from distinct starts no distance falls below 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which
     is positive but exponentially small.
     """
-    needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
-    if law is None or unmet(needs):
-        return needs, []
+    requirements, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
+    if law is None or unmet(requirements):
+        return requirements, []
     run = seen.run
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    return needs, [
-        _rate(seen, rate, needs),
-        _balance(seen, needs, tolerances),
-        _components(seen, case.final_components(seen, law), needs),
-        case.no_collision(seen, law, case.distance_bound(seen, law), needs, name="distance"),
+    return requirements, [
+        _rate(seen, rate, requirements),
+        _balance(seen, requirements, tolerances),
+        _components(seen, case.final_components(seen, law), requirements),
+        case.no_collision(seen, law, case.distance_bound(seen, law), requirements, name="distance"),
     ]

@@ -20,10 +20,10 @@ def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
     components = component_count(run)
     mismatch = velocity_mismatch(run.p[-1]) / (run.n * run.scales.energy)
     text = f"{components} component(s) at t = {run.t[-1]:g}, K̃ = {mismatch:.2g} of the square of the law's speed"
-    stated = f"one component, K̃ <= {tolerances.mismatch:g}"
+    stated_value = f"one component, K̃ <= {tolerances.mismatch:g}"
     if components > 1:
-        return finding(1.5 - components, text, computed=components, stated=stated)
-    return finding(tolerances.mismatch - mismatch, text, computed=components, stated=stated, error=ROUNDING)
+        return finding(1.5 - components, text, computed=components, stated=stated_value)
+    return finding(tolerances.mismatch - mismatch, text, computed=components, stated=stated_value, error=ROUNDING)
 
 
 @report("fragments", "it rarely flocks: the run does not end as one flock")
@@ -31,19 +31,19 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Return whether the run ends in several components, or with different velocities."""
     flock = _flocks.check(run, tolerances)
     assert flock.margin is not None
-    stated = f"several components, or K̃ > {tolerances.mismatch:g}"
-    return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated, error=flock.error)
+    stated_value = f"several components, or K̃ > {tolerances.mismatch:g}"
+    return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated_value, error=flock.error)
 
 
 def _share(name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report) -> Builder:
     title = f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?"
-    source = (
+    source_text = (
         f"Olfati-Saber 2006 says that {claim}; nothing is printed of how often. The start is that of Fig. 12 (n = "
         f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours."
     )
     more: dict[str, Any] = {"seeds": _SEEDS, "settings": "printed parameters of Fig. 12, gains ours"}
     more |= {"options": {"t_eval": np.array([0.0, end])}, "shipped": verified(f"source:{report.name}")}
-    return entry(name, title, source, law, lambda seed: random_start(seed, _N, 2), end, {}, (report,), **more)
+    return entry(name, title, source_text, law, lambda seed: random_start(seed, _N, 2), end, {}, (report,), **more)
 
 
 _FOLLOWING = Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0)))

@@ -58,8 +58,8 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"{lengths.size} links are {lengths.min():.4g} to {lengths.max():.4g} long for d = {d:g}, squeezed inwards"
     )
     margin = tolerances.deviation - deviation
-    stated = f"Ẽ <= {tolerances.deviation:g}"
-    return finding(margin, detail, computed=deviation, stated=stated, error=ROUNDING)
+    stated_value = f"Ẽ <= {tolerances.deviation:g}"
+    return finding(margin, detail, computed=deviation, stated=stated_value, error=ROUNDING)
 
 
 @report("matched", "velocities match (Fig. 18: K̃ goes to 0)")
@@ -73,10 +73,10 @@ def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
     nets = [{*map(tuple, links(q, run.law.alpha.r).tolist())} for q in run.q]
     changes = sum(a != b for a, b in pairwise(nets))
-    links_kept = len(nets[0] & nets[-1])
+    kept_link_count = len(nets[0] & nets[-1])
     detail = (
         f"the net differs between {changes} pairs of successive samples; of {len(nets[0])} links at the start "
-        f"{links_kept} are among the {len(nets[-1])} at the end"
+        f"{kept_link_count} are among the {len(nets[-1])} at the end"
     )
     return finding(changes - 0.5, detail, computed=changes, stated="> 0")
 
@@ -85,25 +85,25 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that K̃ never falls to a small share of its value in the second half."""
     series = run.metric("normalised_velocity_mismatch")
-    late = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
-    share = float(late.min() / series[0])
+    late_values = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
+    share = float(late_values.min() / series[0])
     detail = (
         f"normalised velocity mismatch K̃ is {series[-1]:.3g} at t = {run.t[-1]:g}, and never below {share:.2g} of "
         "its start in the second half: the fragments move apart"
     )
-    stated = f"K̃ > {tolerances.agreement:g} K̃(0)"
+    stated_value = f"K̃ > {tolerances.agreement:g} K̃(0)"
     margin = share - tolerances.agreement
-    return finding(margin, detail, computed=share, stated=stated, error=ROUNDING)
+    return finding(margin, detail, computed=share, stated=stated_value, error=ROUNDING)
 
 
 @report("expands", "the cohesion radius grows (Fig. 18(b): R)")
 def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that R grows throughout the second half."""
     radius = run.metric("cohesion_radius")
-    late = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
-    rise = float(np.diff(late).min() / run.scales.length)
-    how = "rises" if rise > 0.0 else "does not rise"
-    detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and {how} at every sample of the second half"
+    late_values = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
+    rise = float(np.diff(late_values).min() / run.scales.length)
+    description = "rises" if rise > 0.0 else "does not rise"
+    detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and {description} at every sample of the second half"
     return finding(rise, detail, computed=float(radius[-1]), stated="R rises")
 
 
@@ -126,12 +126,12 @@ def _centre_converges(run: Trajectory, tolerances: Tolerances) -> Claim:
     )
     gains, target = run.law.gains, run.law.target
     uniform = isinstance(target, StaticTarget | LinearTarget) and consistent(run).status == "met"
-    damped = not gains.per_agent and gains.c1_gamma > 0.0 and gains.c2_gamma > 0.0
+    is_damped = not gains.per_agent and gains.c1_gamma > 0.0 and gains.c2_gamma > 0.0
     exact = "(q_c − q_r)'' + c2γ (q_c − q_r)' + c1γ (q_c − q_r) = 0"
-    certificate = Certificate(1.0, exact) if uniform and damped else Certificate(-1.0, "the γ-agent accelerates")
+    certificate = Certificate(1.0, exact) if uniform and is_damped else Certificate(-1.0, "the γ-agent accelerates")
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
-    stated = "both -> 0"
-    return limit_report(certificate, detail, computed=float(away[-1]), stated=stated)
+    stated_value = "both -> 0"
+    return limit_report(certificate, detail, computed=float(away[-1]), stated=stated_value)
 
 
 @report("coincide", "pairs of agents end in the same place (erratum E11)")
@@ -168,9 +168,9 @@ def _following(
     q_r, p_r = np.zeros(m), np.zeros(m)
     q_r[:2], p_r[0] = (200.0, 30.0), 5.0
     law, statuses = Algorithm2(target=LinearTarget(q_r, p_r)), {**_FLOCKS, **more}
-    here = {key: statuses.pop(key) for key in shipped}
+    shipped_statuses = {key: statuses.pop(key) for key in shipped}
     text, draw = f"{source} {_OURS}", partial(random_start, n=n, m=m)
-    return entry(name, title, text, law, draw, end, statuses, reports, shipped=here)
+    return entry(name, title, text, law, draw, end, statuses, reports, shipped=shipped_statuses)
 
 
 def _fragmentation(seed: int = 0) -> Scenario:
@@ -190,7 +190,7 @@ def _collapse(seed: int = 0) -> Scenario:
     """Build the collapse of erratum E11: Theorem 3 holds, but the limit is no lattice."""
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0)
     title = "Unit gains: 150 agents are squeezed until pairs coincide"
-    source = (
+    source_text = (
         "Ours, on the slides' summary that Algorithm 2 yields a lattice: parameters, q and p of Fig. 10, all gains 1, "
         "a γ-agent at rest at the origin."
     )
@@ -200,7 +200,7 @@ def _collapse(seed: int = 0) -> Scenario:
     expected |= refuted("alpha-flocking", "alpha-flocking:deviation", "alpha-flocking-strict")
     expected |= verified("alpha-flocking-strict:flock") | vacuous("os-5-terminal:i")
     expected |= refuted("E11", "E11:printed") | verified("E11:minimum", "source")
-    return Scenario("collapse", title, source, law, *start, span, seed, expected, (_coincide,), references=OURS)
+    return Scenario("collapse", title, source_text, law, *start, span, seed, expected, (_coincide,), references=OURS)
 
 
 def _hexagon(seed: int = 0) -> Scenario:
@@ -209,7 +209,7 @@ def _hexagon(seed: int = 0) -> Scenario:
     ring = [(cos(k * pi / 3.0), sin(k * pi / 3.0)) for k in range(6)]
     q = alpha.d * np.array([(0.0, 0.0), *ring]) + generator.uniform(-0.2, 0.2, (7, 2))
     title = "Seven agents near a hexagon, with less energy than a collision costs"
-    source = (
+    source_text = (
         "Ours: a hexagonal patch of side d = 7, each coordinate displaced by up to 0.2, velocities up to 0.3 per axis, "
         "Algorithm 1 with the default gains. H(x(0), v(0)) is below c* and below that of every disconnected "
         "state that we know."
@@ -218,7 +218,7 @@ def _hexagon(seed: int = 0) -> Scenario:
     p = generator.uniform(-0.3, 0.3, (7, 2))
     expected = verified("energy", "os-1", "os-1:i", "os-1:ii", "os-1:iii", "os-5-terminal", "os-5-terminal:i")
     expected |= verified("alpha-flocking", "alpha-flocking-strict", "linearised-decay-terminal")
-    return Scenario("hexagon", title, source, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
+    return Scenario("hexagon", title, source_text, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
 
 
 def _three_agents(seed: int = 0) -> Scenario:
@@ -227,7 +227,7 @@ def _three_agents(seed: int = 0) -> Scenario:
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     p0 = lazy_array((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
     title = "Three agents on a line: one agent runs through both others"
-    source = (
+    source_text = (
         "Ours, on Theorem 3(iv): q = (-12, 0, 30), p = (√(5.6 c*), 0, 0), a = b = 50000, c1α = c2α = 1, "
         "c1γ = c2γ = 0.01, a γ-agent at rest at 0; other parameters as in the paper. The start is fixed."
     )
@@ -237,7 +237,7 @@ def _three_agents(seed: int = 0) -> Scenario:
     expected |= refuted("os-3", "os-3:iv-printed") | vacuous("os-3:iv-none", "os-5-terminal:i")
     expected |= refuted("E13", "E13:printed") | verified("E13:corrected")
     start = np.array([[-12.0], [0.0], [30.0]]), p0
-    return Scenario("three-agents-1d", title, source, law, *start, (0.0, 0.05), seed, expected, references=OURS)
+    return Scenario("three-agents-1d", title, source_text, law, *start, (0.0, 0.05), seed, expected, references=OURS)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {

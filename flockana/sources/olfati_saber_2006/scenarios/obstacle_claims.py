@@ -51,23 +51,23 @@ def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
 def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the flock is connected at the end; open where this depends on rounding of the start."""
     counts = component_counts(run)
-    apart = np.flatnonzero(counts > 1)
+    split_times = np.flatnonzero(counts > 1)
     detail = f"{counts[-1]} component(s) at t = {run.t[-1]:g}"
-    if counts[-1] == 1 and apart.size:
-        detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
+    if counts[-1] == 1 and split_times.size:
+        detail += f", connected again from t = {run.t[split_times[-1] + 1]:.4g} on"
     certificate = Certificate(-1.0, "the net at one instant decides no limit")
     return limit_report(certificate, detail, computed=int(counts[-1]), stated="1")
 
 
 def _passed_between(run: Trajectory) -> int:
     """Return the number of agents that cross x = 150 between the two spheres of the gap."""
-    before = run.q[:-1, :, 0] < 150.0
-    crossing = before & (run.q[1:, :, 0] >= 150.0)
+    was_before = run.q[:-1, :, 0] < 150.0
+    crossing = was_before & (run.q[1:, :, 0] >= 150.0)
     row, agent = np.nonzero(crossing)
-    last = np.full(run.n, -1)
-    np.maximum.at(last, agent, row)
-    y = run.q[np.maximum(last, 0) + 1, np.arange(run.n), 1]
-    return int(np.sum((last >= 0) & (y > 55.0) & (y < 75.0)))
+    last_side = np.full(run.n, -1)
+    np.maximum.at(last_side, agent, row)
+    y = run.q[np.maximum(last_side, 0) + 1, np.arange(run.n), 1]
+    return int(np.sum((last_side >= 0) & (y > 55.0) & (y < 75.0)))
 
 
 @report("past", "all agents get past the obstacles")
@@ -91,8 +91,8 @@ def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
     """Return whether each agent has an obstacle on its straight path to the γ-agent, shape (n,)."""
     share = np.linspace(0.0, 1.0, _SEGMENT)[:, None, None]
-    way = (q + share * (target - q)).reshape(-1, q.shape[1])
-    hit = np.any([obstacle.contains(way) for obstacle in obstacles], axis=0)
+    line_points = (q + share * (target - q)).reshape(-1, q.shape[1])
+    hit = np.any([obstacle.contains(line_points) for obstacle in obstacles], axis=0)
     blocked_agents: FloatArray = hit.reshape(_SEGMENT, len(q)).any(axis=0)
     return blocked_agents
 
@@ -101,10 +101,10 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that agents stand still behind an obstacle at the end."""
     is_held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
-    last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
+    is_final = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
     limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
-    slow = lengths(run.p[last]).max(axis=0) < limit
-    count = int((is_held & slow).sum())
+    is_slow = lengths(run.p[is_final]).max(axis=0) < limit
+    count = int((is_held & is_slow).sum())
     detail = (
         f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
@@ -121,17 +121,17 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     # ever. Near stiff obstacles the solver's last digits are worth as much force: the calmest instant of the last tenth
     # is taken.
     law, late = run.law, np.flatnonzero(run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0]))
-    still = np.zeros_like(run.p[0])
-    forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], still), axis=1).max() for k in late])
+    zero_velocity = np.zeros_like(run.p[0])
+    forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], zero_velocity), axis=1).max() for k in late])
     forces, speeds = forces / run.scales.force, lengths(run.p[late]).max(axis=1) / run.scales.speed
     lefts = np.maximum(forces / tolerances.force, speeds / np.sqrt(tolerances.velocity))
-    calmest = int(np.argmin(lefts))
-    t, force, speed = (float(series[calmest]) for series in (run.t[late], forces, speeds))
-    left = max(float(lefts[calmest]), 1e-300)
-    damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of the thresholds of rest")
-    none = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
+    calmest_index = int(np.argmin(lefts))
+    t, force, speed = (float(series[calmest_index]) for series in (run.t[late], forces, speeds))
+    left = max(float(lefts[calmest_index]), 1e-300)
+    damped_certificate = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of the thresholds of rest")
+    no_certificate = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
-    certificate = damped if law.gains.c2_gamma > 0.0 else none
+    certificate = damped_certificate if law.gains.c2_gamma > 0.0 else no_certificate
     return limit_report(certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 

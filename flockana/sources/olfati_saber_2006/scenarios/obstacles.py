@@ -56,8 +56,8 @@ def free_start(
     generator = np.random.default_rng(seed)
     m = len(centre)
     q, p = generator.normal(centre, spread, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
-    while (near := np.any([obstacle.clearance(q) < room for obstacle in obstacles], axis=0)).any():
-        q[near] = generator.normal(centre, spread, (int(near.sum()), m))
+    while (is_blocked := np.any([obstacle.clearance(q) < room for obstacle in obstacles], axis=0)).any():
+        q[is_blocked] = generator.normal(centre, spread, (int(is_blocked.sum()), m))
     return q, p
 
 
@@ -87,15 +87,15 @@ def _entry(
     """Return the name and builder of a run with obstacles; the flock is given as n, centre and spread."""
     law, (n, centre, spread) = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles)), flock
     room, text = BetaInteraction().d, f"{source} {_OURS}"
-    in_units = in_source_units(lambda: law.scales, (stays_clear, *reports))
+    unit_reports = in_source_units(lambda: law.scales, (stays_clear, *reports))
     # large runs: fewer stored steps, energy balance within 2e-7
     fewer_steps = {"rtol": 1e-7, "atol": 1e-9, "t_eval": np.linspace(0.0, end, round(20.0 * end) + 1)}
-    more: dict[str, Any] = {"options": fewer_steps if n > 100 else {}, "shipped": shipped}
+    entry_options: dict[str, Any] = {"options": fewer_steps if n > 100 else {}, "shipped": shipped}
 
     def draw(seed: int) -> Start:
         return lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
 
-    return name, entry(name, title, text, law, draw, end, dict(expected), in_units, **more)
+    return name, entry(name, title, text, law, draw, end, dict(expected), unit_reports, **entry_options)
 
 
 SCENARIOS = dict(

@@ -40,14 +40,14 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
 
 def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: Real) -> Claim:
     """Return the claim that a quantity stays below a bound, at and between the samples."""
-    (symbol, what), t = _SYMBOLS[name], part.seen.t[part.first :]
+    (symbol, quantity_name), t = _SYMBOLS[name], part.seen.t[part.first :]
     values = value[part.first :]
     largest = Enclosure(values.lo.max(), values.mid.max(), max(values.hi.max(), over.hi.max()))
     worst = int(np.argmax(values.mid))
     return judged(name, bound - largest, computed=float(values.mid[worst])).described(
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},
-        detail=f"{what} {symbol}: {values.mid[worst]:.4g} at worst, at t = {t[worst]:.4g}",
+        detail=f"{quantity_name} {symbol}: {values.mid[worst]:.4g} at worst, at t = {t[worst]:.4g}",
     )
 
 
@@ -60,33 +60,33 @@ _SYMBOLS = {
 
 def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
     """Return the claim that a whole number never exceeds a bound, at and between the samples."""
-    t, between = part.seen.t[part.first :], counts[2]
+    t, interval_counts = part.seen.t[part.first :], counts[2]
     smallest, largest = (series[part.first :] for series in counts[:2])
     worst = int(np.argmax(smallest))
-    possible = max(float(largest.max()), between)
-    open_ = smallest[worst] <= most < possible
-    near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
-    return counted(name, most, int(smallest[worst]), int(possible), computed=int(smallest[worst])).described(
+    possible_count = max(float(largest.max()), interval_counts)
+    is_open = smallest[worst] <= most < possible_count
+    open_remark = "whether there are ever more is open: a pair comes as near to r as this run can tell"
+    return counted(name, most, int(smallest[worst]), int(possible_count), computed=int(smallest[worst])).described(
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
         detail=f"{what}: {int(smallest[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"
-        + (f"; {near}" if open_ else ""),
+        + (f"; {open_remark}" if is_open else ""),
     )
 
 
 def _connected(part: _Window) -> Claim:
     """Return the claim that the net is connected throughout, based on certain links."""
-    between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
-    counts = at.components_least, at.components, float(between.components.max(initial=0.0))
+    interval_nets, sample_nets = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
+    counts = sample_nets.components_least, sample_nets.components, float(interval_nets.components.max(initial=0.0))
     return _at_most("flock", part, counts, 1, "components")
 
 
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that a component keeps more than a share of the agents, based on certain links."""
     n = part.seen.n
-    between, at = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
+    interval_nets, sample_nets = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
-    counts = n - at.giant_most, n - at.giant, float(n - between.giant.min(initial=n))
+    counts = n - sample_nets.giant_most, n - sample_nets.giant, float(n - interval_nets.giant.min(initial=n))
     return _at_most("giant", part, counts, n - fewest, "agents outside the giant component")
 
 
@@ -95,16 +95,16 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     seen = part.seen
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
-    off = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
+    difference = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
     one_link, at, during = 2.0 * (r / d - 1.0) ** 2, between_samples.nets_at(seen), between_samples.nets_between(seen)
-    root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), off).clip(0.0)
+    root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), difference).clip(0.0)
     deviation = root.square().widened(one_link * at.open_links / (2.0 * at.links + 1.0)).clip(0.0)
     # of links that stay: √Ẽ grows by no more than the largest of their deviations does
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
-    between = (np.maximum(root.hi[:-1], root.hi[1:]) + between_samples.stretch_between(seen) / d) ** 2 + jumps
-    over = Enclosure(0.0, np.minimum(between, 1e300), between)
+    interval_bound = (np.maximum(root.hi[:-1], root.hi[1:]) + between_samples.stretch_between(seen) / d) ** 2 + jumps
+    range_bound = Enclosure(0.0, np.minimum(interval_bound, 1e300), interval_bound)
     return [
-        _always("deviation", part, deviation, over, tolerances.deviation),
+        _always("deviation", part, deviation, range_bound, tolerances.deviation),
         _always(
             "mismatch", part, seen.mismatch / units, between_samples.mismatch_over(seen) / units, tolerances.mismatch
         ),
@@ -114,9 +114,9 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     seen = part.seen
-    after = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
-    grown = float(between_samples.fastest_between(seen)[0]) * after if part.first else 0.0
-    bound = tolerances.cohesion * seen.radius[part.first].widened(grown)
+    time_offset = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
+    growth_bound = float(between_samples.fastest_between(seen)[0]) * time_offset if part.first else 0.0
+    bound = tolerances.cohesion * seen.radius[part.first].widened(growth_bound)
     return _always("cohesive", part, seen.radius, between_samples.radius_over(seen), bound)
 
 

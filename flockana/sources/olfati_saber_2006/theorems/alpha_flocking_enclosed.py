@@ -25,9 +25,9 @@ def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
     """Return the judged steps: those that end within the last part of the tube."""
     start = tube.t[0] + tolerances.settle * (tube.t[-1] - tube.t[0])
     steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
-    broken = tube.status != "complete"
-    detail = tube.message if broken else f"from t = {start:.4g} to {tube.t[-1]:.4g}, at all times"
-    is_window = condition("judged over a window", bool(steps) and not broken, detail=detail)
+    is_broken = tube.status != "complete"
+    detail = tube.message if is_broken else f"from t = {start:.4g} to {tube.t[-1]:.4g}, at all times"
+    is_window = condition("judged over a window", bool(steps) and not is_broken, detail=detail)
     return is_window, range(steps[0], steps[-1] + 1) if steps else range(0)
 
 
@@ -48,14 +48,14 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
     reach = arb(exact(tube.law.alpha.r))
 
     def count(k: int) -> arb:
-        certain, possible = certain_links(_distances(tube, k), reach)
-        return arb(missing(possible)).union(arb(missing(certain)))
+        certain_pairs, possible_pairs = certain_links(_distances(tube, k), reach)
+        return arb(missing(possible_pairs)).union(arb(missing(certain_pairs)))
 
-    number, when = _highest(tube, window, count)
-    stated = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
-    what = "components" if name == "flock" else "agents outside the giant component"
-    text = f"{what}: {float(number.upper()):.0f} at most, about t = {when:.4g}"
-    return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated, detail=text)
+    number, time_of_highest = _highest(tube, window, count)
+    stated_value = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
+    quantity_name = "components" if name == "flock" else "agents outside the giant component"
+    text = f"{quantity_name}: {float(number.upper()):.0f} at most, about t = {time_of_highest:.4g}"
+    return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated_value, detail=text)
 
 
 def _deviation(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
@@ -78,11 +78,11 @@ def _mismatch(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
     def value(k: int) -> arb:
         p = tube.taken[k].during[n * m :]
-        means = [sum(p[axis::m], arb(0)) / n for axis in range(m)]
-        return sum((square(x - means[i % m]) for i, x in enumerate(p)), arb(0)) / (2 * n * units)
+        mean_values = [sum(p[axis::m], arb(0)) / n for axis in range(m)]
+        return sum((square(x - mean_values[i % m]) for i, x in enumerate(p)), arb(0)) / (2 * n * units)
 
-    highest, when = _highest(tube, window, value)
-    return _below("mismatch", "K̃", highest, tolerances.mismatch, when)
+    highest, time_of_highest = _highest(tube, window, value)
+    return _below("mismatch", "K̃", highest, tolerances.mismatch, time_of_highest)
 
 
 def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
@@ -95,12 +95,12 @@ def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> C
 def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
-    each = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
-    bound = arb(tolerances.cohesion) * each[0]
-    highest = _highest(tube, range(len(each)), lambda k: each[k])[0]
-    detail = f"R is at most {float(highest.upper()):.5g}, and {float(each[0].mid()):.5g} when the window begins"
-    top, stated = float(highest.upper()), "R stays bounded"
-    return decided("cohesive", bound - highest, computed=top, stated=stated, detail=detail)
+    bounds = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
+    bound = arb(tolerances.cohesion) * bounds[0]
+    highest = _highest(tube, range(len(bounds)), lambda k: bounds[k])[0]
+    detail = f"R is at most {float(highest.upper()):.5g}, and {float(bounds[0].mid()):.5g} when the window begins"
+    top, stated_value = float(highest.upper()), "R stays bounded"
+    return decided("cohesive", bound - highest, computed=top, stated=stated_value, detail=detail)
 
 
 def _connected(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
@@ -110,8 +110,8 @@ def _connected(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
 def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     """Return the claim that a component keeps more than a share of the agents."""
-    outside = tube.n - floor(tolerances.giant * tube.n + _SHARE) - 1
-    return _components(tube, window, "giant", outside, lambda pairs: tube.n - groups(tube.n, pairs)[0])
+    outer_count = tube.n - floor(tolerances.giant * tube.n + _SHARE) - 1
+    return _components(tube, window, "giant", outer_count, lambda pairs: tube.n - groups(tube.n, pairs)[0])
 
 
 def _check(

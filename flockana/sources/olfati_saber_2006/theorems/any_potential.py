@@ -40,14 +40,14 @@ def attribute_claims(seen: Observed, claims: list[Claim]) -> list[Claim]:
 def potential_needs(seen: Observed) -> list[Hypothesis]:
     """Return the theorems' unproved hypotheses on the pair potential and its adjacency."""
     low = meeting(seen).floor > -inf
-    needs = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
-    return [need for need in [*needs, *least_is_known(seen)] if need.status != "met"]
+    requirements = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
+    return [requirement for requirement in [*requirements, *least_is_known(seen)] if requirement.status != "met"]
 
 
 def weight_inside(seen: Observed) -> list[Hypothesis]:
     """Return the hypothesis that all pairs in range match velocities; empty if proved."""
-    inside = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
-    return [inside] if inside.status != "met" else []
+    inside_fact = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
+    return [inside_fact] if inside_fact.status != "met" else []
 
 
 def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
@@ -55,7 +55,7 @@ def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
     if apart.status == "met" or is_paper(seen):
         return []
     slopes = seen.law.alpha.slopes(_PARTS)
-    if all(np.isfinite([part.force, part.adjacency]).all() for part in slopes):
+    if all(np.isfinite([component.force, component.adjacency]).all() for component in slopes):
         return []
     name = "force and adjacency are bounded at contact, or no two agents meet"
     return [Hypothesis(name, "assumed", detail="no bound of their slopes near contact is known")]
@@ -77,22 +77,22 @@ def never_meets(seen: Observed) -> Hypothesis:
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
     """Return the energy of a resting split state: the best lattice of n − 1 agents, and one agent far away."""
     # ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
-    pairs, far = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
+    pairs, far_energy = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
     if n > 1 and not isinstance(law.alpha, AlphaInteraction):
-        return far * pairs
+        return far_energy * pairs
     if n < 2 or paper_pair(law).kappa >= (2.0 if m == 1 else sqrt(3.0)):
         return inf
-    return far * (pairs - (n - 2 if m == 1 else harborth(n - 1)))
+    return far_energy * (pairs - (n - 2 if m == 1 else harborth(n - 1)))
 
 
 def parting_energy(seen: Observed) -> float:
     """Return the least known E of a split state: each of n − 1 pairs out of range has ψ(r) − L."""
     pair = seen.law.alpha
     energy = 0.0 if is_paper(seen) else pair.facts.least[0]
-    room = pair.far_potential - energy
-    error = _ROUNDING * (abs(pair.far_potential) + abs(energy)) if np.isfinite(room) else 0.0
-    room_left = seen.law.gains.c1_alpha * (room - error) if room > error else 0.0
-    return (seen.n - 1) * room_left if seen.n > 1 else inf
+    margin = pair.far_potential - energy
+    error = _ROUNDING * (abs(pair.far_potential) + abs(energy)) if np.isfinite(margin) else 0.0
+    energy_margin = seen.law.gains.c1_alpha * (margin - error) if margin > error else 0.0
+    return (seen.n - 1) * energy_margin if seen.n > 1 else inf
 
 
 def stays_together(seen: Observed) -> Hypothesis:
@@ -106,8 +106,8 @@ def stays_together(seen: Observed) -> Hypothesis:
     energy, apart = collisions.energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
     if energy.lo >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
-        room = apart - float(energy.mid)
-        return Hypothesis(name, "unmet", room, detail, decided="enclosed", remedy=collisions.LESS_ENERGY)
+        margin = apart - float(energy.mid)
+        return Hypothesis(name, "unmet", margin, detail, decided="enclosed", remedy=collisions.LESS_ENERGY)
     parted, of = parting_energy(seen), "ψ_α(r_α)" if is_paper(seen) else "(ψ(r) - L)"
     what = "H" if is_paper(seen) else "E"
     for t, height in ((seen.t[0], energy), (seen.t[-1], collisions.energy_at_end(seen))):
@@ -121,8 +121,8 @@ def stays_together(seen: Observed) -> Hypothesis:
 
 def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
     """Return the claim R below a bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0)."""
-    c1_gamma, above = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
-    bound = (2.0 * above / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
+    c1_gamma, energy_margin = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
+    bound = (2.0 * energy_margin / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
     text = "sqrt(2 H_λ(0)/c1γ)" if is_paper(seen) else "sqrt(2 E(0)/c1γ)"
     return _within(seen, bound, needs, name, text, proof)
 
@@ -140,8 +140,8 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
     """Return the claim that forces tend to 0: the flock tends to critical points of its potential."""
     forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
-    stated = "the largest force on an agent at rest -> 0"
-    return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated, proof=LIMITS)
+    stated_value = "the largest force on an agent at rest -> 0"
+    return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated_value, proof=LIMITS)
 
 
 def _needs(seen: Observed) -> list[Hypothesis]:
@@ -149,8 +149,8 @@ def _needs(seen: Observed) -> list[Hypothesis]:
     if isinstance(seen.law, Algorithm2):
         return [positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), *potential_needs(seen)]
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
-    needs = [*gains, *weight_inside(seen), *potential_needs(seen)]
-    return needs if unmet(needs) else [*needs, stays_together(seen)]
+    requirements = [*gains, *weight_inside(seen), *potential_needs(seen)]
+    return requirements if unmet(requirements) else [*requirements, stays_together(seen)]
 
 
 @run_theorem(
@@ -171,22 +171,22 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     if unmet(needs := _needs(seen)):
         return needs, []
-    apart, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
-    bounded, steady = bounded_at_contact(seen, apart), continuous_force(seen, apart)
+    no_meeting, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
+    force_claims, steady = bounded_at_contact(seen, no_meeting), continuous_force(seen, no_meeting)
     if isinstance(seen.law, Algorithm2):
         cohesion = cohesive(seen, needs, name="cohesion")
     else:
         reach = Enclosure.around(0.5 * (seen.n - 1) * seen.law.alpha.range, 0.0)
         cohesion = _within(seen, reach, needs, "cohesion", "½ (n - 1) r", PROOF)
-    one_instant = (
+    instant_claim = (
         vacuous("one-instant", repels)
         if repels.status == "unmet"  # then c* = 0
         else collisions.pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF)
     )
-    return [*needs, *bounded, *steady, apart], [
+    return [*needs, *force_claims, *steady, no_meeting], [
         cohesion,
-        velocities_match(seen, [*needs, *bounded], name="velocities", proof=LIMITS),
-        critical(seen, [*needs, *bounded, *steady], name="critical"),
-        one_instant,
-        collisions.no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
+        velocities_match(seen, [*needs, *force_claims], name="velocities", proof=LIMITS),
+        critical(seen, [*needs, *force_claims, *steady], name="critical"),
+        instant_claim,
+        collisions.no_collision(seen, [*needs, repels, no_meeting], tolerances, name="no-collision", proof=PROOF),
     ]

@@ -40,10 +40,10 @@ def theorem(run: Observed, tolerances: Tolerances) -> Checked:
     least energy of all other pairs is subtracted from H(0) and c* is the excess of a coincident pair over a pair's
     least energy.
     """
-    if unmet(needs := _needs(run)):
-        return needs, []
+    if unmet(requirements := _needs(run)):
+        return requirements, []
     pairs = meeting(run)
-    above = energy_at_start(run) - pairs.floor
-    bounds = {name: below_multiple(above, pairs.c_star, k) for name, k in _MULTIPLES.items()}
-    claims = [no_collision(run, [*needs, bound], tolerances, name=name) for name, bound in bounds.items()]
-    return [*needs, *bounds.values()], claims
+    energy_margin = energy_at_start(run) - pairs.floor
+    bounds = {name: below_multiple(energy_margin, pairs.c_star, k) for name, k in _MULTIPLES.items()}
+    claims = [no_collision(run, [*requirements, bound], tolerances, name=name) for name, bound in bounds.items()]
+    return [*requirements, *bounds.values()], claims

@@ -16,10 +16,10 @@ from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tole
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
     """Return claim (ii), matching velocities: by the proof if all its hypotheses are met, else by a basin."""
-    caught = [final_basin(seen).certificate]
-    if needs[-1].status == "assumed" and caught[0].certain:
-        return velocities_match(seen, needs[:-1], name="ii", caught=caught)
-    return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=any_potential.LIMITS)
+    basin_certificate = [final_basin(seen).certificate]
+    if needs[-1].status == "assumed" and basin_certificate[0].certain:
+        return velocities_match(seen, needs[:-1], name="ii", caught=basin_certificate)
+    return velocities_match(seen, [*needs, *bounded], name="ii", caught=basin_certificate, proof=any_potential.LIMITS)
 
 
 @run_theorem(
@@ -43,15 +43,15 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs := [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]):
         return needs, []
     low, barrier = any_potential.never_meets(seen), below_the_barrier(seen, energy_at_start(seen))
-    needs, bounded = [*needs, any_potential.stays_together(seen)], any_potential.bounded_at_contact(seen, low)
-    excluded = proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF
+    needs, force_claims = [*needs, any_potential.stays_together(seen)], any_potential.bounded_at_contact(seen, low)
+    collision_proof = proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF
     # the proof of the barrier's bound counts up to 60 agents of the default law in the plane
-    counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
-    barrier_proof = proved(seen, "barrier") if counted else None
+    is_counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
+    barrier_proof = proved(seen, "barrier") if is_counted else None
     claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
-        _velocities(seen, needs, bounded),
-        no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
+        _velocities(seen, needs, force_claims),
+        no_collision(seen, [*needs, low], tolerances, name="iii", proof=collision_proof),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=barrier_proof),
     ]
-    return [*needs, *bounded, low, barrier], any_potential.attribute_claims(seen, claims)
+    return [*needs, *force_claims, low, barrier], any_potential.attribute_claims(seen, claims)

@@ -33,11 +33,11 @@ def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list
     """Return the proved parts of claim (ii), for every start and for almost every start."""
     pieces = Hypothesis("ψ is C², analytic in finitely many pieces", "assumed", detail="proved of the paper's law")
     needs = needs if any_potential.is_paper(seen) else [*needs, pieces]
-    rests = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"
+    limit_text = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"
     semidefinite = "almost every start tends to an equilibrium with ∇²U_λ >= 0"
     force, bend = f"residual force {end.force:.2g} at the end", f"least curvature {end.curvature:.2g} at the end"
     return [
-        limit_claim("ii-converges", needs, computed=end.force, stated=rests, proof=_LIMIT, detail=force),
+        limit_claim("ii-converges", needs, computed=end.force, stated=limit_text, proof=_LIMIT, detail=force),
         limit_claim("ii-semidefinite", needs, computed=end.curvature, stated=semidefinite, proof=_LIMIT, detail=bend),
     ]
 
@@ -65,16 +65,16 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
     end, caught = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), final_basin(seen).certificate
-    bounded = any_potential.bounded_at_contact(seen, none)
-    stays, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
+    force_claims = any_potential.bounded_at_contact(seen, none)
+    stay_claim, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
     claims = [
-        any_potential.cohesive(seen, needs, name="i", proof=stays),
+        any_potential.cohesive(seen, needs, name="i", proof=stay_claim),
         _minimum(seen, needs, end, tolerances),
-        *_limits(seen, [*needs, *bounded], end),
-        velocities_match(seen, [*needs, *bounded], name="iii", caught=[caught], proof=any_potential.LIMITS),
+        *_limits(seen, [*needs, *force_claims], end),
+        velocities_match(seen, [*needs, *force_claims], name="iii", caught=[caught], proof=any_potential.LIMITS),
     ]
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
-    needed = [*needs, *bounded, consistent(seen.run), repels]
+    needed = [*needs, *force_claims, consistent(seen.run), repels]
     if unmet([repels]):
         return needed, any_potential.attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
     barrier = collisions.below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do

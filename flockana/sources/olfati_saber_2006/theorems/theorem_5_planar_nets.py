@@ -65,11 +65,11 @@ class Net:
 
 
 def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
-    apart, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
+    spacing_margin, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
     kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     text = f"{kind}: δ/d = {net.strain:.3g}" if len(net.links) else "there are no links"
     return [
-        condition("distinct positions", apart > 0.0, apart, f"shortest distance {net.closest:.6g}"),
+        condition("distinct positions", spacing_margin > 0.0, spacing_margin, f"shortest distance {net.closest:.6g}"),
         condition("κ = r/d > 1", kappa > 1.0, kappa - 1.0, f"κ = {kappa:.6g}"),
         condition(
             "q is an α-lattice",
@@ -94,8 +94,8 @@ def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
 def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
     """Return the claim that no two links cross: exact in the plane; in space a clearance beyond rounding."""
     count = net.crossing_count
-    if (missed := unmet(needs)) is not None:
-        return vacuous(name, missed, computed=count, stated="no two links cross", proof=_CROSSINGS)
+    if (unmet_hypothesis := unmet(needs)) is not None:
+        return vacuous(name, unmet_hypothesis, computed=count, stated="no two links cross", proof=_CROSSINGS)
     if count:
         margin, error, which, near = -float(len(net.crossings)), 0.0, None, ""
     else:
@@ -145,8 +145,8 @@ def _unlinked(net: Net) -> list[int]:
     """Return an unlinked pair: an agent with the fewest neighbours, and one outside its neighbours."""
     count = np.bincount(net.links.ravel(), minlength=net.n)
     i = int(np.argmin(count))
-    near = net.links[(net.links == i).any(axis=1)].ravel()
-    return [i, int(np.setdiff1d(np.arange(net.n), np.append(near, i))[0])]
+    link_agents = net.links[(net.links == i).any(axis=1)].ravel()
+    return [i, int(np.setdiff1d(np.arange(net.n), np.append(link_agents, i))[0])]
 
 
 def _quantitative(net: Net) -> Claim:
@@ -204,23 +204,23 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: flo
     net = Net(q, d, r, off)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
-    plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
+    plane, count_claim = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
     more, far = _dimension("n > m + 1", net.n > net.m + 1, net), _far_apart(net, net.r, "r/√2")
     longest = float(net.lengths.max(initial=0.0))
-    loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
-    printed = 3 * net.n - 6
+    length_claim = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
+    printed_value = 3 * net.n - 6
     claims = [
         uncrossed(net, [*lattice, wide], "i"),
         _graph(net, [*lattice, wide]),
-        _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
+        _bound(net, [*lattice, plane, count_claim], "ii", printed_value, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
         uncrossed(net, [far], "extension"),
-        uncrossed(net, [loose], "extension-lengths"),
-        _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
+        uncrossed(net, [length_claim], "extension-lengths"),
+        _bound(net, [length_claim, plane, count_claim], "extension-links", printed_value, "3n - 6"),
         _quantitative(net),
     ]
-    return [*lattice, wide, plane, many, more, far, loose], [_unless_open(net, claim) for claim in claims]
+    return [*lattice, wide, plane, count_claim, more, far, length_claim], [_unless_open(net, claim) for claim in claims]
 
 
 def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:

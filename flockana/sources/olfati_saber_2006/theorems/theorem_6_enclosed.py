@@ -37,12 +37,12 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         slack.append(-sum(pulls, arb(0)))
     if not _declared_velocity(tube).any() or all(x >= 0 for x in slack):
         return certain(name, True, detail="at all times of the tube"), 0
-    doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
-    since = doubtful + 1
+    last_doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
+    since = last_doubtful + 1
     if since < len(slack) and tube.t[-1] - tube.t[since] >= tube.law.scales.time:
         return certain(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
     if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
-        return certain(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
+        return certain(name, False, detail=f"certainly broken about t = {tube.t[last_doubtful]:.6g}, near the end"), 0
     return Hypothesis(name, "assumed", detail="the tube is too wide or too short to decide"), 0
 
 
@@ -51,32 +51,32 @@ def _stays_outside(tube: Tube) -> Hypothesis:
     name = "no agent enters an obstacle"
     if not tube.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
-    room = tube.min_clearance()
-    where = f"(agent {room.agent} at obstacles[{room.obstacle}], about t = {room.time:.4g})"
-    if room.lower > 0.0:
-        return certain(name, True, room.lower, f"clearance at least {room.lower:.6g} {where}, proved")
-    inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
-    text = "certainly inside" if inside else "the tube is too wide to tell"
-    return Hypothesis(name, "unmet" if inside else "assumed", room.lower, f"{text} {where}", decided="enclosed")
+    margin = tube.min_clearance()
+    where = f"(agent {margin.agent} at obstacles[{margin.obstacle}], about t = {margin.time:.4g})"
+    if margin.lower > 0.0:
+        return certain(name, True, margin.lower, f"clearance at least {margin.lower:.6g} {where}, proved")
+    is_inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
+    text = "certainly inside" if is_inside else "the tube is too wide to tell"
+    return Hypothesis(name, "unmet" if is_inside else "assumed", margin.lower, f"{text} {where}", decided="enclosed")
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
     """Return the claim that dH/dt is never positive from a step on."""
     # With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
     squares = not _declared_velocity(tube).any() and needs[-1].status == "met"
-    margin, highest, when = arb(1), arb(float("-inf")), tube.t[since]
+    margin, highest, time_of_highest = arb(1), arb(float("-inf")), tube.t[since]
     for k in range(since, len(tube.taken)):
         parts = powers_during(tube, flow, k)
-        total, size = sum(parts, arb(0)), sum((abs(x) for x in parts), arb(0))
+        total, magnitude = sum(parts, arb(0)), sum((abs(x) for x in parts), arb(0))
         if total.upper() > highest:
-            highest, when = total.upper(), tube.t[k]
+            highest, time_of_highest = total.upper(), tube.t[k]
         if not squares:
-            share = -total / size if size > 0 else arb(0, 1)
+            share = -total / magnitude if magnitude > 0 else arb(0, 1)
             margin = share if share.lower() < margin.lower() else margin
     return decided("rate", margin, needs, proof=proved(tube, "theorem6")).described(
         computed=up(highest),
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {tube.t[since]:.6g}",
-        witness={"time": when},
+        witness={"time": time_of_highest},
         detail=f"dH/dt is at most {up(highest):.3g} at all times from t = {tube.t[since]:g} to {tube.t[-1]:g}",
     )
 
@@ -98,12 +98,12 @@ def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     """Check Theorem 6 for the starts of a tube, over its time."""
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)
-        slow, since = _slow_enough(tube, flow)
-        moves = bool(tube.law.target.harmonic.terms[1].any())
-        detail = "it moves" if moves else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
-        rests = condition("the γ-agent is static", not moves, detail=detail)
-        needs = [common_gains(tube), rests, slow, _stays_outside(tube)]
+        slow_claim, first_index = _slow_enough(tube, flow)
+        distances = bool(tube.law.target.harmonic.terms[1].any())
+        detail = "it moves" if distances else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
+        rest_claim = condition("the γ-agent is static", not distances, detail=detail)
+        needs = [common_gains(tube), rest_claim, slow_claim, _stays_outside(tube)]
         if tube.status != "complete":
-            reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"
-            return needs, [undecided(name, reason, needs, stated=stated) for name in ("rate", "balance")]
-        return needs, [_never_rises(tube, flow, since, needs), _balance(tube, [rests, needs[0]], tolerances)]
+            reason, stated_value = f"the tube ends early: {tube.message}", "over the whole time span"
+            return needs, [undecided(name, reason, needs, stated=stated_value) for name in ("rate", "balance")]
+        return needs, [_never_rises(tube, flow, first_index, needs), _balance(tube, [rest_claim, needs[0]], tolerances)]

@@ -33,8 +33,8 @@ def _least_slack(seen: Observed) -> FloatArray:
         legs = 5.0 / h * np.diff(points, axis=1)[:, :, : seen.m]
         squares = 0.5 * np.einsum("nim,njm->ij", legs, legs) - 0.25 * np.add.outer(*[(legs @ p_r).sum(axis=0)] * 2)
         error = float(seen.between_speed_error.max() + seen.drift_error.max())
-        blur = error * float(lengths(legs - 0.5 * p_r).max(axis=1).sum()) + 0.5 * seen.n * error**2
-        slacks.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - blur)
+        rounding_width = error * float(lengths(legs - 0.5 * p_r).max(axis=1).sum()) + 0.5 * seen.n * error**2
+        slacks.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - rounding_width)
     bounds = np.array(slacks)
     if seen.run.path.slack is not None:  # of steps that were not kept the velocities are not known
         bounds[seen.run.path.slack.max(axis=1) > 0.0] = -np.inf
@@ -50,8 +50,8 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     if not any_p_r.any() and run.law.target.constant_velocity:
         return Hypothesis(name, "met", float(slack.min()), "p_d = 0: T >= 0 at all times"), 0
     terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * any_p_r * lengths(run.p).sum(axis=1)
-    off = seen.series(condition_76).half_width
-    rounding = np.where(any_p_r > 0.0, (run.n + 8) * EPS * terms + off, 0.0)
+    deviation = seen.series(condition_76).half_width
+    rounding = np.where(any_p_r > 0.0, (run.n + 8) * EPS * terms + deviation, 0.0)
     broken = np.flatnonzero(slack < -rounding)
     since = 0 if broken.size == 0 else int(broken[-1]) + 1
     if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:
@@ -59,17 +59,17 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
         detail = f"it fails until t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, by {-worst:.3g}"
         return Hypothesis(name, "unmet", worst, detail, decided="enclosed", on_motion=True), len(run.t) - 1
     between = _least_slack(seen)
-    doubtful = np.flatnonzero(between[since:] < 0.0)
-    later = since if not doubtful.size else since + int(doubtful[-1]) + 1
-    sure = bool(run.t[-1] - run.t[later] >= run.scales.time and (slack >= rounding)[later:].all())
-    since = later if sure else since
+    doubtful_samples = np.flatnonzero(between[since:] < 0.0)
+    later_index = since if not doubtful_samples.size else since + int(doubtful_samples[-1]) + 1
+    is_certain = bool(run.t[-1] - run.t[later_index] >= run.scales.time and (slack >= rounding)[later_index:].all())
+    since = later_index if is_certain else since
     share = 100.0 * broken.size / len(run.t)
-    before = f"broken at {share:.2g} % of the samples before t0" if broken.size else "never broken"
-    lowest = float(between[since:].min() if sure else slack[since:].min())
-    detail = f"t0 = {run.t[since]:.6g}, {before}; to the end of this run, " + (
-        "between samples too" if sure else "seen"
+    history_text = f"broken at {share:.2g} % of the samples before t0" if broken.size else "never broken"
+    least_slack = float(between[since:].min() if is_certain else slack[since:].min())
+    detail = f"t0 = {run.t[since]:.6g}, {history_text}; to the end of this run, " + (
+        "between samples too" if is_certain else "seen"
     )
-    return Hypothesis(name, "met" if sure else "assumed", lowest, detail, decided="enclosed"), since
+    return Hypothesis(name, "met" if is_certain else "assumed", least_slack, detail, decided="enclosed"), since
 
 
 def start_of_condition(seen: Observed) -> int:
@@ -100,8 +100,8 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     the second term can be positive. The condition is bounded between samples, up to the end of the run only.
     """
     run = seen.run
-    slow_enough, since = _condition(seen)
-    needs = [common_gains(seen), target_rests(run, any_p_r=True), slow_enough, stays_outside(seen)]
+    speed_claim, first_index = _condition(seen)
+    requirements = [common_gains(seen), target_rests(run, any_p_r=True), speed_claim, stays_outside(seen)]
     rate, proof = declared_rate_is_true(run), proved(seen, "theorem6")
-    balanced = balance(seen, [*needs, rate], tolerances, proof=proof)
-    return [*needs, rate], [never_rises(seen, needs, since=since, proof=proof), balanced]
+    balance_claim = balance(seen, [*requirements, rate], tolerances, proof=proof)
+    return [*requirements, rate], [never_rises(seen, requirements, since=first_index, proof=proof), balance_claim]

@@ -56,77 +56,77 @@ def _stays_together(tube: Tube) -> Hypothesis:
     name = "every solution from Ω_c is a cohesive dynamic flock"
     reach = arb(exact(tube.law.alpha.r))
     for k, t in enumerate(tube.t[:-1]):
-        possible = from_tube.certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
-        if len(from_tube.groups(tube.n, possible)) > 1:
+        possible_pairs = from_tube.certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
+        if len(from_tube.groups(tube.n, possible_pairs)) > 1:
             return from_tube.certain(name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}")
     with ctx.workprec(BITS):
-        apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
-        excess = arb(0) if apart is None else tube.energy(0) - gain(tube.law) * apart
-        room = gain(tube.law) * (tube.n - 1) * PairNumbers.of_alpha(tube.law.alpha).far - tube.energy(0)
+        splitting_energy = disconnected_state(tube.law.alpha, tube.n, tube.m)
+        excess = arb(0) if splitting_energy is None else tube.energy(0) - gain(tube.law) * splitting_energy
+        margin = gain(tube.law) * (tube.n - 1) * PairNumbers.of_alpha(tube.law.alpha).far - tube.energy(0)
     if excess > 0:
         return from_tube.certain(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
-    if room > 0:
+    if margin > 0:
         text = "H(0) < (n-1) c1α ψ_α(r_α), which a disconnected state has"
-        return from_tube.certain(name, True, down(room.lower()), text)
+        return from_tube.certain(name, True, down(margin.lower()), text)
     return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; other starts are not known")
 
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 1 for the starts of a tube."""
-    if unmet(needs := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
-        return needs, []
-    case, needs = from_tube.TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
+    if unmet(requirements := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
+        return requirements, []
+    case, requirements = from_tube.TubeAndBasin.of(tube, basin), [*requirements, _stays_together(tube)]
     low, barrier = _below_c_star(tube), _below_barrier(tube)
     matching = "ii", "K̃ -> 0", "velocities match in the moving frame"
     proof = "any-potential-limits" if tube.status == "complete" else None
-    return [*needs, low, barrier], [
-        without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
-        from_tube.converges(case, needs, *matching, proof)
-        if needs[-1].status == "met"
-        else without_assumed(needs, lambda given: from_tube.converges(case, given, *matching)),
-        from_tube.no_collision(case, [*needs, low], name="iii"),
-        from_tube.no_collision(case, [*needs, barrier], name="iii-barrier"),
+    return [*requirements, low, barrier], [
+        without_assumed(requirements, lambda given: _lattice(case, given, tolerances)),
+        from_tube.converges(case, requirements, *matching, proof)
+        if requirements[-1].status == "met"
+        else without_assumed(requirements, lambda given: from_tube.converges(case, given, *matching)),
+        from_tube.no_collision(case, [*requirements, low], name="iii"),
+        from_tube.no_collision(case, [*requirements, barrier], name="iii-barrier"),
     ]
 
 
 def _lattice(case: from_tube.TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Return claim (i): the limit is an equilibrium with all links of length d, within the tolerance."""
-    alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
+    alpha, stated_value = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
-        return from_tube.in_the_limit(case, needs, name="i", stated=stated)
+        return from_tube.in_the_limit(case, needs, name="i", stated=stated_value)
     with ctx.workprec(BITS):
         strain = from_tube.rest_strain(case.basin, alpha)
         margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
     detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {largest:.2g} d"
-    return from_tube.in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated, detail=detail)
+    return from_tube.in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated_value, detail=detail)
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 3 for the starts of a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
-    needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
-    case, whole = from_tube.TubeAndBasin.of(tube, basin), tube.status == "complete"
-    limit, matching = ("convergence", "any-potential-limits") if whole else (None, None)
-    strict = "every start of the tube converges to a strict local minimum of U_λ (modulo rotations)"
-    rest = "every start converges to one equilibrium, ∇U_λ(x) = 0"
+    requirements, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
+    case, is_complete = from_tube.TubeAndBasin.of(tube, basin), tube.status == "complete"
+    limit, matching = ("convergence", "any-potential-limits") if is_complete else (None, None)
+    strict_text = "every start of the tube converges to a strict local minimum of U_λ (modulo rotations)"
+    limit_text = "every start converges to one equilibrium, ∇U_λ(x) = 0"
     semidefinite = "almost every start tends to an equilibrium with ∇²U_λ >= 0"
-    others = from_tube.TubeAndBasin(tube, None, "")  # a basin says nothing of other starts
+    tube_only_case = from_tube.TubeAndBasin(tube, None, "")  # a basin says nothing of other starts
     claims = [
-        _cohesive(case, needs),
-        from_tube.converges(case, needs, "ii", strict, "the limit is a local minimum"),
-        from_tube.converges(case, needs, "ii-converges", rest, "one limit", limit),
-        from_tube.in_the_limit(others, needs, name="ii-semidefinite", stated=semidefinite, proof=limit),
-        from_tube.converges(case, needs, "iii", "K̃ -> 0", "velocities match in the moving frame", matching),
+        _cohesive(case, requirements),
+        from_tube.converges(case, requirements, "ii", strict_text, "the limit is a local minimum"),
+        from_tube.converges(case, requirements, "ii-converges", limit_text, "one limit", limit),
+        from_tube.in_the_limit(tube_only_case, requirements, name="ii-semidefinite", stated=semidefinite, proof=limit),
+        from_tube.converges(case, requirements, "iii", "K̃ -> 0", "velocities match in the moving frame", matching),
     ]
     names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
     if unmet([repels]):
-        return [*needs, repels], [*claims, *(vacuous(name, repels) for name in names)]
-    none, barrier = _below_c_star(tube), _below_barrier(tube)
-    return [*needs, repels, none, barrier], [
+        return [*requirements, repels], [*claims, *(vacuous(name, repels) for name in names)]
+    below_c_star, barrier = _below_c_star(tube), _below_barrier(tube)
+    return [*requirements, repels, below_c_star, barrier], [
         *claims,
         _few_pairs(case, repels),
         from_tube.no_collision(case, [repels], name="iv-instant"),
-        from_tube.no_collision(case, [repels, none], name="iv-none"),
+        from_tube.no_collision(case, [repels, below_c_star], name="iv-none"),
         from_tube.no_collision(case, [repels, barrier], name="iv-barrier"),
     ]
 
@@ -141,11 +141,11 @@ def _cohesive(case: from_tube.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
         largest = float(tube.cohesion_radius().max())
         bound = (2 * tube.energy(0) / gain).nonnegative_part().sqrt() if gain > 0 else arb(1e300)
         margin = arb(bound.lower()) - largest
-    caught = f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} at all times"
+    cohesion_text = f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} at all times"
     return from_tube.decided("i", margin, needs, proof="cohesion").described(
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
-        detail=f"cohesion radius R <= {largest:.5g} {case.until if case.basin is None else caught}",
+        detail=f"cohesion radius R <= {largest:.5g} {case.until if case.basin is None else cohesion_text}",
     )
 
 
@@ -154,18 +154,18 @@ def _few_pairs(case: from_tube.TubeAndBasin, repels: Hypothesis) -> Claim:
     tube = case.tube
     with ctx.workprec(BITS):
         pairs = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
-    bites = condition("k < n(n-1)/2", pairs < len(tube.pairs), float(len(tube.pairs) - pairs - 1))
-    apart = from_tube.no_collision(case, [repels, bites], name="iv-printed")
+    pair_count_claim = condition("k < n(n-1)/2", pairs < len(tube.pairs), float(len(tube.pairs) - pairs - 1))
+    apart = from_tube.no_collision(case, [repels, pair_count_claim], name="iv-printed")
     if apart.status in ("verified", "vacuous"):
         return apart
-    return undecided("iv-printed", f"{apart.detail}; whether more pairs meet is open", [repels, bites])
+    return undecided("iv-printed", f"{apart.detail}; whether more pairs meet is open", [repels, pair_count_claim])
 
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check the energy of a collision for the starts of a tube."""
-    needs, case = [positive(tube, c1_alpha="c1α")], from_tube.TubeAndBasin.of(tube, basin)
-    if unmet(needs):
-        return needs, []
+    requirements, case = [positive(tube, c1_alpha="c1α")], from_tube.TubeAndBasin.of(tube, basin)
+    if unmet(requirements):
+        return requirements, []
     bounds = {name: _below_c_star(tube, times) for name, times in _MULTIPLES.items()}
-    claims = [from_tube.no_collision(case, [*needs, bound], name=name) for name, bound in bounds.items()]
-    return [*needs, *bounds.values()], claims
+    claims = [from_tube.no_collision(case, [*requirements, bound], name=name) for name, bound in bounds.items()]
+    return [*requirements, *bounds.values()], claims

@@ -39,39 +39,39 @@ def _agreement(seen: Observed, root: Hypothesis) -> Claim:
 
 def average(seen: Observed, needs: Needs) -> Claim:
     """Return the claim that all agents tend to the average of the start."""
-    off = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
-    return limit_claim("average", needs, proof=_PROOF, computed=float(off)).described(
-        stated="all tend to the average of the start", detail=f"at the end agents are up to {off:.3g} from it"
+    deviation = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
+    return limit_claim("average", needs, proof=_PROOF, computed=float(deviation)).described(
+        stated="all tend to the average of the start", detail=f"at the end agents are up to {deviation:.3g} from it"
     )
 
 
 def _elsewhere(root: Hypothesis, balanced: Hypothesis) -> Claim:
     """Return the claim that some start does not tend to the average, vacuous on a balanced net."""
-    opposite = {"met": "unmet", "unmet": "met"}[balanced.status]
-    need = Hypothesis(f"not: {balanced.name}", opposite, detail=balanced.detail)  # type: ignore[arg-type]
-    if need.status == "unmet":
-        return vacuous("some-start", need)
-    return judged("some-start", Enclosure.of(0.0), [root, need], about="all", proof=_PROOF).described(
+    opposite_status = {"met": "unmet", "unmet": "met"}[balanced.status]
+    requirement = Hypothesis(f"not: {balanced.name}", opposite_status, detail=balanced.detail)  # type: ignore[arg-type]
+    if requirement.status == "unmet":
+        return vacuous("some-start", requirement)
+    return judged("some-start", Enclosure.of(0.0), [root, requirement], about="all", proof=_PROOF).described(
         stated="from some start agents do not tend to its average", detail=balanced.detail
     )
 
 
 def slowest_rate(laplacian: FloatArray) -> float:
     """Return λ₂ of (L + Lᵀ)/2, rounded down."""
-    twice = laplacian + laplacian.T
-    rounding = 8.0 * len(twice) * EPS * float(np.abs(twice).sum(axis=1).max())
-    return 0.5 * (float(np.linalg.eigvalsh(twice)[min(1, len(twice) - 1)]) - rounding)
+    doubled_symmetric = laplacian + laplacian.T
+    rounding = 8.0 * len(doubled_symmetric) * EPS * float(np.abs(doubled_symmetric).sum(axis=1).max())
+    return 0.5 * (float(np.linalg.eigvalsh(doubled_symmetric)[min(1, len(doubled_symmetric) - 1)]) - rounding)
 
 
 def decay(seen: Observed, needs: Needs, rate: float) -> Claim:
     """Return the claim that the disagreement falls at least at a given rate."""
-    size = np.sqrt(np.sum((seen.run.q - seen.run.q.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
+    magnitude = np.sqrt(np.sum((seen.run.q - seen.run.q.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
     error = np.sqrt(seen.n) * seen.shape_error.max(axis=1) + 8.0 * EPS * np.abs(seen.run.q).max(axis=(1, 2))
-    bound = size[0] * np.exp(-rate * (seen.t - seen.t[0]))
-    return judged("decay", Enclosure.around(bound - size, error + error[0]), needs, proof=_PROOF).described(
-        computed=float(size[-1] / (size[0] or 1.0)),
+    bound = magnitude[0] * np.exp(-rate * (seen.t - seen.t[0]))
+    return judged("decay", Enclosure.around(bound - magnitude, error + error[0]), needs, proof=_PROOF).described(
+        computed=float(magnitude[-1] / (magnitude[0] or 1.0)),
         stated=f"‖q - q̄‖ <= ‖q(0) - q̄‖ exp(-λ₂ t), λ₂ = {rate:.6g}",
-        detail=f"λ₂ of (L + Lᵀ)/2 = {rate:.6g}; ‖q - q̄‖ goes from {size[0]:.4g} to {size[-1]:.4g}",
+        detail=f"λ₂ of (L + Lᵀ)/2 = {rate:.6g}; ‖q - q̄‖ goes from {magnitude[0]:.4g} to {magnitude[-1]:.4g}",
     )
 
 
@@ -80,13 +80,13 @@ def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
     moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
     limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
     shortest = min(limits, key=lambda one: float(one.mid())) if limits else None
-    room = (
+    margin = (
         Enclosure.of(0.0)
         if shortest is None
         else Enclosure.around(float(shortest.mid()) * degree - 1.0, float(shortest.rad()) * degree + 8.0 * EPS)
     )
     text = "no step is too long" if shortest is None else f"ε < min 2 Re μ/|μ|² = {shortest.str(8, radius=False)}"
-    return judged("steps", room, [root], about="all", proof=_PROOF).described(
+    return judged("steps", margin, [root], about="all", proof=_PROOF).described(
         computed=None if shortest is None else float(shortest.mid()),
         stated="I - εL agrees for 0 < ε < 1/Δ, and exactly for 0 < ε < min 2 Re μ/|μ|² over μ ≠ 0",
         detail=f"{text}; 1/Δ = {1.0 / degree:.6g}" if degree else text,
@@ -109,13 +109,13 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     1/Δ, Δ the most that an agent hears.
     """
     law: AverageConsensus = seen.law
-    root, balanced = has_root(law.weights), is_balanced(law.weights)
+    root, balance_hypothesis = has_root(law.weights), is_balanced(law.weights)
     if unmet([root]):
         return [root], []
     return [root], [
         _agreement(seen, root),
-        average(seen, [root, balanced]),
-        _elsewhere(root, balanced),
-        decay(seen, [balanced, is_strong(law.weights)], slowest_rate(law.laplacian)),
+        average(seen, [root, balance_hypothesis]),
+        _elsewhere(root, balance_hypothesis),
+        decay(seen, [balance_hypothesis, is_strong(law.weights)], slowest_rate(law.laplacian)),
         _steps(law, root),
     ]

@@ -14,8 +14,8 @@ from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances,
 
 def _nets_in_turn(seen: Observed) -> Hypothesis:
     law = seen.law
-    met = type(law) is VelocityInTurn and all(type(one) is AverageConsensus for one in law.laws)
-    return condition("consensus of the first order over nets in turn is applied", met, detail=law.title)
+    is_consensus = type(law) is VelocityInTurn and all(type(item) is AverageConsensus for item in law.laws)
+    return condition("consensus of the first order over nets in turn is applied", is_consensus, detail=law.title)
 
 
 def _of_all(needs: list[Hypothesis]) -> Hypothesis:
@@ -39,6 +39,6 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     the disagreement falls at the least λ₂ of (L + Lᵀ)/2 or faster.
     """
     laws = seen.law.laws
-    needs = [_of_all([is_balanced(one.weights) for one in laws]), _of_all([is_strong(one.weights) for one in laws])]
-    rate = min(slowest_rate(one.laplacian) for one in laws)
+    needs = [_of_all([is_balanced(law.weights) for law in laws]), _of_all([is_strong(law.weights) for law in laws])]
+    rate = min(slowest_rate(law.laplacian) for law in laws)
     return needs, [average(seen, needs), decay(seen, needs, rate)]

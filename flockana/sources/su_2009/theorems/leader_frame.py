@@ -34,9 +34,9 @@ def some_informed(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that informed agents share c1, c2 > 0, and the other agents have none."""
     pull, match = gains_of(run)
     who = pull > 0.0
-    alike = np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
+    is_uniform = np.array_equal(who, match > 0.0) and np.unique(pull[who]).size == np.unique(match[who]).size == 1
     name = "some agents are informed, with c1 > 0 and c2 > 0, the same for all of them"
-    return condition(name, alike, detail=f"{int(who.sum())} of {run.n} agents are informed")
+    return condition(name, is_uniform, detail=f"{int(who.sum())} of {run.n} agents are informed")
 
 
 def constant_velocity(run: Trajectory, *, any_p_r: bool = False) -> Hypothesis:
@@ -63,35 +63,35 @@ def as_the_leader_sees(seen: Observed) -> Observed:
 
 
 def _seen(run: Trajectory) -> Trajectory:
-    law, (pull, match) = run.law, gains_of(run)
-    gains = replace(law.gains, c1_gamma=tuple(pull.tolist()), c2_gamma=tuple(match.tolist()))
-    still = Algorithm2(law.alpha, gains, StaticTarget((0.0,) * run.m))
+    law, (pull, velocity_gain) = run.law, gains_of(run)
+    gains = replace(law.gains, c1_gamma=tuple(pull.tolist()), c2_gamma=tuple(velocity_gain.tolist()))
+    resting_law = Algorithm2(law.alpha, gains, StaticTarget((0.0,) * run.m))
     feedforward = bool(getattr(law, "feedforward", False))
-    between = run.between
-    if between is not None:
-        between = Between(**_shifted(law.target, between, feedforward), slack=between.slack)
-    return replace(run, **_shifted(law.target, run, feedforward), law=still, extra={}, between=between)
+    between_samples = run.between
+    if between_samples is not None:
+        between_samples = Between(**_shifted(law.target, between_samples, feedforward), slack=between_samples.slack)
+    return replace(run, **_shifted(law.target, run, feedforward), law=resting_law, extra={}, between=between_samples)
 
 
 def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
     """Return t, q, p and u of samples or steps relative to the leader."""
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
-    place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
+    position, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
     push = np.array([target.harmonic.acceleration(float(t)) if feedforward else np.zeros(shape[1]) for t in course.t])
-    apart = {"q": course.q - place[:, None], "p": course.p - speed[:, None]}
-    return {"t": course.t, **apart, "u": course.u - push.reshape(shape)[:, None]}
+    shifted_state = {"q": course.q - position[:, None], "p": course.p - speed[:, None]}
+    return {"t": course.t, **shifted_state, "u": course.u - push.reshape(shape)[:, None]}
 
 
 def linked_to_informed(run: Trajectory) -> np.ndarray:
     """Return a mask (n,) of agents linked to an informed one in each window of the last half of a run."""
     # A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
     is_linked, start = np.ones(run.n, dtype=bool), 0.5 * (run.t[0] + run.t[-1])
-    who, edges = informed(run), np.linspace(start, run.t[-1], WINDOWS + 1)
+    is_informed, edges = informed(run), np.linspace(start, run.t[-1], WINDOWS + 1)
     for low, high in pairwise(edges):
         nets = [links(q, run.law.alpha.range) for q in run.q[(run.t >= low) & (run.t <= high)]]
         label = components(run.n, np.concatenate(nets)) if nets else np.arange(run.n)
-        is_linked &= np.isin(label, label[who])
+        is_linked &= np.isin(label, label[is_informed])
     return is_linked
 
 
@@ -106,12 +106,12 @@ def comes_to_rest(
 ) -> Claim:
     """Return the claim that the velocities of given agents decay to 0 in the leader's frame."""
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
-    what = f"the largest of {count} differences from the leader's velocity"
-    about: dict[str, Any] = {
+    quantity_text = f"the largest of {count} differences from the leader's velocity"
+    claim_details: dict[str, Any] = {
         "series": speeds,
-        "what": what,
+        "what": quantity_text,
         "of": "the largest difference",
         "stated": "p_i - dq_r/dt -> 0",
     }
-    claim = decays_to_zero(seen, name, needs, certificates, proof=proof, **about)
+    claim = decays_to_zero(seen, name, needs, certificates, proof=proof, **claim_details)
     return claim.described(witness={"time": float(seen.t[-1]), "agents": count})

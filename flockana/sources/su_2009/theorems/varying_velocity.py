@@ -40,8 +40,8 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
         steady = constant_velocity(run)
         return Hypothesis(name, steady.status, steady.margin, f"no feedforward; {steady.name}: {steady.detail}")
     terms = [type(term) for term in law.terms]
-    alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
-    is_feedforward = alike and type(law.alpha) is AlphaInteraction
+    is_uniform = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
+    is_feedforward = is_uniform and type(law.alpha) is AlphaInteraction
     if is_feedforward and (tells := consistent(run)).status != "met":
         return Hypothesis(name, tells.status, tells.margin, f"{tells.name}: {tells.detail}", tells.error)
     return condition(name, is_feedforward, detail=", ".join(term.__name__ for term in terms))
@@ -55,17 +55,17 @@ def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     start = centre[0].reshape(2, run.m)
     from scipy.linalg import expm
 
-    predicted = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
-    return centre, predicted
+    predicted_value = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
+    return centre, predicted_value
 
 
 def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     run = seen.run
-    (centre, predicted), unit = centre_of(run), seen.scales.time
+    (centre, predicted_value), unit = centre_of(run), seen.scales.time
     units = np.repeat([1.0, unit], run.m)  # velocities as lengths
-    size = max(float(np.abs(centre[0] * units).max()), seen.scales.length)
+    magnitude = max(float(np.abs(centre[0] * units).max()), seen.scales.length)
     error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
-    off = (Enclosure.around(np.abs((centre - predicted) * units), error).max(axis=1) / size).clip(0.0)
+    off = (Enclosure.around(np.abs((centre - predicted_value) * units), error).max(axis=1) / magnitude).clip(0.0)
     worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
     return judged("centre", _AGREES - off, needs, proof=PROOF, computed=float(off.mid[worst])).described(
         stated=f"q_c − q_r solves z'' = −c1 z − c2 z', and dies out as exp(−{rate:.4g} t)",
@@ -80,8 +80,8 @@ def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
     q, p, *errors = seen.end
-    off, p_off = (float(np.linalg.norm(error)) for error in errors)
-    return [attraction(replace(seen.law, gains=gains), q, p, off=off, p_off=p_off).certificate]
+    error_bars, p_off = (float(np.linalg.norm(error)) for error in errors)
+    return [attraction(replace(seen.law, gains=gains), q, p, off=error_bars, p_off=p_off).certificate]
 
 
 @run_theorem(
@@ -100,20 +100,20 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     acceleration, leaves a lag.
     """
     run = observed.run
-    alike = condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
-    needs = [alike, _is_feedforward(run)]
+    uniform_claim = condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
+    needs = [uniform_claim, _is_feedforward(run)]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
     needs += [*pairs_dissipate(observed), *least_is_known(observed)]
     if unmet(needs):
         return needs, []
-    seen, gains = as_the_leader_sees(observed), run.law.gains
-    pairs = meeting(seen)
-    below = below_multiple(seen.energy[0] - pairs.floor, pairs.c_star)
-    return [*needs, below], [
-        _centre(seen, gains, needs),
-        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _shape_basin(seen, gains)),
-        stays_within(seen, needs, name="distance", proof=PROOF),
-        no_collision(seen, [*needs, below], tolerances, name="no-collision"),
+    observation, gains = as_the_leader_sees(observed), run.law.gains
+    pairs = meeting(observation)
+    energy_claim = below_multiple(observation.energy[0] - pairs.floor, pairs.c_star)
+    return [*needs, energy_claim], [
+        _centre(observation, gains, needs),
+        comes_to_rest(observation, np.ones(run.n, dtype=bool), needs, "velocities", _shape_basin(observation, gains)),
+        stays_within(observation, needs, name="distance", proof=PROOF),
+        no_collision(observation, [*needs, energy_claim], tolerances, name="no-collision"),
     ]

@@ -42,12 +42,12 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
     what: dict[str, Any] = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
-    critical = decays_to_zero(seen, names[1], needs, series=force, proof=forces, **what)
-    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), critical]
+    decay_claim = decays_to_zero(seen, names[1], needs, series=force, proof=forces, **what)
+    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), decay_claim]
 
 
 def out_of_range(seen: Observed) -> Enclosure:
     """Return H(0)/V(R), an upper bound of the number of pairs that can ever leave the range."""
-    far = float(seen.law.potential.energy(seen.law.r))
+    far_energy = float(seen.law.potential.energy(seen.law.r))
     energy = seen.energy[0].widened(_energy_error(seen, *np.triu_indices(seen.n, 1)))
-    return energy / far if far > 0.0 else Enclosure.of(inf)
+    return energy / far_energy if far_energy > 0.0 else Enclosure.of(inf)

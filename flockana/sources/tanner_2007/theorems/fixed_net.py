@@ -25,10 +25,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     edges = np.array(seen.law.edges, dtype=np.int32).reshape(-1, 2)
     parts = 1 + int(components(seen.n, edges).max())
-    if unmet(needs := [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]):
-        return needs, []
-    return needs, [
-        balance(seen, needs, tolerances, name="energy", proof="tanner"),
-        no_collision(seen, edges[:, 0], edges[:, 1], "tanner", needs),
-        *comes_to_rest(seen, needs, ("velocities", "critical"), forces=MATCHED),
+    if unmet(requirements := [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]):
+        return requirements, []
+    return requirements, [
+        balance(seen, requirements, tolerances, name="energy", proof="tanner"),
+        no_collision(seen, edges[:, 0], edges[:, 1], "tanner", requirements),
+        *comes_to_rest(seen, requirements, ("velocities", "critical"), forces=MATCHED),
     ]

@@ -13,12 +13,12 @@ from flockana.theorems.toolkit import EPS, Checked, Hypothesis, Observed, Tolera
 def _connected(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the net is connected at all times."""
     name, run = "the net is connected at all times", seen.run
-    blur = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
-    for q, t, off in zip(run.q, run.t, blur, strict=True):
-        if components(run.n, links(q, run.law.r + float(off))).max() > 0:
+    rounding_width = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
+    for q, t, range_error in zip(run.q, run.t, rounding_width, strict=True):
+        if components(run.n, links(q, run.law.r + float(range_error))).max() > 0:
             return condition(name, False, detail=f"the net has several components at t = {t:.6g}", decided="enclosed")
     pairs = out_of_range(seen)
-    start = components(run.n, links(run.q[0], run.law.r - float(blur[0]))).max() == 0
+    start = components(run.n, links(run.q[0], run.law.r - float(rounding_width[0]))).max() == 0
     if start and pairs.hi < run.n - 1:
         text = f"the energy of the start can put {pairs.mid:.3g} pairs out of range; to part takes {run.n - 1}"
         return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text, decided="enclosed")
@@ -41,10 +41,10 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     acts. That it stays connected is certain if H(0) < (n - 1) V(R): in a disconnected net at least n - 1 pairs are
     beyond R.
     """
-    if unmet(needs := [_connected(seen)]):
-        return needs, []
-    return needs, [
+    if unmet(requirements := [_connected(seen)]):
+        return requirements, []
+    return requirements, [
         balance(seen, [], tolerances, name="energy", proof="tanner"),
         no_collision(seen, *np.triu_indices(seen.n, 1), "tanner", []),
-        *comes_to_rest(seen, needs, ("velocities", "critical")),
+        *comes_to_rest(seen, requirements, ("velocities", "critical")),
     ]

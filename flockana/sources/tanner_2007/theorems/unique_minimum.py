@@ -9,14 +9,14 @@ def _own_block() -> Any:
     """Return the Hessian block of the total potential of one agent, less that of the agent's own potential."""
     import sympy as sp
 
-    V, places = sp.Function("V"), [sp.symbols(f"x{i} y{i}", real=True) for i in range(3)]
+    V, agent_symbols = sp.Function("V"), [sp.symbols(f"x{i} y{i}", real=True) for i in range(3)]
 
     def pair(i: int, j: int) -> Any:
-        return V(sp.sqrt(sum((a - b) ** 2 for a, b in zip(places[i], places[j], strict=True))))
+        return V(sp.sqrt(sum((a - b) ** 2 for a, b in zip(agent_symbols[i], agent_symbols[j], strict=True))))
 
     own_block = pair(0, 1) + pair(0, 2)
     total = own_block + pair(1, 2)
-    return [sp.simplify(sp.diff(total - own_block, a, b)) for a in places[0] for b in places[0]]
+    return [sp.simplify(sp.diff(total - own_block, a, b)) for a in agent_symbols[0] for b in agent_symbols[0]]
 
 
 @erratum(
@@ -38,8 +38,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     potential = 1 / s**2 - 1 + sp.log(s**2)  # d = k = 1
     slope, spacing = sp.diff(potential, s), sp.sqrt(3) / 2
     outer = sp.simplify(slope.subs(s, spacing) + slope.subs(s, 2 * spacing))
-    middle = 2 * potential.subs(s, sp.sqrt(spacing**2 + y**2))
-    hill = sp.simplify(sp.limit(sp.diff(middle, y, 2), y, 0))
+    energy_on_axis = 2 * potential.subs(s, sp.sqrt(spacing**2 + y**2))
+    hill = sp.simplify(sp.limit(sp.diff(energy_on_axis, y, 2), y, 0))
     return [
         exact("printed", bool(hill >= 0), computed=str(hill)).described(
             stated="the potentials of all agents are minimised",

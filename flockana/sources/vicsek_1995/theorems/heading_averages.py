@@ -42,16 +42,16 @@ class Block:
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
     """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction."""
     n, groups = headings.shape[1], []
-    size = max(1, n - 1)
-    for k in range(0, len(windows) - size + 1, size):
-        start, stop = windows[k][0], windows[k + size - 1][1]
-        product, heard = np.eye(n), np.eye(n)
+    block_length = max(1, n - 1)
+    for k in range(0, len(windows) - block_length + 1, block_length):
+        start, stop = windows[k][0], windows[k + block_length - 1][1]
+        product, heard_matrix = np.eye(n), np.eye(n)
         for net in nets[start:stop]:
             matrix = averaging_matrix(n, net)
-            product, heard = matrix @ product, np.sign(np.sign(matrix) @ heard)
+            product, heard_matrix = matrix @ product, np.sign(np.sign(matrix) @ heard_matrix)
         steps, spread = stop - start, float(np.ptp(headings[start]))
         error = steps * (n + _TERMS) * EPS * (float(np.abs(headings[start]).max()) + n * spread)
-        groups.append(Block(start, stop, min(contraction(product), 1.0), error, bool(heard.all(axis=0).any())))
+        groups.append(Block(start, stop, min(contraction(product), 1.0), error, bool(heard_matrix.all(axis=0).any())))
     return tuple(groups)
 
 
@@ -65,21 +65,21 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     if components(n, pairs).max() > 0:
         return Certificate(-1.0, "the net is not connected")
     weights = neighbourhood_sizes(n, pairs)
-    half = np.sqrt(weights)
-    symmetric = averaging_matrix(n, pairs) * half[:, None] / half[None, :]
+    root_weights = np.sqrt(weights)
+    symmetric = averaging_matrix(n, pairs) * root_weights[:, None] / root_weights[None, :]
     moduli = np.sort(np.abs(np.linalg.eigvalsh(0.5 * (symmetric + symmetric.T))))
     gap = 1.0 - (float(moduli[-2]) if n > 1 else 0.0) - (n + _TERMS) * EPS
     if gap <= 0.0:
         return Certificate(-1.0, "rounding hides how fast the net averages")
-    off = half * (heading - final_heading(heading, weights))
-    size = float(np.linalg.norm(off)) + (n + _TERMS) * EPS * float(np.linalg.norm(half * heading))
+    deviation = root_weights * (heading - final_heading(heading, weights))
+    magnitude = float(np.linalg.norm(deviation)) + (n + _TERMS) * EPS * float(np.linalg.norm(root_weights * heading))
     i, j = np.triu_indices(n, 1)
-    room = np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range)
-    drift = law.speed * law.dt * np.sqrt(1.0 / weights[i] + 1.0 / weights[j]) * size / gap
-    margin = float((room - drift).min(initial=inf)) / law.range
+    slack = np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range)
+    drift = law.speed * law.dt * np.sqrt(1.0 / weights[i] + 1.0 / weights[j]) * magnitude / gap
+    margin = float((slack - drift).min(initial=inf)) / law.range
     error = _TERMS * EPS * (1.0 + float(np.abs(q).max()) / law.range)
     text = (
-        f"every distance is {room.min(initial=inf) / law.range:.2g} r or more from r and can still change by "
+        f"every distance is {slack.min(initial=inf) / law.range:.2g} r or more from r and can still change by "
         f"{drift.max(initial=0.0) / law.range:.2g} r: the net "
         + ("never changes again" if margin > error else "may change again")
     )
@@ -122,11 +122,11 @@ def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and greatest cos(θ − φ) over the range of headings θ, for each φ."""
     low, high = float(heading.min()), float(heading.max())
-    ends = np.cos(low - angles), np.cos(high - angles)
-    turn = 2.0 * np.pi
+    cosine_bounds = np.cos(low - angles), np.cos(high - angles)
+    full_turn = 2.0 * np.pi
 
     def within(angle: FloatArray) -> npt.NDArray[np.bool_]:
-        return np.ceil((low - angle) / turn) * turn + angle <= high
+        return np.ceil((low - angle) / full_turn) * full_turn + angle <= high
 
-    lower = np.where(within(angles + np.pi), -1.0, np.minimum(*ends))
-    return lower, np.where(within(angles), 1.0, np.maximum(*ends))
+    lower = np.where(within(angles + np.pi), -1.0, np.minimum(*cosine_bounds))
+    return lower, np.where(within(angles), 1.0, np.maximum(*cosine_bounds))

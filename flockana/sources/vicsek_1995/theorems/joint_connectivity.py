@@ -42,12 +42,12 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
 
 def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no heading leaves the span of the previous headings."""
-    lower, most = headings.min(axis=1), headings.max(axis=1)
-    out = np.flatnonzero((np.diff(lower) < 0.0) | (np.diff(most) > 0.0))
-    return by_count("hull", out.size, needs, proof=_PROOF, computed=float(most[-1] - lower[-1])).described(
+    lower, maximum = headings.min(axis=1), headings.max(axis=1)
+    out = np.flatnonzero((np.diff(lower) < 0.0) | (np.diff(maximum) > 0.0))
+    return by_count("hull", out.size, needs, proof=_PROOF, computed=float(maximum[-1] - lower[-1])).described(
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
-        detail=f"the headings' span goes from {most[0] - lower[0]:.4g} to {most[-1] - lower[-1]:.4g} radians",
+        detail=f"the headings' span goes from {maximum[0] - lower[0]:.4g} to {maximum[-1] - lower[-1]:.4g} radians",
     )
 
 
@@ -57,13 +57,13 @@ def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
     name = f"n - 1 = {n - 1} jointly connected windows in a row"
-    enough = replace(condition(name, bool(found), detail=f"{len(found)} times in the run"), on_motion=True)
+    window_claim = replace(condition(name, bool(found), detail=f"{len(found)} times in the run"), on_motion=True)
     slowest = max((b.factor for b in found), default=float("nan"))
-    first = (missed[0].start, missed[0].stop) if missed else None
+    first_item = (missed[0].start, missed[0].stop) if missed else None
     text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
-    return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF, computed=slowest).described(
+    return by_count("contraction", len(missed), [*needs, window_claim], proof=_PROOF, computed=slowest).described(
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
-        witness={"blocks": len(found), "steps of the first missed": first},
+        witness={"blocks": len(found), "steps of the first missed": first_item},
         detail=text if found else does_not_hold(name),
     )
 
@@ -93,16 +93,16 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     before, and over n - 1 such intervals the span shrinks by a factor that the nets guarantee.
     """
     run = seen.run
-    if unmet(needs := _kinds(run)):
-        return needs, []
+    if unmet(requirements := _kinds(run)):
+        return requirements, []
     headings = run.extra["heading"]
     nets = [run.law.links(q) for q in run.q[:-1]]
     windows = joint_windows(run.n, nets)
-    at_end = run.law, run.q[-1], headings[-1]
-    connected = heading_averages.permanently_connected(*at_end)
-    lasting = _at_all_later_times(windows, connected, heading_averages.permanently_separated(*at_end))
-    return [*needs, lasting], [
-        _hull(headings, needs),
-        _contraction(headings, heading_averages.blocks(nets, headings, windows), needs),
-        _limit(run, headings[-1], [*needs, lasting], connected),
+    end_state = run.law, run.q[-1], headings[-1]
+    connected_claim = heading_averages.permanently_connected(*end_state)
+    lasting_windows = _at_all_later_times(windows, connected_claim, heading_averages.permanently_separated(*end_state))
+    return [*requirements, lasting_windows], [
+        _hull(headings, requirements),
+        _contraction(headings, heading_averages.blocks(nets, headings, windows), requirements),
+        _limit(run, headings[-1], [*requirements, lasting_windows], connected_claim),
     ]

@@ -10,19 +10,19 @@ _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turn
 
 def averaged(headings: tuple[Fraction, ...]) -> Fraction:
     """Return the mean of headings in turns, each taken in [0, 1), as a direction in [0, 1)."""
-    counted = [heading % 1 for heading in headings]
-    return (sum(counted, start=Fraction(0)) / len(counted)) % 1
+    heading_turns = [heading % 1 for heading in headings]
+    return (sum(heading_turns, start=Fraction(0)) / len(heading_turns)) % 1
 
 
 def _turned() -> Claim:
     """Return the mean of a rotated pair and the rotated mean of the pair, in exact fractions of a turn."""
     pair = (_AWAY, -_AWAY)
-    differ = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
-    turned_round = averaged(pair)
-    return exact("frame-bound", bool(differ), computed=str(turned_round)).described(
+    differing_turns = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
+    turned_average = averaged(pair)
+    return exact("frame-bound", bool(differing_turns), computed=str(turned_average)).described(
         stated="turning the whole flock need not turn the mean headings with it",
-        witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
-        detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_round} of a turn: "
+        witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_average)},
+        detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_average} of a turn: "
         "they turn round; with the flock turned by 1/24 or more they keep straight on",
     )
 
@@ -45,10 +45,10 @@ def _vectors() -> Claim:
     """Return the claim that the mean unit vector (Vicsek's rule) rotates with the flock for any rotation."""
     import sympy as sp
 
-    a, b, turn = sp.symbols("a b t", real=True)
+    a, b, angle_shift = sp.symbols("a b t", real=True)
     mean = sp.exp(sp.I * a) + sp.exp(sp.I * b)
-    vectors = sp.exp(sp.I * (a + turn)) + sp.exp(sp.I * (b + turn))
-    return exact("vectors", sp.simplify(sp.expand(vectors - sp.exp(sp.I * turn) * mean)) == 0).described(
+    vectors = sp.exp(sp.I * (a + angle_shift)) + sp.exp(sp.I * (b + angle_shift))
+    return exact("vectors", sp.simplify(sp.expand(vectors - sp.exp(sp.I * angle_shift) * mean)) == 0).described(
         stated="the mean unit vector turns with the flock",
         detail="Σ e^(i(θ + t)) = e^(it) Σ e^(iθ): Vicsek's rule knows no direction of angle 0",
     )
