@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fPIC", "-c")
 MISSING = "no C compiler (cc) here: the comparison with the C loop is left out"

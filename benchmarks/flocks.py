@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.lattice import triangular
 
 D, R = 7.0, 8.4

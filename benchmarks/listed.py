@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from benchmarks.flocks import R
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.jit import njit
-from flockana.kernels.blocks import BLOCK
-from flockana.kernels.large import fill
-from flockana.kernels.listed import Listed
-from flockana.kernels.verlet import COUNT, SKIN, Pairs, covers, no_pairs, spatial_order
+from flockana.kernels.large_flocks import fill
+from flockana.kernels.listed_pairs import Listed
+from flockana.kernels.pair_helpers import BLOCK
+from flockana.kernels.verlet_list import COUNT, SKIN, Pairs, covers, no_pairs, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
 REACH = (1.0 + SKIN) * R

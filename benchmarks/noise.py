@@ -13,7 +13,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.ensemble import ensemble
 from flockana.environment.targets import StaticTarget
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.disturbed import Disturbed
+from flockana.laws.disturbed_law import Disturbed
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios.scenario import Scenario
 from flockana.solvers.taylor_step import TaylorStep

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 
 def _bump(a: Any, z: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from benchmarks.flocks import FLOCKS, Flock, R
 from benchmarks.listed import listed_evaluation
 from benchmarks.rows import Asked, Found, Row
 from benchmarks.timing import interleaved, ratio
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget

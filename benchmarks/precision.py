@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.rows import Asked, Found, Row
 from benchmarks.runs import methods, peer
 from benchmarks.timing import seconds_of
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.simulate import simulate
 from flockana.scenarios import scenario
 

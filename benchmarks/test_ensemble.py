@@ -10,7 +10,7 @@ import pytest
 
 from flockana.ensemble import ensemble
 from flockana.ensemble.one_run import Job, Request, run_one
-from flockana.ensemble.processes import ProcessPool, cores
+from flockana.ensemble.worker_processes import ProcessPool, cores
 from flockana.scenarios import scenario
 
 RUNS = 64

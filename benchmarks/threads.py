@@ -48,7 +48,7 @@ def _row(name: str, n: int, times: list[list[float]], asked: Asked) -> Row:
 def _measure(kind: str, n: int, rounds: int) -> list[list[list[float]]]:
     """Return (seconds with one thread, with two) of evaluations and of runs, round by round."""
     from flockana.dynamics.simulate import simulate
-    from flockana.kernels.threads import limited_threads
+    from flockana.kernels.thread_counts import limited_threads
     from flockana.laws.olfati_saber import Algorithm1
 
     law, (q, p) = Algorithm1(), FLOCKS[kind](n)

@@ -3,7 +3,7 @@
 The public names stand in ``__init__.pyi``, once; each is imported when it is first used.
 """
 
-from flockana.base.lazy import attach_stub
+from flockana.base.lazy_imports import attach_stub
 
 _load, _, __all__ = attach_stub(__name__, __file__)
 # what a newcomer's Tab shows; everything else in __all__ is reachable by its name

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.digests import sha256
-from flockana.base.garbage import relaxed_gc
+from flockana.base.garbage_collection import relaxed_gc
 from flockana.base.interrupts import origin_of, raise_swallowed
 from flockana.base.progress import show_part
 

@@ -168,7 +168,7 @@ for ax, (name, L) in zip(axes, laplacians.items(), strict=True):
 # Now let the range grow. Twelve robots at random places see each other within $r$; move $r$ and watch $\lambda_2$.
 
 # %%
-from flockana.course.frames import slider
+from flockana.course.picture_slider import slider
 
 places = np.random.default_rng(4).uniform(0.0, 10.0, (12, 2))
 

@@ -251,7 +251,7 @@ Prediction(
 # attraction, and the higher the rim.
 
 # %%
-from flockana.course.frames import slider
+from flockana.course.picture_slider import slider
 
 
 def with_plateau(ax, h):

@@ -402,7 +402,7 @@ assert 5.0 < shares.min() < shares.max() < 25.0
 # watch nineteen agents; a number beside an agent counts those in its place:
 
 # %%
-from flockana.course.frames import slider
+from flockana.course.picture_slider import slider
 
 patch = fl.lattice.hexagonal_spiral(19, 7.0) + 7e-4 * np.random.default_rng(0).standard_normal((19, 2))
 

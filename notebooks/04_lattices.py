@@ -60,7 +60,7 @@ print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_latti
 # lattice, and beyond it the second neighbours come into range.
 
 # %%
-from flockana.course.frames import slider
+from flockana.course.picture_slider import slider
 
 
 def with_range(ax, ratio):

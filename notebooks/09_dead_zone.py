@@ -304,7 +304,7 @@ print(f"2000 bounces in {t:.1f}; the rate at the jump falls like exp({slope:.3f}
 for name in ("chatter", "ramp"):
     print(fl.verify("L7").claim(name).detail)
 
-from flockana.course.frames import film
+from flockana.course.picture_slider import film
 
 
 def stepped(interaction, dt, end=80.0):

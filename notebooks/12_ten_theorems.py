@@ -358,7 +358,7 @@ for name, pairs in {"path": [(0, 1), (1, 2), (2, 3)], "complete": [(i, j) for j 
 # Four agents on a path, each of which hears late. Move the delay, as a share of the margin:
 
 # %%
-from flockana.course.frames import slider
+from flockana.course.picture_slider import slider
 
 path = fl.laplacian(4, np.array([(0, 1), (1, 2), (2, 3)])).toarray()
 bears = delay_margin(consensus_system(path)).delay

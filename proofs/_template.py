@@ -5,7 +5,8 @@ a sum regrouped) is said in a step's text or evidence, never passed over. A step
 
 - symbolic: `Step(text, condition)`, with a condition that sympy has reduced to True, such as ``residual == 0``;
 - smt: `implication(text, goal, *given)` or `impossible(text, *constraints)` of `proofs.smt`, over all real numbers;
-- interval: a comparison of balls from `flockana.certified.intervals`, which is true only if it is certain.
+- interval: a comparison of balls from `flockana.certified.scalar_functions_in_balls`, which is true only if it is
+  certain.
 
 `holds` is None where the machine cannot tell. A sample, however large, is no step.
 """

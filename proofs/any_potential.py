@@ -13,10 +13,10 @@ import sympy as sp
 import z3
 
 from flockana.symbolic.energy import algorithm1_identity, structural_identity
-from flockana.symbolic.pair import PSI
-from flockana.symbolic.parameters import GAINS
-from flockana.symbolic.sums import V as VELOCITY
-from flockana.symbolic.sums import X, Z, structural_hamiltonian, write_out
+from flockana.symbolic.generic_pair import PSI
+from flockana.symbolic.parameter_symbols import GAINS
+from flockana.symbolic.sums_over_pairs import V as VELOCITY
+from flockana.symbolic.sums_over_pairs import X, Z, structural_hamiltonian, write_out
 from proofs.proof import Proof, Step
 from proofs.smt import implication, real
 

@@ -9,8 +9,8 @@ import z3
 from flint import ctx
 
 from flockana.certified.balls import AlphaParameters, ball
-from flockana.certified.decimals import interval
-from flockana.certified.intervals import c_star, far_potential
+from flockana.certified.decimal_rounding import interval
+from flockana.certified.scalar_functions_in_balls import c_star, far_potential
 from flockana.equilibria.energy_barrier import turan_pairs
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.energy import algorithm1_identity

@@ -9,7 +9,7 @@ from itertools import count, pairwise, permutations
 import sympy as sp
 import z3
 
-from flockana.certified.decimals import decimal
+from flockana.certified.decimal_rounding import decimal
 from flockana.sources.jond_2025.symbolic.spanning_trees import (
     MU,
     RHO,

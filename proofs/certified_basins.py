@@ -18,7 +18,7 @@ V2, W2 = sp.symbols("V W", nonnegative=True)  # ‖v‖², ‖w‖²
 
 
 def pair_coefficients() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """d0, d1 and d2 of a pair's bound, as `flockana.certified.shells` has them."""
+    """d0, d1 and d2 of a pair's bound, as `flockana.certified.curvature_shells` has them."""
     x = L - L0
     return (
         (F2 - ALPHA) * x**2,

@@ -8,10 +8,10 @@ import sympy as sp
 import z3
 
 from flockana.symbolic.energy import structural_identity
-from flockana.symbolic.pair import PSI
-from flockana.symbolic.parameters import GAINS
-from flockana.symbolic.sums import V as VELOCITY
-from flockana.symbolic.sums import X, Z, structural_hamiltonian, write_out
+from flockana.symbolic.generic_pair import PSI
+from flockana.symbolic.parameter_symbols import GAINS
+from flockana.symbolic.sums_over_pairs import V as VELOCITY
+from flockana.symbolic.sums_over_pairs import X, Z, structural_hamiltonian, write_out
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import PAIR, potential_lemma, potential_signs
 from proofs.smt import Lemma, implication, lemma, real

@@ -16,9 +16,9 @@ import sympy as sp
 from flint import arb, arb_mat, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, exact, hull, square
-from flockana.certified.decimals import at_least, small
-from flockana.certified.intervals import phi_alpha, phi_alpha_slope, sigma_of_square
+from flockana.certified.decimal_rounding import at_least, small
 from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
+from flockana.certified.scalar_functions_in_balls import phi_alpha, phi_alpha_slope, sigma_of_square
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch

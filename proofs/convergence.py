@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
-from flockana.symbolic.functions import taper
+from flockana.symbolic.scalar_functions import taper
 from proofs.proof import Proof, Step
 from proofs.smt import implication
 

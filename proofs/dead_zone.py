@@ -15,7 +15,7 @@ import sympy as sp
 import z3
 from flint import ctx
 
-from flockana.certified.decimals import interval
+from flockana.certified.decimal_rounding import interval
 from flockana.sources.li_dead_zone.symbolic import (
     D_2,
     ETA,

@@ -16,7 +16,7 @@ import z3
 from flint import arb, ctx
 
 from flockana.certified.balls import ball, exact
-from flockana.certified.decimals import first_digits, interval
+from flockana.certified.decimal_rounding import first_digits, interval
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.symbolic import (
     D_1,

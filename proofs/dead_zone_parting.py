@@ -8,7 +8,7 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
-from flockana.certified.decimals import interval
+from flockana.certified.decimal_rounding import interval
 from flockana.sources.li_dead_zone.symbolic import K_1, K_2, K_DELTA, K_R, R_D, R, attraction, direction, jumps
 from proofs.dead_zone_pairs import DIGITS, defaults, root, terms
 from proofs.evaluate import enclosed

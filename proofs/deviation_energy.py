@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from flockana.symbolic.functions import taper
+from flockana.symbolic.scalar_functions import taper
 from flockana.symbolic.sigma_norms import sigma_norm
 from proofs.proof import Proof, Step
 

@@ -20,8 +20,8 @@ import sympy as sp
 from flint import arb, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, exact, hull, square
-from flockana.certified.decimals import at_most, first_digits, interval
-from flockana.certified.intervals import adjacency, c_star, psi_alpha, sigma_norm
+from flockana.certified.decimal_rounding import at_most, first_digits, interval
+from flockana.certified.scalar_functions_in_balls import adjacency, c_star, psi_alpha, sigma_norm
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm2

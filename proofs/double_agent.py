@@ -13,9 +13,9 @@ import sympy as sp
 from flint import arb, arb_mat, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, square
-from flockana.certified.decimals import at_least
-from flockana.certified.intervals import phi_alpha, sigma_of_square
+from flockana.certified.decimal_rounding import at_least
 from flockana.certified.krawczyk import least_eigenvalue
+from flockana.certified.scalar_functions_in_balls import phi_alpha, sigma_of_square
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.sigma_norms import sigma_norm
 from proofs.compressed_patches import LIFT, Flock, rotation

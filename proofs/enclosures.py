@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from flint import arb, ctx
 
 from flockana.certified.balls import AlphaParameters, BetaParameters
-from flockana.certified.decimals import plus_minus, small
-from flockana.certified.intervals import c_star, d_alpha, d_beta, far_potential, psi_beta, r_alpha
+from flockana.certified.decimal_rounding import plus_minus, small
+from flockana.certified.scalar_functions_in_balls import c_star, d_alpha, d_beta, far_potential, psi_beta, r_alpha
 from flockana.scenarios import scenario, scenarios
 from proofs.proof import Proof, Step
 

@@ -10,9 +10,9 @@ from flockana.symbolic import algorithm1_identity, e1_counterexample, e1_identit
 from flockana.symbolic.algorithm3_energy import e2_counterexample, e2_identity, theorem6_identity
 from flockana.symbolic.energy import EnergyIdentity, GenericPair
 from flockana.symbolic.errata import RisingEnergy
+from flockana.symbolic.generic_pair import ADJACENCY, vector
 from flockana.symbolic.obstacles import KINDS, derive_braking, derive_envelope
-from flockana.symbolic.pair import ADJACENCY, vector
-from flockana.symbolic.parameters import GAINS
+from flockana.symbolic.parameter_symbols import GAINS
 from flockana.symbolic.written_out_flock import ConcreteFlock
 from proofs.evaluate import differs
 from proofs.proof import Proof, Step

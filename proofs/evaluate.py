@@ -13,7 +13,7 @@ from flint import acb, arb, fmpq
 from sympy.core.function import AppliedUndef
 
 from flockana.symbolic.sigma_norms import sigma_norm
-from flockana.symbolic.sums import P, Q, V, X, Z, write_out
+from flockana.symbolic.sums_over_pairs import P, Q, V, X, Z, write_out
 
 DIMENSION = 3  # of the positions of two agents at which sums are written out
 _FUNCTIONS: dict[Any, str] = {

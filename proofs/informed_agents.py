@@ -8,7 +8,7 @@ import sympy as sp
 import z3
 
 from flockana.symbolic.energy_balances import BRAKE, MATCH, PULL, THRUST, given_frame_identity
-from flockana.symbolic.pair import vector
+from flockana.symbolic.generic_pair import vector
 from proofs.proof import Proof, Step
 from proofs.smt import implication
 

@@ -15,9 +15,9 @@ from typing import Any
 import sympy as sp
 from flint import arb, ctx
 
-from flockana.certified.decimals import small
+from flockana.certified.decimal_rounding import small
 from flockana.jit import Inlined
-from flockana.kernels import elementary
+from flockana.kernels import sine_and_cosine
 from flockana.sources.li_dead_zone.kernels import pair as dead_zone_kernel
 from flockana.sources.li_dead_zone.symbolic import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
 from flockana.symbolic.named_functions import TINY, Named, Phi, PhiIntegral, SigmaNorm
@@ -75,7 +75,7 @@ def sine_error() -> arb:
     for k in range(1, TERMS + 1):
         power *= half * half
         term = arb(1) / factorial(2 * k + 1)
-        total += abs(abs(arb(getattr(elementary, f"_S{k}"))) - term) * power
+        total += abs(abs(arb(getattr(sine_and_cosine, f"_S{k}"))) - term) * power
     ends = abs(arb(pi) / 2 - half)  # π of the library is a float: the argument is off by that at most
     return 2 * (total + ends) + (total + ends) ** 2
 
@@ -96,9 +96,9 @@ def _sines() -> Iterator[Step]:
     exact = {f"_S{k}": sp.Rational((-1) ** k, factorial(2 * k + 1)) for k in range(1, TERMS + 1)}
     yield Step(
         f"the sine of the library is its series to x^{2 * TERMS + 1}",
-        sp.expand(on_symbols(elementary.quarter_sine, **exact)(x) - series) == 0,
+        sp.expand(on_symbols(sine_and_cosine.quarter_sine, **exact)(x) - series) == 0,
     )
-    close = [sp.Rational(getattr(elementary, f"_S{k}")) - exact[f"_S{k}"] for k in range(1, TERMS + 1)]
+    close = [sp.Rational(getattr(sine_and_cosine, f"_S{k}")) - exact[f"_S{k}"] for k in range(1, TERMS + 1)]
     y = sp.Symbol("y", positive=True)
     yield Step(
         "ρ_h(z) = ½(1 + cos πt) = sin² ½π(1 - t), t = (z - h)/(1 - h)",

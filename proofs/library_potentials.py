@@ -14,8 +14,17 @@ from typing import Any
 from flint import acb, arb, arb_series, ctx
 
 from flockana.certified.balls import AlphaParameters, BetaParameters, ball, series_length, square
-from flockana.certified.decimals import small
-from flockana.certified.intervals import c_star, d_alpha, d_beta, far_potential, psi_alpha, psi_beta, r_alpha, shift
+from flockana.certified.decimal_rounding import small
+from flockana.certified.scalar_functions_in_balls import (
+    c_star,
+    d_alpha,
+    d_beta,
+    far_potential,
+    psi_alpha,
+    psi_beta,
+    r_alpha,
+    shift,
+)
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.kernels import alpha as kernel
 from proofs.enclosures import parameter_sets

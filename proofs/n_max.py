@@ -14,8 +14,8 @@ import z3
 from flint import arb, ctx
 
 from flockana.certified.balls import AlphaParameters, ball
-from flockana.certified.decimals import at_least, at_most, decimal, interval
-from flockana.certified.intervals import c_star, far_potential, psi_alpha, sigma_norm
+from flockana.certified.decimal_rounding import at_least, at_most, decimal, interval
+from flockana.certified.scalar_functions_in_balls import c_star, far_potential, psi_alpha, sigma_norm
 from flockana.lattice import harborth
 from proofs.enclosures import parameter_sets
 from proofs.point_ratios import DIMENSIONS, cited, largest_clique, least_ratio, radon_points

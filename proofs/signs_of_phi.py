@@ -16,15 +16,15 @@ from collections.abc import Iterator
 import sympy as sp
 import z3
 
-from flockana.symbolic.functions import taper
-from flockana.symbolic.pair import PSI
-from flockana.symbolic.parameters import GAINS
+from flockana.symbolic.generic_pair import PSI
+from flockana.symbolic.parameter_symbols import GAINS
 from flockana.symbolic.potentials import derive_psi_alpha, derive_psi_beta
-from flockana.symbolic.sums import P as MOMENTUM
-from flockana.symbolic.sums import V as VELOCITY
-from flockana.symbolic.sums import X as PLACE
-from flockana.symbolic.sums import Z as DISTANCE
-from flockana.symbolic.sums import hamiltonian, structural_hamiltonian, write_out
+from flockana.symbolic.scalar_functions import taper
+from flockana.symbolic.sums_over_pairs import P as MOMENTUM
+from flockana.symbolic.sums_over_pairs import V as VELOCITY
+from flockana.symbolic.sums_over_pairs import X as PLACE
+from flockana.symbolic.sums_over_pairs import Z as DISTANCE
+from flockana.symbolic.sums_over_pairs import hamiltonian, structural_hamiltonian, write_out
 from proofs.proof import Proof, Step
 from proofs.smt import Lemma, implication, lemma, real
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from flockana.symbolic.functions import bump, phi, taper
-from flockana.symbolic.parameters import AlphaSymbols
+from flockana.symbolic.parameter_symbols import AlphaSymbols
+from flockana.symbolic.scalar_functions import bump, phi, taper
 from flockana.symbolic.sigma_norms import sigma_1, sigma_norm
 from proofs.proof import Proof, Step
 

@@ -11,7 +11,7 @@ import z3
 from flint import arb, ctx
 
 from flockana.certified.balls import ball
-from flockana.certified.decimals import interval
+from flockana.certified.decimal_rounding import interval
 from flockana.sources.jond_2025.kernels import zones
 from flockana.sources.jond_2025.symbolic.zone_pair import BOUND, saturation
 from proofs.proof import Proof, Step

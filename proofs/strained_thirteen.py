@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from flint import arb, arb_mat, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, square
-from flockana.certified.decimals import at_least, at_most, small
+from flockana.certified.decimal_rounding import at_least, at_most, small
 from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
 from flockana.equilibria.equilibrium_files import smallest_strained
 from proofs.compressed_patches import LIFT, Flock, rotation

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from flockana.symbolic.algorithm3_energy import gamma_force
-from flockana.symbolic.parameters import GAINS
+from flockana.symbolic.parameter_symbols import GAINS
 from flockana.symbolic.translational_dynamics import S, derive_split, transfer_function
 from proofs.proof import Proof, Step
 

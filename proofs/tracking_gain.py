@@ -10,8 +10,8 @@ import z3
 from flint import arb, ctx
 
 from flockana.certified.balls import ball
-from flockana.certified.decimals import interval
-from flockana.symbolic.parameters import GAINS
+from flockana.certified.decimal_rounding import interval
+from flockana.symbolic.parameter_symbols import GAINS
 from flockana.symbolic.translational_dynamics import S, falling_condition, frequency_gain, gain_slope, transfer_function
 from proofs.proof import Proof, Step
 from proofs.smt import impossible

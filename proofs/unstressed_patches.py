@@ -14,9 +14,9 @@ import z3
 from flint import arb, arb_mat, ctx, fmpz_mat
 
 from flockana.certified.balls import AlphaParameters, ball, square
-from flockana.certified.decimals import at_least, plus_minus
-from flockana.certified.intervals import adjacency, d_alpha, phi_alpha_slope, r_alpha
+from flockana.certified.decimal_rounding import at_least, plus_minus
 from flockana.certified.krawczyk import least_eigenvalue
+from flockana.certified.scalar_functions_in_balls import adjacency, d_alpha, phi_alpha_slope, r_alpha
 from proofs.enclosures import parameter_sets
 from proofs.proof import Proof, Step
 from proofs.signs_of_phi import GIVEN, sigmoid

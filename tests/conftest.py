@@ -56,7 +56,7 @@ def pytest_addoption(parser):
 
 @pytest.hookimpl(tryfirst=True)  # before hypothesis reads its seed
 def pytest_configure(config):
-    from flockana.base.garbage import SELDOM
+    from flockana.base.garbage_collection import SELDOM
 
     gc.set_threshold(SELDOM)  # as in the program itself: to look through all that is imported takes a tenth of a suite
     config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
@@ -72,7 +72,7 @@ def pytest_configure(config):
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers(config):
     """One worker more than there are cores: tests of clusters, faults and limits mostly wait for what they started."""
-    from flockana.ensemble.processes import cores
+    from flockana.ensemble.worker_processes import cores
 
     return cores() + 1
 

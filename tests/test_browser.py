@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, MinimalFlocking, scenario, simulate
-from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
+from flockana.player.run_codec import Packed, decode, encode
 from flockana.player.scene import scene
-from flockana.report.build import write_report
-from flockana.report.pages import fixed_page, scenario_page
+from flockana.report.page_data import fixed_page, scenario_page
+from flockana.report.report_writer import write_report
 from flockana.theorems import Claim, Verdict, verify
 
 AXE = Path(__file__).parent / "axe" / "axe.min.js"

@@ -17,7 +17,7 @@ import pytest
 
 from flockana import AlphaInteraction, jit
 from flockana.jit import njit, register_jitable, thawed
-from flockana.kernels import components
+from flockana.kernels import connected_components
 from flockana.kernels.bound_templates import bound, made
 from flockana.kernels.scalars import sigma_1
 from tests.programs import out_of_a_kernel
@@ -144,12 +144,14 @@ def test_frozen_arrays_and_whole_numbers_need_no_second_signature():
 @pytest.mark.timeout(60)
 def test_a_thread_that_compiles_waits_for_none_that_is_about_to():
     """In Python 3.11 a `cached_property` has a lock, for which four threads at their first runs waited without end."""
-    waiting, compiling = (jit.kernel(each.function) for each in (components.unite, components.labelled))
+    waiting, compiling = (
+        jit.kernel(each.function) for each in (connected_components.unite, connected_components.labelled)
+    )
     with ThreadPoolExecutor(1) as pool, jit._ONE:
         other = pool.submit(lambda: waiting.dispatcher)
         assert wait([other], timeout=0.2).not_done
-        assert compiling.dispatcher.py_func is components.labelled.function
-    assert other.result().py_func is components.unite.function
+        assert compiling.dispatcher.py_func is connected_components.labelled.function
+    assert other.result().py_func is connected_components.unite.function
 
 
 def test_other_types_are_compiled_for():

@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm2, SineTarget, Trajectory, ZoneFlocking, check_certificate
 from flockana.base.errors import FileError
-from flockana.base.seals import is_sealed
+from flockana.base.integrity_seals import is_sealed
 from flockana.equilibria.equilibrium_files import read_equilibrium
 from flockana.falsify import Counterexample
 

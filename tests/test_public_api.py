@@ -6,7 +6,7 @@ from types import FunctionType, ModuleType
 import pytest
 
 import flockana
-from flockana.base.modules import modules
+from flockana.base.module_discovery import modules
 
 HEAVY = ("numba", "sympy", "matplotlib", "xarray", "scipy", "numpy", "jinja2", "rich", "typer")
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import get_args
 
 from flockana.report.coverage import Reference, Row, Source, coverage
-from flockana.report.coverage.rows import Standing
+from flockana.report.coverage.coverage_rows import Standing
 from tools.coverage_references import faults, locate
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "coverage.md"

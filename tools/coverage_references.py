@@ -13,9 +13,9 @@ from typing import Any
 
 import flockana
 from flockana.base.errors import ArgumentError, FileError, FlockanaError, UnknownNameError
-from flockana.base.modules import source_modules
+from flockana.base.module_discovery import source_modules
 from flockana.report.coverage import Reference, Source
-from flockana.report.coverage.anchors import is_erratum
+from flockana.report.coverage.report_anchors import is_erratum
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems
 from flockana.theorems.catalogue import theorem_modules, theorems_in

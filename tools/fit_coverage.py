@@ -17,9 +17,9 @@ import numpy as np
 
 import flockana as fl
 from flockana.recorded.fit import fit
-from flockana.recorded.parameters import FreeParameters
+from flockana.recorded.law_parameters import FreeParameters
+from flockana.recorded.matching_windows import usual_window, windows
 from flockana.recorded.shooting import NormalEquations, Problem
-from flockana.recorded.windows import usual_window, windows
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
 PAIR = fl.Algorithm1(gains=TRUE)

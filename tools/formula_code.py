@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from flockana.symbolic.printing import Constants, FloatCode
+from flockana.symbolic.code_printing import Constants, FloatCode
 
 RSQRT = sp.Function("rsqrt", positive=True)
 

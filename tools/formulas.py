@@ -12,7 +12,7 @@ from pathlib import Path
 
 import sympy as sp
 
-from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth
+from flockana.symbolic.code_printing import FloatCode
 from flockana.symbolic.named_functions import (
     Bump,
     BumpSlope,
@@ -26,8 +26,8 @@ from flockana.symbolic.named_functions import (
     Taper,
     written,
 )
-from flockana.symbolic.parameters import AlphaSymbols, BetaSymbols
-from flockana.symbolic.printing import FloatCode
+from flockana.symbolic.parameter_symbols import AlphaSymbols, BetaSymbols
+from flockana.symbolic.scalar_functions import alpha_smooth, beta_closed, beta_smooth
 from tools.formula_code import BallCode, IntegrandCode, by_inverse_roots, shared_text
 
 S2, Z, ROOT = sp.symbols("s2 z root", positive=True)
@@ -52,7 +52,7 @@ _SCALARS = (
     + """from math import inf, pi, sqrt
 
 from flockana.jit import register_jitable
-from flockana.kernels.elementary import quarter_sine, sine
+from flockana.kernels.sine_and_cosine import quarter_sine, sine
 
 LARGE = 2.0**400  # beyond it σ₁ is 1; a power of two: φ reaches its limits exactly
 tiny = 1e-300  # keeps 0/0 out"""
@@ -89,7 +89,8 @@ _BALLS = (
         title="A pair law in balls and power series (Arb), for the provers.",
         more="""
 
-`law` holds the numbers of an α- or β-pair as balls (`flockana.certified.series`); `piece` says on which piece of ρ_h a
+`law` holds the numbers of an α- or β-pair as balls (`flockana.certified.pair_laws_in_series`); `piece` says on which
+piece of ρ_h a
 series lies. The checkers have formulas of their own.""",
     )
     + """from typing import Any

@@ -18,8 +18,8 @@ from pathlib import Path
 import nbformat
 
 from flockana.course.build import exercises, sources
+from flockana.course.course_pages import number_of
 from flockana.course.export import write_for
-from flockana.course.pages import number_of
 
 BIN = Path(sys.executable).parent
 ROOT = Path(__file__).resolve().parent.parent

@@ -204,7 +204,7 @@ def carry_out(
 
 def report(counts: dict[str, int], drawn: Sequence[dict[str, Any]], outcomes: dict[str, str]) -> tuple[str, int]:
     """Return the table of what became of the sample, with the survivors below it, and their number."""
-    from flockana.base.binomial import clopper_pearson
+    from flockana.base.binomial_intervals import clopper_pearson
 
     text = (
         "| package | mutants | tried | killed | equivalent | survived | killed, 95 % interval |\n" + "|---" * 7 + "|\n"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import flockana as fl
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 LAW = fl.Algorithm1(alpha=fl.AlphaInteraction(d=1.0, r=1.2), gains=fl.Gains(c1_alpha=2.0, c2_alpha=1.0))
 NAMES = ("cf1", "cf2", "cf3")

@@ -8,8 +8,8 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import ensure_kind, ensure_numbers
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_kind, ensure_numbers
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

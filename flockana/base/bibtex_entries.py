@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 from flockana.base.errors import ArgumentError
-from flockana.base.modules import source_files
+from flockana.base.module_discovery import source_files
 
 
 @cache

@@ -20,7 +20,7 @@ def progress_bar(
     # Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute. `counted` shows
     # both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate, for work of
     # which each part takes about as long.
-    from flockana.base.checks import ensure_flag  # and numpy, which to list needs not
+    from flockana.base.value_checks import ensure_flag  # and numpy, which to list needs not
 
     console = _console() if ensure_flag("progress", enabled) else None
     if console is None:

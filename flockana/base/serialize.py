@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError, format_value
-from flockana.base.modules import modules, source_modules
-from flockana.base.seals import public_name
+from flockana.base.integrity_seals import public_name
+from flockana.base.module_discovery import modules, source_modules
 
 _ROOMS = (
     "interactions",

@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_positive
 
 Powers = tuple[int, int]
 """Powers of length and time: (1, -1) is a velocity."""

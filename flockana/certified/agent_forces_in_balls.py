@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from flint import arb
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.certified.balls import dot, minus, norm, norm2, square
-from flockana.certified.series import PairNumbers, Piece
+from flockana.certified.pair_laws_in_series import PairNumbers, Piece
 
 Block = list[list[Any]]
 

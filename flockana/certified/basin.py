@@ -29,16 +29,16 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.integrity_seals import ensure_sealed, sealed
 from flockana.base.short_repr import ShortRepr
 from flockana.base.table_export import facts_text
-from flockana.certified.at_rest import BOX, centred, enclose_rest, rotated_to, unique_projection
+from flockana.base.value_checks import FloatArray, ensure_points
 from flockana.certified.balls import ball, minus, norm, norm2
-from flockana.certified.decimals import fraction, round_down
+from flockana.certified.curvature_shells import ROOT_TWO, BondTable, Shells, prove
+from flockana.certified.decimal_rounding import fraction, round_down
+from flockana.certified.enclosed_equilibrium import BOX, centred, enclose_rest, rotated_to, unique_projection
 from flockana.certified.lyapunov import Bounds, Decay, damping, decay
-from flockana.certified.shells import ROOT_TWO, BondTable, Shells, prove
 from flockana.certified.structural_potential import Structure
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.measures.nets import components, links

@@ -17,15 +17,15 @@ from flint import arb, ctx
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.files import write_atomic
-from flockana.base.seals import with_digest
+from flockana.base.integrity_seals import with_digest
 from flockana.certified.balls import ball
 from flockana.certified.basin import Basin
+from flockana.certified.certificate_statements import FORMAT, STATEMENTS
 from flockana.certified.check_motion import number
 from flockana.certified.check_tube import BITS, Run, exact
-from flockana.certified.decimals import decimal, small
-from flockana.certified.flow import Flow, flow_of
-from flockana.certified.series import Piece
-from flockana.certified.statements import FORMAT, STATEMENTS
+from flockana.certified.decimal_rounding import decimal, small
+from flockana.certified.flow_in_balls import Flow, flow_of
+from flockana.certified.pair_laws_in_series import Piece
 from flockana.certified.tube import Tube
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2

@@ -22,9 +22,9 @@ from flint import arb
 
 from flockana.base.errors import FileError, FlockanaError, format_value
 from flockana.base.files import read_text_file
-from flockana.base.seals import without_digest
+from flockana.base.integrity_seals import without_digest
 from flockana.base.serialize import read_json
-from flockana.certified.statements import FORMAT, STATEMENTS
+from flockana.certified.certificate_statements import FORMAT, STATEMENTS
 
 _AGENTS = 100
 _HEAD = ("format", "kind", "statement")

@@ -15,7 +15,7 @@ from flint import arb, arb_mat, ctx
 
 from flockana.certified.balls import AlphaParameters, ball, dot, hull, norm, norm2, square
 from flockana.certified.certificate_check import BINARY, NUMBER, PAIR_LAW, WHOLE, ensure, positive, unit
-from flockana.certified.intervals import adjacency, phi_alpha, phi_alpha_slope, sigma_of_square
+from flockana.certified.scalar_functions_in_balls import adjacency, phi_alpha, phi_alpha_slope, sigma_of_square
 
 DIGITS = 45
 STATED, OF_RATE = 4, 3  # significant digits

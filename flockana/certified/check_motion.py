@@ -17,7 +17,7 @@ from typing import Any
 from flint import arb, arb_mat, arb_series
 
 from flockana.certified.balls import AlphaParameters, BetaParameters, ball, dot, norm, norm2, square
-from flockana.certified.intervals import (
+from flockana.certified.scalar_functions_in_balls import (
     adjacency,
     bump,
     bump_slope,

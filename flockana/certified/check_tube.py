@@ -37,8 +37,8 @@ from flockana.certified.certificate_check import (
     positive,
 )
 from flockana.certified.check_motion import Motion, Sphere, Vector, number
-from flockana.certified.decimals import at_least, at_most
-from flockana.certified.intervals import c_star
+from flockana.certified.decimal_rounding import at_least, at_most
+from flockana.certified.scalar_functions_in_balls import c_star
 
 BITS = 128
 CLAIMS = (  # what a certificate states of all of a run, its name, and the step that is verified

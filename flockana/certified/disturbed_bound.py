@@ -15,12 +15,12 @@ from typing import Any
 
 from flint import arb, ctx
 
-from flockana.base.checks import ensure_nonnegative
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import ensure_nonnegative
 from flockana.certified.balls import ball
 from flockana.certified.basin import DIGITS, Basin
-from flockana.certified.decimals import fraction, round_down, round_up
+from flockana.certified.decimal_rounding import fraction, round_down, round_up
 
 _STATED = 4
 

@@ -2,7 +2,8 @@
 
 Generated from `flockana.symbolic` by `python -m tools.formulas`; edit these.
 
-`law` holds the numbers of an α- or β-pair as balls (`flockana.certified.series`); `piece` says on which piece of ρ_h a
+`law` holds the numbers of an α- or β-pair as balls (`flockana.certified.pair_laws_in_series`); `piece` says on which
+piece of ρ_h a
 series lies. The checkers have formulas of their own.
 """
 

@@ -16,9 +16,9 @@ from typing import Any, Literal
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_points
 from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.krawczyk import column, krawczyk_shift, least_eigenvalue
 from flockana.certified.structural_potential import Structure, in_lengths_of_unit, outer
@@ -26,8 +26,8 @@ from flockana.equilibria.final_state import generators
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.stability.gain_sweeps import GAINS
 from flockana.stability.linearise import linearise
-from flockana.stability.sweeps import GAINS
 
 MOST = 7  # agents
 _ON_A_LINE = 1e-9  # relative: a rotation that moves no agent

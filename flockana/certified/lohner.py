@@ -16,9 +16,9 @@ import numpy as np
 from flint import arb, arb_mat
 
 from flockana.certified.balls import hull
-from flockana.certified.flow import Flow, Pieces
+from flockana.certified.flow_in_balls import Flow, Pieces
 from flockana.certified.krawczyk import column, identity
-from flockana.certified.series import Piece
+from flockana.certified.pair_laws_in_series import Piece
 
 _INFLATIONS = 12  # of a candidate enclosure, before a step is called too long
 _GRAIN = arb(2) ** -64  # relative: by which a candidate of no width is made wider

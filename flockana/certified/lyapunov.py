@@ -29,9 +29,9 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.certified.balls import ball, square
-from flockana.certified.decimals import round_down, round_up
+from flockana.certified.decimal_rounding import round_down, round_up
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.certified.structural_potential import Structure
 

@@ -7,7 +7,7 @@ from typing import Any
 from flint import arb, ctx
 
 from flockana.certified.balls import exact, minus, norm2, square
-from flockana.certified.series import PairNumbers
+from flockana.certified.pair_laws_in_series import PairNumbers
 from flockana.laws.olfati_saber import Algorithm2
 
 BITS = 100

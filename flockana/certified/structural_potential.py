@@ -17,7 +17,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import rescale
 from flockana.certified.balls import AlphaParameters, ball, exact, norm2, square
-from flockana.certified.series import PairNumbers
+from flockana.certified.pair_laws_in_series import PairNumbers
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 

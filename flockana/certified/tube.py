@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from flint import arb, ctx
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, format_value
-from flockana.base.seals import ensure_sealed
+from flockana.base.integrity_seals import ensure_sealed
+from flockana.base.value_checks import FloatArray
 from flockana.certified.balls import minus, norm
-from flockana.certified.flow import sphere_terms
+from flockana.certified.flow_in_balls import sphere_terms
 from flockana.certified.structural_energy import BITS, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
@@ -72,7 +72,7 @@ class Tube:
 
     Examples
     --------
-    >>> from flockana.certified.enclose import enclose
+    >>> from flockana.certified.enclose_run import enclose
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> tube = enclose(Algorithm1(), [[0.0], [9.0]], [[1.0], [2.0]], (0.0, 2.0))  # out of range: uniform motion
     >>> tube.min_distance().pair, 8.0 < tube.min_distance().lower <= 9.0, tube.q[-1].ravel().tolist()

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show_files, show_json
-from flockana.cli.options import AsJson, CaseName, Seed, output
+from flockana.cli.shared_options import AsJson, CaseName, Seed, output
 
 
 def animate_command(
@@ -22,7 +22,7 @@ def animate_command(
     as_json: AsJson = False,
 ) -> int:
     """Simulate a scenario, or read a saved run, and write a film of it: GIF, or MP4 where ffmpeg is installed."""
-    from flockana.cli.subject import read_case
+    from flockana.cli.command_subject import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.plots.animation import animate, ensure_film
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from flockana.cli.options import AsJson
-from flockana.cli.threads import one_thread_for_matrices
+from flockana.cli.shared_options import AsJson
+from flockana.cli.thread_limit import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,11 +57,11 @@ def _show_applicable(flock: str, words: Any, *, as_json: bool, **others: Any) ->
     """Print which theorems' claims hold of a flock by its law and its start."""
     from flockana.base.errors import ArgumentError
     from flockana.cli.command_output import show, show_json
-    from flockana.cli.subject import is_own, read_own
+    from flockana.cli.command_subject import is_own, read_own
     from flockana.report.tables import column, headed_table
     from flockana.scenarios import scenario
-    from flockana.theorems.applicable import applicable_to
-    from flockana.theorems.headline import plain
+    from flockana.theorems.applicability import applicable_to
+    from flockana.theorems.verdict_summary import plain
 
     if words or any(others.values()):
         raise ArgumentError(f"--for {flock}: expected no words and no other option but --json beside it")

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_json
-from flockana.cli.options import AsJson
+from flockana.cli.shared_options import AsJson
 
 
 def check_command(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from flockana.cli.streams import in_output_encoding
+from flockana.cli.output_streams import in_output_encoding
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType

@@ -9,7 +9,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.command_output import OK, show_json
-from flockana.cli.options import AsJson
+from flockana.cli.shared_options import AsJson
 
 
 def course_command(
@@ -46,7 +46,7 @@ def course_command(
         from flockana.course.slides import write_slides
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[course]'") from error
-    from flockana.report.build import ensure_directory
+    from flockana.report.report_writer import ensure_directory
 
     ensure_directory(folder)
     if grader is not None:

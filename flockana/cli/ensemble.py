@@ -10,7 +10,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
-from flockana.cli.options import AsJson, Jobs, Plot, ScenarioName, output
+from flockana.cli.shared_options import AsJson, Jobs, Plot, ScenarioName, output
 
 if TYPE_CHECKING:
     import xarray
@@ -50,9 +50,9 @@ def ensemble_command(
 
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
-    from flockana.base.binomial import ensure_level
-    from flockana.cli.picture import ensure_file, write_picture
-    from flockana.cli.subject import is_own, read_own, read_theorem
+    from flockana.base.binomial_intervals import ensure_level
+    from flockana.cli.command_subject import is_own, read_own, read_theorem
+    from flockana.cli.picture_file import ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
 
     if retry and store is None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_facts, show_files
-from flockana.cli.options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time, output
+from flockana.cli.shared_options import Algorithm, AnySeed, AsJson, Plot, Range, Scale, SourceName, Start, Time, output
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium
@@ -39,8 +39,8 @@ def equilibrium_command(
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
     from flockana.base.errors import SolverError
-    from flockana.cli.flock import announce_time, read_motion
-    from flockana.cli.picture import ensure_file, write_picture
+    from flockana.cli.flock_arguments import announce_time, read_motion
+    from flockana.cli.picture_file import ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.equilibrium_files import write_equilibrium
 

@@ -8,7 +8,7 @@ import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.cli.command_output import OK
-from flockana.cli.options import OWN
+from flockana.cli.shared_options import OWN
 
 
 def explore_command(
@@ -30,13 +30,13 @@ def explore_command(
     import tempfile
     import webbrowser
 
-    from flockana.base.checks import ensure_positive
+    from flockana.base.value_checks import ensure_positive
 
     ensure_positive("--seconds", seconds)
     folder = tempfile.TemporaryDirectory(prefix="flockana-")
     first_index = _first(name, folder.name)
     try:
-        from flockana.explore.server import Server, kept_token, serve
+        from flockana.explore.page_server import Server, kept_token, serve
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install 'flockana[explore]'") from error
 
@@ -55,9 +55,9 @@ def _first(name: str, folder: str) -> dict[str, str]:
     import os
     from pathlib import Path
 
-    from flockana.cli.subject import is_own, read_case
+    from flockana.cli.command_subject import is_own, read_case
     from flockana.explore.own_flock import save_case
-    from flockana.explore.starts import FILES, from_file, law_names
+    from flockana.explore.page_starts import FILES, from_file, law_names
     from flockana.scenarios import scenarios
 
     if is_own(name):

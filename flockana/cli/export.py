@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from flockana.cli.command_output import OK, show, show_files, show_json
-from flockana.cli.options import AsJson, CaseName, Seed, output
+from flockana.cli.shared_options import AsJson, CaseName, Seed, output
 
 
 def export_command(
@@ -30,7 +30,7 @@ def export_command(
 
     An earlier export in the folder is replaced. If another file there has one of these names, nothing is written.
     """
-    from flockana.cli.subject import read_flock
+    from flockana.cli.command_subject import read_flock
     from flockana.lammps.export import export_lammps
 
     item = read_flock(name, seed)

@@ -10,7 +10,7 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
-from flockana.cli.options import AsJson, On, Plot, output
+from flockana.cli.shared_options import AsJson, On, Plot, output
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -53,8 +53,8 @@ def falsify_command(
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
-    from flockana.cli.picture import ensure_file, write_picture
-    from flockana.cli.subject import is_own, read_flock, read_theorem
+    from flockana.cli.command_subject import is_own, read_flock, read_theorem
+    from flockana.cli.picture_file import ensure_file, write_picture
     from flockana.falsify import falsify
     from flockana.plots.falsify import falsification
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.cli.command_output import OK, show_facts, show_files
-from flockana.cli.options import AsJson, Plot, Time
+from flockana.cli.shared_options import AsJson, Plot, Time
 
 if TYPE_CHECKING:
     from flockana.cli.positions_source import Source
@@ -46,7 +46,7 @@ def lattice_command(
 
     Exit status: 0 measured, 2 bad input, 130 interrupted.
     """
-    from flockana.cli.picture import ensure_file, write_picture
+    from flockana.cli.picture_file import ensure_file, write_picture
     from flockana.cli.positions_source import read_source
     from flockana.lattice import links
     from flockana.report.console import details

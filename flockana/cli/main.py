@@ -15,13 +15,13 @@ import typer
 
 from flockana._version import __version__
 from flockana.base.errors import FlockanaError, UnknownNameError
-from flockana.base.garbage import freeze_gc, relaxed_gc
+from flockana.base.garbage_collection import freeze_gc, relaxed_gc
 from flockana.base.interrupts import restore_interrupts
 from flockana.cli.command import Command
 from flockana.cli.command_output import BAD_INPUT, INTERRUPTED, OK, print_error
-from flockana.cli.matplotlib_home import prepare_home
+from flockana.cli.matplotlib_folder import prepare_home
+from flockana.cli.output_streams import finish_output, prepare_output
 from flockana.cli.root_help import EXAMPLES, Groups
-from flockana.cli.streams import finish_output, prepare_output
 
 _NAME = "flockana"
 _CATALOGUES = ("scenarios", "theorems")  # commands that share a module; every other has one of its name

@@ -11,7 +11,7 @@ import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.cli.command_output import OK, UNEXPECTED, show, show_files, show_json
-from flockana.cli.options import AsJson, output
+from flockana.cli.shared_options import AsJson, output
 
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
@@ -70,8 +70,8 @@ def observe_command(
     Exit status: 0 done, 2 bad input, 3 the recording does not follow the law, 130 interrupted.
     """
     from flockana.base.files import ensure_target, write_atomic
-    from flockana.recorded.example import EXAMPLE_FILE
-    from flockana.recorded.read import read_recording
+    from flockana.recorded.example_recording import EXAMPLE_FILE
+    from flockana.recorded.recording_reader import read_recording
     from flockana.report.recording import measure_rows, recording_page
 
     if page is not None:
@@ -137,7 +137,7 @@ def _with_options(text: str) -> str:
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
     """Return the law to compare the recording with; None if no option names one."""
-    from flockana.cli.subject import is_own, read_law
+    from flockana.cli.command_subject import is_own, read_law
     from flockana.interactions import FormulaInteraction
     from flockana.laws import Algorithm1
     from flockana.recorded.unknown_law import scaled_alpha

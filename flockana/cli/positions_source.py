@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from flockana import lattice
-from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
 from flockana.base.files import ensure_path, read_text_file
+from flockana.base.value_checks import FloatArray, ensure_positive
 
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
@@ -147,7 +147,7 @@ def _positions_by_header(
     path: Path, header: list[str], lines: list[tuple[int, list[str]]]
 ) -> list[tuple[int, list[str]]]:
     """Return the position columns that a header names; all columns where no name is known."""
-    from flockana.recorded.reading.names import is_header, layout_of
+    from flockana.recorded.reading.column_names import is_header, layout_of
 
     if not any(map(is_header, header)):
         return lines

@@ -14,7 +14,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
 from flockana.cli.command_output import OK, UNEXPECTED, show_files, show_json
-from flockana.cli.options import AsJson, Jobs, output
+from flockana.cli.shared_options import AsJson, Jobs, output
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -38,9 +38,9 @@ def prove_command(
 
     Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
     """
-    from flockana.base.checks import ensure_known
-    from flockana.ensemble.processes import cores
-    from flockana.report.build import ensure_directory
+    from flockana.base.value_checks import ensure_known
+    from flockana.ensemble.worker_processes import cores
+    from flockana.report.report_writer import ensure_directory
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
     proof_names = proof.names()

@@ -12,7 +12,7 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_folder_of, ensure_target
 from flockana.cli.command_output import INTERRUPTED, OK, UNEXPECTED, show, show_files, show_json
-from flockana.cli.options import AsJson, CaseName, Seed, output
+from flockana.cli.shared_options import AsJson, CaseName, Seed, output
 
 
 def run_command(
@@ -23,7 +23,7 @@ def run_command(
     as_json: AsJson = False,
 ) -> int:
     """Simulate a case and save the run, its law included, as netCDF; a saved run is made anew from its start."""
-    from flockana.cli.subject import read_flock
+    from flockana.cli.command_subject import read_flock
     from flockana.report.console import run_table
 
     item = read_flock(name, seed)

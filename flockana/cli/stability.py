@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from flockana.cli.command_output import OK, UNEXPECTED, print_error, show_facts, show_files
-from flockana.cli.options import Algorithm, AnySeed, AsJson, At, Plot, Range, Scale, SourceName, Start, Time
-from flockana.cli.threads import one_thread_for_matrices
+from flockana.cli.shared_options import Algorithm, AnySeed, AsJson, At, Plot, Range, Scale, SourceName, Start, Time
+from flockana.cli.thread_limit import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -60,8 +60,8 @@ def stability_command(
     """
     from flockana.base.errors import ArgumentError, SolverError
     from flockana.base.progress import progress_bar
-    from flockana.cli.flock import announce_time, read_motion
-    from flockana.cli.picture import KINDS, ensure_file, write_figure
+    from flockana.cli.flock_arguments import announce_time, read_motion
+    from flockana.cli.picture_file import KINDS, ensure_file, write_figure
     from flockana.stability import Linearisation, linearise
 
     ensure_file(plot, KINDS)

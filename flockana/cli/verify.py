@@ -11,15 +11,15 @@ import typer
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
 from flockana.cli.command_output import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED, show_files
-from flockana.cli.options import AnySeed, AsJson, Jobs, On, output
-from flockana.cli.streams import in_output_encoding
-from flockana.cli.subject import is_own, read_theorem
-from flockana.cli.threads import one_thread_for_matrices
+from flockana.cli.command_subject import is_own, read_theorem
+from flockana.cli.output_streams import in_output_encoding
+from flockana.cli.shared_options import AnySeed, AsJson, Jobs, On, output
+from flockana.cli.thread_limit import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from flockana.report.pages import Page
+    from flockana.report.page_data import Page
     from flockana.report.seed_surveys import Survey
     from flockana.report.statistics import StatisticsSection
     from flockana.report.verify_catalogue import Done, Work
@@ -56,9 +56,9 @@ def verify_command(
 
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
-    from flockana.ensemble.processes import cores
-    from flockana.report.build import ensure_directory, report_folder, verdicts_json
-    from flockana.report.pages import Page
+    from flockana.ensemble.worker_processes import cores
+    from flockana.report.page_data import Page
+    from flockana.report.report_writer import ensure_directory, report_folder, verdicts_json
     from flockana.report.seed_surveys import SurveyResult
     from flockana.report.statistics import gather
 
@@ -98,9 +98,9 @@ def verify_command(
 
 def _verify_own(name: str, seed: int | None, folder: Path | None, seeds: int | None, *, as_json: bool) -> int:
     """Check every theorem about the law of a flock that a Python file defines."""
-    from flockana.cli.subject import read_own
-    from flockana.report.build import verdicts_json, write_report
+    from flockana.cli.command_subject import read_own
     from flockana.report.own_report import own_pages
+    from flockana.report.report_writer import verdicts_json, write_report
 
     if seeds:
         raise ArgumentError(f"{name}: a flock in a file is run once; leave out --seeds, or use flockana ensemble")
@@ -134,7 +134,7 @@ def _planned(
     name: str | None, seeds: int | None, seed: int, *, figures: bool
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
     """Return the tasks of all scenarios to verify, and the surveys among them."""
-    from flockana.report.section import DECAYS, LINEARISED, MANY_LAWS, MARGINS, Section
+    from flockana.report.section_request import DECAYS, LINEARISED, MANY_LAWS, MARGINS, Section
     from flockana.report.seed_surveys import surveys
     from flockana.report.verify_catalogue import plan
 
@@ -146,8 +146,8 @@ def _planned(
 
 
 def _write(folder: Path, results: Sequence[Done], pages: Sequence[Page], **run: Any) -> Path:
-    from flockana.report.build import write_report
     from flockana.report.comparison import ComparisonSection
+    from flockana.report.report_writer import write_report
     from flockana.report.stability import NO_FLOCKS, LinearisedFlocks
 
     comparison = next((result for result in results if isinstance(result, ComparisonSection)), None)
@@ -177,7 +177,7 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
 
 
 def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | None) -> None:
-    from flockana.base.checks import ensure_known
+    from flockana.base.value_checks import ensure_known
     from flockana.report.verify_catalogue import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
@@ -200,10 +200,10 @@ def _ensure_checkable(name: str | None, on: str, seeds: int | None, seed: int | 
 
 def _case_page(checked: str | Theorem | None, on: str, seed: int, figures: bool) -> Page:
     """Return the page with the verdict of one theorem on a scenario or a saved run."""
-    from flockana.cli.subject import read_case
+    from flockana.cli.command_subject import read_case
     from flockana.dynamics.trajectory import Trajectory
     from flockana.report.own_report import own_pages
-    from flockana.report.pages import scenario_page
+    from flockana.report.page_data import scenario_page
     from flockana.scenarios import Scenario, scenario, scenarios
     from flockana.theorems import Theorem, verify
 

@@ -16,12 +16,12 @@ from typing import Any
 import jupytext
 import nbformat
 
-from flockana.base.checks import ensure_choice
 from flockana.base.errors import ArgumentError
-from flockana.course import pages
-from flockana.course.delivery import deliver, notebook_bytes
+from flockana.base.value_checks import ensure_choice
+from flockana.course import course_pages
+from flockana.course.file_delivery import deliver, notebook_bytes
 from flockana.course.grading import form_of
-from flockana.course.numbers import give_own_numbers, variants
+from flockana.course.student_numbers import give_own_numbers, variants
 
 _PACKAGE = Path(__file__).resolve().parent
 _CHECKOUT = _PACKAGE.parent.parent
@@ -69,8 +69,8 @@ def lectures() -> Path:
 
 def sources() -> list[Path]:
     """Return the lectures in teaching order."""
-    files = {pages.number_of(path): path for path in lectures().glob("*.py")}
-    return [files[lecture.number] for lecture in pages.course_map(lectures())]
+    files = {course_pages.number_of(path): path for path in lectures().glob("*.py")}
+    return [files[lecture.number] for lecture in course_pages.course_map(lectures())]
 
 
 def tags(cell: Any) -> list[str]:
@@ -92,16 +92,18 @@ def notebook(source: Path, version: str, *, address: str = "", student: str = ""
         )
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL} | ({"student": student} if student else {}))
     if student:
-        give_own_numbers(book.cells, pages.number_of(source), variants(source.parent)[pages.number_of(source)], student)
+        give_own_numbers(
+            book.cells, course_pages.number_of(source), variants(source.parent)[course_pages.number_of(source)], student
+        )
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
-    entry = pages.entry_of(source)
-    pages.number_statements(book.cells, entry)
-    pages.fold_depth(book.cells, entry)
-    book.cells.insert(1, nbformat.v4.new_markdown_cell(pages.header(entry, source.parent)))
+    entry = course_pages.entry_of(source)
+    course_pages.number_statements(book.cells, entry)
+    course_pages.fold_depth(book.cells, entry)
+    book.cells.insert(1, nbformat.v4.new_markdown_cell(course_pages.header(entry, source.parent)))
     lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")  # as on Colab
     hidden_metadata = {"tags": ["install"], "jupyter": {"source_hidden": True}}
     book.cells.insert(2, nbformat.v4.new_code_cell(lines, metadata=hidden_metadata))
-    book.cells.append(nbformat.v4.new_markdown_cell(pages.references(entry)))
+    book.cells.append(nbformat.v4.new_markdown_cell(course_pages.references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
         if "check" in tags(cell) and version == "student":
@@ -164,7 +166,10 @@ def write(folder: Path, version: str = "student", *, address: str = "", student:
     """Write one version of all lectures with all imported files; with solutions, also the lecturer's pages."""
     notebooks = {source.stem: notebook(source, version, address=address, student=student) for source in sources()}
     books = {f"{name}.ipynb": notebook_bytes(book) for name, book in notebooks.items()}
-    files = {"map.md": pages.map_page(lectures()).encode(), "notation.md": pages.notation_page(lectures()).encode()}
+    files = {
+        "map.md": course_pages.map_page(lectures()).encode(),
+        "notation.md": course_pages.notation_page(lectures()).encode(),
+    }
     if version == "solutions":
         files |= lecturer_pages()
     return deliver(folder, books | files | companions())[: len(books)]

@@ -10,10 +10,10 @@ from typing import Any
 
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_raw_cell
 
-from flockana.base.checks import ensure_choice
+from flockana.base.value_checks import ensure_choice
 from flockana.course import build
-from flockana.course.delivery import deliver, notebook_bytes
-from flockana.course.pages import number_of
+from flockana.course.course_pages import number_of
+from flockana.course.file_delivery import deliver, notebook_bytes
 
 _IMPORTS = "from flockana.course import answered, grade, is_own, shows\n\n"
 _NBGRADER_CONFIG = """c = get_config()

@@ -11,7 +11,7 @@ from typing import Any
 from nbformat.v4 import new_markdown_cell
 
 from flockana.course.build import companions, notebook, sources, tags
-from flockana.course.delivery import deliver, notebook_bytes
+from flockana.course.file_delivery import deliver, notebook_bytes
 
 _LEFT_OUT = {"exercise", "answer", "check", "install", "predict"}
 _SENTENCE = r"(?s:.+?[.?])(?=\s+[A-Z*$#]|\s*\Z)"

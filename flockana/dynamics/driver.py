@@ -1,21 +1,21 @@
 """Loop that drives all runs: adaptive and fixed steps, compiled or not, laws with jumps, delayed laws, maps.
 
 What differs is in the stepper: which steps it makes, and what ends one. Integrators are compiled with the law
-(`flockana.dynamics.compiled`), interpreted (`flockana.dynamics.interpreted`), or go from switch to switch
-(`flockana.dynamics.switches`); maps bring their own steps (`flockana.dynamics.iterate`).
+(`flockana.dynamics.compiled_steps`), interpreted (`flockana.dynamics.interpreted_steps`), or go from switch to switch
+(`flockana.dynamics.switch_location`); maps bring their own steps (`flockana.dynamics.map_stepper`).
 """
 
 from collections.abc import Callable, Iterator
 
-from flockana.dynamics.compiled import engine_of
-from flockana.dynamics.frame import Plan
-from flockana.dynamics.interpreted import Interpreter, VelocityInterpreter
-from flockana.dynamics.sample import Samples, Start, Tally
+from flockana.dynamics.compiled_steps import engine_of
+from flockana.dynamics.interpreted_steps import Interpreter, VelocityInterpreter
+from flockana.dynamics.moving_frame import Plan
+from flockana.dynamics.run_samples import Samples, Start, Tally
 from flockana.dynamics.stepper import Integrator, Stepper
-from flockana.dynamics.switches import SwitchingInterpreter
+from flockana.dynamics.switch_location import SwitchingInterpreter
+from flockana.laws.first_order_law import VelocityLaw
+from flockana.laws.jump_laws import SwitchedLaw
 from flockana.laws.law import Law
-from flockana.laws.switched import SwitchedLaw
-from flockana.laws.velocity import VelocityLaw
 
 
 def drive(make_stepper: Callable[[], Stepper], tally: Tally) -> Iterator[Samples]:

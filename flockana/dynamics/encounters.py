@@ -23,21 +23,21 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.frame import Frame, Plan
-from flockana.environment.beta import ObstacleField
+from flockana.base.value_checks import FloatArray
+from flockana.dynamics.moving_frame import Frame, Plan
+from flockana.environment.beta_agents import ObstacleField
 from flockana.jit import Kernel, callback_like, thawed
 from flockana.kernels.adaptive_steps import Block
 from flockana.kernels.alpha import BETA_AREA
 from flockana.kernels.bound_templates import bound
-from flockana.kernels.encounters import Around, Ends
-from flockana.kernels.grid import LARGE
-from flockana.kernels.large import as_callback, covering, lister
-from flockana.kernels.laws import guard_of
+from flockana.kernels.cell_grid import LARGE
+from flockana.kernels.encounter_checks import Around, Ends
+from flockana.kernels.large_flocks import as_callback, covering, lister
+from flockana.kernels.law_kernels import guard_of
 from flockana.kernels.obstacle_terms import body_numbers
 from flockana.kernels.step_checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
 from flockana.kernels.step_shares import TOO_MANY
-from flockana.kernels.verlet import COUNT, Pairs, no_pairs, with_room
+from flockana.kernels.verlet_list import COUNT, Pairs, no_pairs, with_room
 from flockana.laws.law import LawOfMotion
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations

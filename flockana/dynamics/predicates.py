@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_nonnegative, ensure_positive
 from flockana.dynamics.trajectory import Trajectory
 
 Ended = TypeVar("Ended", bound=Any)  # a run, or a tube, with its status

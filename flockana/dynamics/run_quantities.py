@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.memory import ResultCache
+from flockana.base.result_cache import ResultCache
+from flockana.base.value_checks import FloatArray
+from flockana.dynamics.error_tolerances import ErrorFloors, rounding_floors
 from flockana.dynamics.steps_between_samples import Between, Course, merged
-from flockana.dynamics.tolerance import ErrorFloors, rounding_floors
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.first_order_law import VelocityLaw
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
 from flockana.measures.metrics import cohesion_radius

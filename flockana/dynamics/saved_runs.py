@@ -21,10 +21,10 @@ from flockana._version import __version__
 from flockana.base.digests import sha256
 from flockana.base.errors import FileError
 from flockana.base.files import atomic_write, ensure_path
-from flockana.base.seals import checksum, is_sealed, seal_of, sealed
+from flockana.base.integrity_seals import checksum, is_sealed, seal_of, sealed
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.steps_between_samples import Between
-from flockana.laws.velocity import ensure_any_law
+from flockana.laws.first_order_law import ensure_any_law
 
 if TYPE_CHECKING:
     import xarray

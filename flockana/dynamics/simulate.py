@@ -11,7 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import ArgumentError
+from flockana.base.integrity_seals import sealed
+from flockana.base.interrupts import restore_interrupts
+from flockana.base.progress import progress_bar
+from flockana.base.value_checks import (
     FloatArray,
     TimeSpan,
     ensure_fits,
@@ -20,24 +24,20 @@ from flockana.base.checks import (
     ensure_time_span,
     real_array,
 )
-from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import restore_interrupts
-from flockana.base.progress import progress_bar
-from flockana.base.seals import sealed
 from flockana.dynamics.driver import drive, integrator_of
-from flockana.dynamics.first_call import first_call
-from flockana.dynamics.frame import Plan
-from flockana.dynamics.iterate import MapStepper, count_steps
-from flockana.dynamics.sample import Sample, Samples, Start, Tally
+from flockana.dynamics.error_tolerances import Control, ensure_atol, error_floor
+from flockana.dynamics.first_evaluation import first_call
+from flockana.dynamics.map_stepper import MapStepper, count_steps
+from flockana.dynamics.moving_frame import Plan
+from flockana.dynamics.run_samples import Sample, Samples, Start, Tally
 from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.steps_between_samples import Between, Recorder
-from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
-from flockana.kernels.grid import LARGE
-from flockana.kernels.threads import ensure_threads, limited_threads
+from flockana.kernels.cell_grid import LARGE
+from flockana.kernels.thread_counts import ensure_threads, limited_threads
 from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.first_order_law import VelocityLaw, ensure_any_law, first_order
 from flockana.laws.law import Law
-from flockana.laws.velocity import VelocityLaw, ensure_any_law, first_order
 from flockana.laws.wrapper_base import needs_steps, wrappers_within
 from flockana.solvers.fixed_steps import FixedStep, FixedSteps
 from flockana.solvers.solver import Solver

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.encounters import StepChecks
-from flockana.dynamics.frame import Frame, Plan
-from flockana.dynamics.sample import Samples, Start
+from flockana.dynamics.moving_frame import Frame, Plan
+from flockana.dynamics.run_samples import Samples, Start
 from flockana.kernels.adaptive_steps import Block
-from flockana.kernels.grid import LARGE
+from flockana.kernels.cell_grid import LARGE
 from flockana.kernels.many_steps import parallel_record, record
-from flockana.kernels.threads import several_threads
+from flockana.kernels.thread_counts import several_threads
 from flockana.laws.law import LawOfMotion
 
 _MANY, _SHORT = 10_000, 1e-5  # so many steps that are on average shorter than this share of the law's time end a run

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.sample import Sample, Samples
-from flockana.kernels.detours import detours
+from flockana.base.value_checks import FloatArray
+from flockana.dynamics.run_samples import Sample, Samples
+from flockana.kernels.path_detours import detours
 
 MOST = 2**24  # numbers that are kept of the steps between samples: 128 MiB
 _TOGETHER = 256  # steps that came one at a time are put into one array, each: small arrays are mostly overhead

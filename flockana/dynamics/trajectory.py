@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import LEAST, MOST, Scales
-from flockana.base.seals import replace_sealed
+from flockana.base.integrity_seals import replace_sealed
+from flockana.base.natural_scales import LEAST, MOST, Scales
 from flockana.base.table_export import facts_html
 from flockana.base.units import rescale
-from flockana.base.vectors import centres, lengths
+from flockana.base.value_checks import FloatArray, ensure_choice, ensure_positive, real_array
+from flockana.base.vector_norms import centres, lengths
 from flockana.dynamics import saved_runs
+from flockana.dynamics.error_tolerances import ensure_atol, options_in_units
 from flockana.dynamics.run_quantities import MeasuredRun
 from flockana.dynamics.steps_between_samples import Between
-from flockana.dynamics.tolerance import ensure_atol, options_in_units
-from flockana.laws.velocity import ensure_any_law
+from flockana.laws.first_order_law import ensure_any_law
 
 if TYPE_CHECKING:
     import xarray

@@ -1,6 +1,6 @@
 """Ensembles: many runs of a scenario over seeds and options, verified, counted and stored."""
 
-from flockana.base.binomial import clopper_pearson
+from flockana.base.binomial_intervals import clopper_pearson
 from flockana.ensemble.campaign import ensemble
 from flockana.ensemble.phases import PHASES, phases
 from flockana.ensemble.shares import STATUSES, shares

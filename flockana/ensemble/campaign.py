@@ -15,20 +15,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import TimeSpan, ensure_kind, ensure_known
 from flockana.base.digests import sha256
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.integrity_seals import digest
 from flockana.base.progress import progress_bar
-from flockana.base.seals import digest
 from flockana.base.serialize import to_data
+from flockana.base.value_checks import TimeSpan, ensure_kind, ensure_known
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
 from flockana.ensemble.executors import ensure_worker_options, worker_pool
 from flockana.ensemble.one_run import COMPLETE, Job, Request, Scalar, reference
-from flockana.ensemble.processes import cores
+from flockana.ensemble.process_guard import can_start_processes
 from flockana.ensemble.runs import make_runs
-from flockana.ensemble.start_guard import can_start_processes
 from flockana.ensemble.store import Store
+from flockana.ensemble.worker_processes import cores
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario

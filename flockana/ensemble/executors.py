@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from types import NoneType
 from typing import Any
 
-from flockana.base.checks import ensure_count, ensure_kind
-from flockana.ensemble.processes import ProcessPool, cores
+from flockana.base.value_checks import ensure_count, ensure_kind
+from flockana.ensemble.worker_processes import ProcessPool, cores
 
 
 class Serial(Executor):

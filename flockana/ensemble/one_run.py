@@ -9,8 +9,8 @@ from pkgutil import resolve_name
 from typing import Any, Self
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
+from flockana.base.integrity_seals import SEAL, digest
 from flockana.base.interrupts import restore_interrupts
-from flockana.base.seals import SEAL, digest
 from flockana.base.serialize import to_data, to_data_mapping
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flockana.base.checks import ensure_nonnegative
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_nonnegative
 from flockana.theorems import Tolerances
 
 if TYPE_CHECKING:

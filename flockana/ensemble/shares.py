@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import product
 from typing import TYPE_CHECKING
 
-from flockana.base.binomial import clopper_pearson, ensure_level
+from flockana.base.binomial_intervals import clopper_pearson, ensure_level
 from flockana.base.errors import ArgumentError
 from flockana.ensemble.one_run import COMPLETE, DIED, ERROR, FAILED
 

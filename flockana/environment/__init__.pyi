@@ -1,4 +1,4 @@
-from .beta import ObstacleField as ObstacleField
+from .beta_agents import ObstacleField as ObstacleField
 from .capsule import Capsule as Capsule
 from .dynamic_gamma_agents import SystemTarget as SystemTarget
 from .gamma_agent_copies import Copies as Copies

@@ -13,9 +13,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, SolverError, format_value
 from flockana.base.units import scaled_fields
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.environment.spring import Spring
 
 _RTOL = 1e-12

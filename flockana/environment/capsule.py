@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.environment.obstacles import Obstacle
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball

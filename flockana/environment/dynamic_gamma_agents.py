@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import inf, sqrt
 from typing import Any, ClassVar
 
-from flockana.base.checks import FloatArray, freeze_vector
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, freeze_vector
 from flockana.environment.autonomous_motion import Forced
 from flockana.environment.spring import Spring
 from flockana.environment.target import Target

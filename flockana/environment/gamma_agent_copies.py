@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_state, normalise
 from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_state, normalise
 from flockana.environment.autonomous_motion import Forced
 from flockana.environment.spring import Spring
 

@@ -19,10 +19,17 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
+from flockana.base.value_checks import (
+    FloatArray,
+    ensure_points,
+    ensure_positive,
+    ensure_state,
+    freeze_vector,
+    normalise,
+)
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball
 

@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 import lazy_loader
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_points
 from flockana.environment.obstacles import Obstacle, Sphere
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray, normalise
+from flockana.base import value_checks
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, normalise
 
 
 @dataclass(frozen=True)
@@ -55,14 +55,14 @@ class Spring:
     }
 
     def __post_init__(self) -> None:
-        m = checks.freeze_vector(self, "centre").size
+        m = value_checks.freeze_vector(self, "centre").size
         if np.isscalar(self.push) and self.push == 0:
             object.__setattr__(self, "push", np.zeros(m))
-        checks.freeze_vector(self, "push", m)
-        normalise(self, checks.ensure_finite_scalar, "stiffness")
-        normalise(self, checks.ensure_nonnegative, "damping")
+        value_checks.freeze_vector(self, "push", m)
+        normalise(self, value_checks.ensure_finite_scalar, "stiffness")
+        normalise(self, value_checks.ensure_nonnegative, "damping")
         if self.reach is not None:
-            normalise(self, checks.ensure_positive, "reach")
+            normalise(self, value_checks.ensure_positive, "reach")
 
     def __call__(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """Return the acceleration at one position or at several (…, m)."""

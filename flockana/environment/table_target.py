@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_points, ensure_series
 from flockana.environment.target import Target
 
 

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray
 
 
 class Harmonic(NamedTuple):

@@ -13,10 +13,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray, normalise
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, normalise
 from flockana.environment.target import Harmonic, Target
 
 _STEP = 1e-5  # of the path's own time, for dq_r/dt by central difference: error about 1e-10 relative on smooth paths
@@ -79,10 +79,10 @@ class StaticTarget(_HarmonicTarget):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        m = checks.freeze_vector(self, "q").size
+        m = value_checks.freeze_vector(self, "q").size
         if np.isscalar(self.p) and self.p == 0:
             object.__setattr__(self, "p", np.zeros(m))
-        checks.freeze_vector(self, "p", m)
+        value_checks.freeze_vector(self, "p", m)
 
     @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
@@ -110,7 +110,7 @@ class LinearTarget(_HarmonicTarget):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        checks.freeze_vector(self, "p", checks.freeze_vector(self, "q").size)
+        value_checks.freeze_vector(self, "p", value_checks.freeze_vector(self, "q").size)
 
     @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
@@ -157,9 +157,9 @@ class SineTarget(_HarmonicTarget):
     }
 
     def __post_init__(self) -> None:
-        m = checks.freeze_vector(self, "start").size
-        checks.freeze_vector(self, "velocity", m)
-        normalise(self, checks.ensure_finite_scalar, "amplitude", "frequency", "phase")
+        m = value_checks.freeze_vector(self, "start").size
+        value_checks.freeze_vector(self, "velocity", m)
+        normalise(self, value_checks.ensure_finite_scalar, "amplitude", "frequency", "phase")
         if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
             raise ArgumentError(f"axis = {format_value(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
@@ -200,10 +200,10 @@ class CircleTarget(_HarmonicTarget):
     units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0), "frequency": (0, -1)}
 
     def __post_init__(self) -> None:
-        if checks.freeze_vector(self, "centre").size < 2:
+        if value_checks.freeze_vector(self, "centre").size < 2:
             raise ArgumentError(f"centre = {self.centre}: expected 2 or 3 components; a line holds no circle")
-        normalise(self, checks.ensure_positive, "radius")
-        normalise(self, checks.ensure_finite_scalar, "frequency", "phase")
+        normalise(self, value_checks.ensure_positive, "radius")
+        normalise(self, value_checks.ensure_finite_scalar, "frequency", "phase")
 
     @cached_property
     def harmonic(self) -> Harmonic:  # noqa: D102
@@ -232,8 +232,8 @@ class RescaledVelocity(Target):
     factor: float
 
     def __post_init__(self) -> None:
-        checks.ensure_kind("target", self.target, Target, "a Target such as CircleTarget(...)")
-        normalise(self, checks.ensure_finite_scalar, "factor")
+        value_checks.ensure_kind("target", self.target, Target, "a Target such as CircleTarget(...)")
+        normalise(self, value_checks.ensure_finite_scalar, "factor")
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return self.target.position(t)
@@ -303,9 +303,9 @@ class CallableTarget(Target):
     changes_slower_than: float | None = None
 
     def __post_init__(self) -> None:
-        normalise(self, checks.ensure_positive, "time")
+        normalise(self, value_checks.ensure_positive, "time")
         if self.changes_slower_than is not None:
-            normalise(self, checks.ensure_positive, "changes_slower_than")
+            normalise(self, value_checks.ensure_positive, "changes_slower_than")
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         try:
@@ -343,7 +343,7 @@ class CallableTarget(Target):
             q, p = self.function(t)
         except (TypeError, ValueError) as error:
             raise ArgumentError(f"function({t:g}) failed ({error}): expected it to return (q_r, p_r)") from error
-        return checks.ensure_vector(f"q_r({t:g})", q), checks.ensure_vector(f"p_r({t:g})", p)
+        return value_checks.ensure_vector(f"q_r({t:g})", q), value_checks.ensure_vector(f"p_r({t:g})", p)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return self.state(t)[0]

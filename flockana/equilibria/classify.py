@@ -4,8 +4,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.curvature import Landscape, descent_direction
 from flockana.equilibria.large_curvature import LargeLandscape
 from flockana.equilibria.potential import Potential

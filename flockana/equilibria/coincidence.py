@@ -4,7 +4,7 @@ from math import ceil
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_dimension
+from flockana.base.value_checks import FloatArray, ensure_dimension
 from flockana.interactions import AlphaInteraction
 
 _ABOVE = 1e-9  # relative: the greatest trace is flat where it is found, so it is missed by far less

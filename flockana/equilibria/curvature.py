@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import FloatArray
 
 EPS = float(np.finfo(np.float64).eps)
 _ROUNDING = 8.0  # of eps √N ‖H‖: eigenvalues of a symmetric matrix come out to a few eps ‖H‖

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.lattice.elimination import Elimination
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.nets import links
 
 _ROUGH = 1e-3  # relative force at which basins are compared

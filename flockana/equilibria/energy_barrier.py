@@ -8,9 +8,9 @@ from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_dimension
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_dimension
+from flockana.equilibria.equilibrium_search import lattice_starts, random_starts
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.search import lattice_starts, random_starts
 from flockana.equilibria.solve import all_pairs
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks

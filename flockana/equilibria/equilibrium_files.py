@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.errors import FileError, FlockanaError, SolverError
 from flockana.base.files import read_text_file, write_atomic
-from flockana.base.seals import with_digest, without_digest
+from flockana.base.integrity_seals import with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium, finish

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.curvature import EPS, Landscape, least_curvature
 from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.metrics import coincident_pairs, connectivity, velocity_mismatch
 from flockana.measures.nets import link_lengths, links
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import FloatArray, ensure_points, ensure_positive
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import polish
 from flockana.laws import Algorithm1, Algorithm2, ensure_one_gain
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 
 _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a weak bond near r pulls no harder before
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray

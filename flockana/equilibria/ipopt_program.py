@@ -14,8 +14,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.interrupts import defer_sigint
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.measures.nets import LinkArray
 

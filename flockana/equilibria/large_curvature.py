@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.curvature import Landscape
 from flockana.lattice.elimination import Elimination
 

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.override_checks import ensure_consistent
+from flockana.base.value_checks import FloatArray
 from flockana.environment import Obstacle, Sphere, Wall
 from flockana.equilibria.final_state import generators, rigid_motions
 from flockana.interactions.pair_interaction import PairInteraction
 from flockana.laws import Law, Navigation, PairTerm, SumOfTerms
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.nets import LinkArray
 
 _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is rounding

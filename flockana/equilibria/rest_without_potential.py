@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.laws import Law, ensure_law
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.first_order_law import VelocityLaw
 
 _STEPS = 40
 _RANK = 1e-10  # of the largest singular value: what is less is a direction in which nothing pushes

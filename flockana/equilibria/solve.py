@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import SolverError
+from flockana.base.integrity_seals import ensure_sealed, sealed
+from flockana.base.table_export import facts_html, facts_text
+from flockana.base.value_checks import (
     FloatArray,
     ensure_count,
     ensure_finite_scalar,
@@ -15,9 +18,6 @@ from flockana.base.checks import (
     ensure_known,
     ensure_points,
 )
-from flockana.base.errors import SolverError
-from flockana.base.seals import ensure_sealed, sealed
-from flockana.base.table_export import facts_html, facts_text
 from flockana.equilibria.classify import MAX_SIZE, EquilibriumKind, classify_spectrum, ensure_small, falling, spectrum
 from flockana.equilibria.descent import descend
 from flockana.equilibria.potential import Potential, ensure_flock_law, inside_obstacle

@@ -9,14 +9,14 @@ import numpy as np
 from flockana.base.errors import FlockanaError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria import find_equilibrium
-from flockana.equilibria.collapse import collapse_threshold
+from flockana.equilibria.lattice_collapse import collapse_threshold
 from flockana.equilibria.rest_without_potential import resting_state
-from flockana.explore.case import Case, program
-from flockana.explore.parameters import numbers
-from flockana.explore.starts import Start
+from flockana.explore.law_parameters import numbers
+from flockana.explore.page_case import Case, program
+from flockana.explore.page_starts import Start
 from flockana.explore.streamed_runs import ensure_small, shown, watched
 from flockana.interactions import AlphaInteraction
-from flockana.player.marks import marks_of
+from flockana.player.marked_instants import marks_of
 from flockana.scenarios.option_checks import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify

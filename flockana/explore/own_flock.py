@@ -7,8 +7,8 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from flockana.base.checks import TimeSpan, ensure_flag, ensure_known, ensure_seed
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import TimeSpan, ensure_flag, ensure_known, ensure_seed
 from flockana.dynamics.trajectory import Trajectory
 from flockana.scenarios.flock import as_scenario, chosen
 from flockana.scenarios.scenario import Scenario, scenarios
@@ -49,7 +49,7 @@ def explore(
         Open the page in the browser; its address is printed in any case.
     """
     try:
-        from flockana.explore.server import Server, kept_token, serve
+        from flockana.explore.page_server import Server, kept_token, serve
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install tornado") from error
     flock = chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span)

@@ -5,7 +5,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from flockana.explore.starts import law_names
+from flockana.explore.page_starts import law_names
 from flockana.player.page import script, style, templates
 from flockana.report.catalogues import scenario_entries
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.sample import Sample
+from flockana.dynamics.run_samples import Sample
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.explore.starts import Start
+from flockana.explore.page_starts import Start
 from flockana.player.scene import kept, scene
 
 AGENTS = 3000  # more of them no page draws smoothly

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.laws.velocity import first_order, start_velocities
-from flockana.recorded.parameters import law_parameter, with_parameter
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.laws.first_order_law import first_order, start_velocities
+from flockana.recorded.law_parameters import law_parameter, with_parameter
 from flockana.scenarios import Scenario
 
 STATE = ("q", "p")

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, TimeSpan, ensure_count, ensure_kind, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.integrity_seals import sealed
 from flockana.base.progress import progress_bar
-from flockana.base.seals import sealed
+from flockana.base.value_checks import FloatArray, TimeSpan, ensure_count, ensure_kind, ensure_seed
 from flockana.falsify.bounded_space import STATE, search_space
-from flockana.falsify.evaluate import Evaluation, Problem, units
+from flockana.falsify.cma_search import Search
 from flockana.falsify.falsification import Ending, Falsification
-from flockana.falsify.search import Search
-from flockana.recorded.parameters import law_parameter
+from flockana.falsify.point_evaluation import Evaluation, Problem, units
+from flockana.recorded.law_parameters import law_parameter
 from flockana.scenarios import Flock, Scenario
 from flockana.scenarios.flock import as_scenario, chosen
 from flockana.theorems import Theorem, Tolerances

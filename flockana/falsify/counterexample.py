@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import Any, Self
 
 from flockana._version import __version__
-from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError, FileError, FlockanaError
 from flockana.base.files import read_text_file, write_atomic
-from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
+from flockana.base.integrity_seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray, ensure_state, ensure_time_span
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.falsify.confirm import confirmed
+from flockana.falsify.confirmation_run import confirmed
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
 from flockana.theorems import Theorem, Tolerances, Verdict, theorems, verify

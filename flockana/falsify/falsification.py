@@ -9,9 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.integrity_seals import ensure_sealed, sealed
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.counterexample import Counterexample
 from flockana.scenarios import Scenario

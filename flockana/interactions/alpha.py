@@ -10,15 +10,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.facts import Fact, PairFacts
+from flockana.base.function_facts import Fact, PairFacts
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.interactions.distance_functions import SlopeBound
 from flockana.interactions.pair_interaction import PairInteraction, Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
 from flockana.kernels.integral_tables import integral_panels, on_panels, panel_edges
-from flockana.kernels.pair_lift import lift, lift_scalar
+from flockana.kernels.pair_kernels import lift, lift_scalar
 from flockana.kernels.scalars import bump, phi, phi_integral, sigma_norm
 
 _STRENGTH_GRID = 2049

@@ -7,12 +7,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.pair_interaction import Tabulated, ensure_lengths, evaluate, one_by_one
 from flockana.kernels import alpha as kernel
 from flockana.kernels.integral_tables import integral_panels, on_panels, panel_edges
-from flockana.kernels.pair_lift import lift_scalar
+from flockana.kernels.pair_kernels import lift_scalar
 from flockana.kernels.scalars import sigma_norm
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)

@@ -13,9 +13,9 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.facts import Fact, PairFacts
+from flockana.base.function_facts import Fact, PairFacts
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray
 from flockana.kernels.neighbours import pair_blocks
 
 PROVED = ("smooth", "weight", "inside")  # facts that a function without a formula may name a proof of

@@ -6,17 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.facts import PairFacts
+from flockana.base.function_facts import PairFacts
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.interactions.distance_functions import SlopeBound
 from flockana.interactions.formula_parts import FormulaParts, formula_parts
 from flockana.interactions.pair_interaction import PairInteraction
 from flockana.kernels.generated_scalars import generated_kernels
 
 if TYPE_CHECKING:
-    from flockana.kernels.pair_lift import PairKernels
+    from flockana.kernels.pair_kernels import PairKernels
     from flockana.symbolic.derivation import Derivation
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding

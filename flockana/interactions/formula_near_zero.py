@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.kernels.integral_tables import NODES, series_nodes, series_of
 
 if TYPE_CHECKING:

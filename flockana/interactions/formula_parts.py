@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.facts import PairFacts
+from flockana.base.function_facts import PairFacts
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import SlopeBound
 from flockana.interactions.formula_near_zero import TERMS, NearZero, near_zero
 from flockana.kernels.integral_tables import integral_panels, series_nodes, series_of
@@ -254,7 +254,7 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:
     """Return the source text of pair, slope, potential, adjacency slope and norm, and their constants."""
     from flockana.symbolic import pair_formula as pf
-    from flockana.symbolic.printing import Constants, function_text
+    from flockana.symbolic.code_printing import Constants, function_text
 
     in_norm = cut.formula.distance == pf.Z
     head = _HEAD + near.coefficients.size

@@ -4,9 +4,9 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
+from flockana.base.value_checks import ensure_positive
 from flockana.interactions.formula import FormulaInteraction
 
 
@@ -88,7 +88,7 @@ def _as_text(name: str, formula: Any) -> str:
         return formula
     import sympy as sp
 
-    from flockana.symbolic.grammar import write_formula
+    from flockana.symbolic.formula_grammar import write_formula
 
     if isinstance(formula, int | float) or (isinstance(formula, sp.Expr) and not formula.has(sp.Indexed)):
         return write_formula(sp.sympify(formula))

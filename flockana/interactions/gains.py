@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, normalise, per_agent
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, normalise, per_agent
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
 

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues
 from flockana.jit import thawed
-from flockana.kernels.grid import LARGE
+from flockana.kernels.cell_grid import LARGE
 from flockana.kernels.little_work import for_little
 from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.pair_lift import PairKernels
+from flockana.kernels.pair_kernels import PairKernels
 from flockana.kernels.scalars import sigma_norm
-from flockana.kernels.threads import several_threads
+from flockana.kernels.thread_counts import several_threads
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues, SlopeBound
 from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope, singular, singular_slope
 

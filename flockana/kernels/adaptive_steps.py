@@ -10,7 +10,7 @@ import numpy as np
 from flockana.jit import inlined
 from flockana.kernels.agent_sums import finite, put_row
 from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
-from flockana.kernels.verlet import COUNT
+from flockana.kernels.verlet_list import COUNT
 
 
 class Block(NamedTuple):

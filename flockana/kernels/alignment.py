@@ -7,7 +7,7 @@ from typing import Any
 
 from flockana.jit import Kernel, register_jitable
 from flockana.kernels.bound_templates import bound
-from flockana.kernels.pair_lift import lift_scalar
+from flockana.kernels.pair_kernels import lift_scalar
 
 STRENGTH, LENGTH, DECAY = range(3)
 

@@ -7,14 +7,14 @@ from functools import lru_cache
 
 from flockana.jit import Kernel
 from flockana.kernels.bound_templates import made
-from flockana.kernels.pair_lift import PairKernels, lift
+from flockana.kernels.pair_kernels import PairKernels, lift
 
 _KEPT = 64  # compiled formulas
 _MATH = "sqrt, exp, log, tan, sinh, cosh, tanh, asin, acos, atan, asinh, acosh, atanh"
 _IMPORTS = f"""from math import {_MATH}
 
 from flockana.jit import register_jitable
-from flockana.kernels.elementary import cosine, sine
+from flockana.kernels.sine_and_cosine import cosine, sine
 from flockana.kernels.integral_tables import on_panels
 
 

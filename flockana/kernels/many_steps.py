@@ -6,10 +6,10 @@ import numpy as np
 
 from flockana.jit import inlined, kernel, parallel, prange
 from flockana.kernels.adaptive_steps import FULL, RUNNING, SINGULAR, UNLISTED, march, step_of
-from flockana.kernels.grid import LARGE
+from flockana.kernels.cell_grid import LARGE
 from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.step_checks import IN_VAIN, PATIENCE, checked
-from flockana.kernels.verlet import COUNT
+from flockana.kernels.verlet_list import COUNT
 
 AT_ONCE = 50_000_000  # agents and pairs in all evaluations of one call, some tenths of a second: then signals are heard
 _PARTS = 64  # of a large flock, whose states are written by all threads

@@ -2,7 +2,7 @@
 
 This is the only place that searches: links, forces, energies and Hessians all loop over the blocks of pairs it
 yields. Blocks keep memory O(n) even where every agent is within range of every other. Small flocks are searched
-directly; larger ones are sorted into a grid (`flockana.kernels.grid`).
+directly; larger ones are sorted into a grid (`flockana.kernels.cell_grid`).
 """
 
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from flockana.jit import kernel
 from flockana.kernels.agent_sums import square_between
-from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.cell_grid import sort_into_grid
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]

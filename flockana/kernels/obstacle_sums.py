@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.jit import kernel, register_jitable
 from flockana.kernels.alpha import adjacency_beta_slope, pair_beta, pair_beta_slope, psi_beta
-from flockana.kernels.encounters import SLACK
+from flockana.kernels.encounter_checks import SLACK
 from flockana.kernels.obstacle_crossings import LOOKS, MARCHES, TOUCH, longest, out_of_reach, point_at, within_reach
 from flockana.kernels.obstacle_terms import BETA, C1, C2, REACH, STARTS, bodies_of
 from flockana.kernels.obstacles import no_turn as turn  # bound

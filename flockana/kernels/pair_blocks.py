@@ -13,7 +13,7 @@ from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, sort_into_grid
 
 NORMED = True  # bound
 OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")  # as in `flockana.kernels.pair_sums`

@@ -14,10 +14,10 @@ from flockana.jit import inlined, kernel, parallel, prange, register_jitable, su
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.blocks import BLOCK
-from flockana.kernels.blocks import apart_2 as apart  # bound
-from flockana.kernels.blocks import as_they_are as as_tuple  # bound
-from flockana.kernels.grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.pair_helpers import BLOCK
+from flockana.kernels.pair_helpers import apart_2 as apart  # bound
+from flockana.kernels.pair_helpers import as_they_are as as_tuple  # bound
 
 M = 2  # bound
 NORMED = True  # bound

@@ -7,7 +7,7 @@ No motion crosses a pole, so a step whose path does is no motion. Paths are the 
 import numpy as np
 
 from flockana.jit import inlined, kernel
-from flockana.kernels.encounters import pair_room, relative_curve
+from flockana.kernels.encounter_checks import pair_room, relative_curve
 from flockana.kernels.quintic_paths import _largest_distance, _least_distance, quintic
 
 _NEAR = 1e-3  # of the way to a pole that is left where a step begins: a path that comes so near has not resolved it

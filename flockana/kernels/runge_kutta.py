@@ -13,7 +13,7 @@ import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable, subroutine
 from flockana.kernels.agent_sums import column_squares, squared_deviations
-from flockana.kernels.verlet import COUNT
+from flockana.kernels.verlet_list import COUNT
 
 
 class Method(NamedTuple):
@@ -46,7 +46,7 @@ class Step(NamedTuple):
 class Work(NamedTuple):
     """Functions of large arrays for one or several threads, as callbacks with equal results."""
 
-    listed: Any  # `flockana.kernels.verlet.listed_anew`
+    listed: Any  # `flockana.kernels.verlet_list.listed_anew`
     covers: Any
     combine: Any
 
@@ -54,7 +54,7 @@ class Work(NamedTuple):
 class System(NamedTuple):
     """Law as steps take it: functions, numbers, frame of the state, and work space."""
 
-    force: Any  # `flockana.kernels.laws.LawFunctions`
+    force: Any  # `flockana.kernels.law_kernels.LawFunctions`
     energy: Any
     law: Any  # what they read
     seen_from: Any  # start, origin and drift of the frame of the vectors
@@ -62,7 +62,7 @@ class System(NamedTuple):
     reach: Any  # distance within which all pairs are needed, and the skin of a list
     work: Any  # `Work`: what takes time beside them
     order: Any  # (n,), uint64: every agent's own number
-    frame: Any  # room (`flockana.kernels.listed.Listed`)
+    frame: Any  # room (`flockana.kernels.listed_pairs.Listed`)
     near: Any
     room: Any
 

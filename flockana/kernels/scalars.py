@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import inf, pi, sqrt
 
 from flockana.jit import register_jitable
-from flockana.kernels.elementary import quarter_sine, sine
+from flockana.kernels.sine_and_cosine import quarter_sine, sine
 
 LARGE = 2.0**400  # beyond it σ₁ is 1; a power of two: φ reaches its limits exactly
 tiny = 1e-300  # keeps 0/0 out

@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import kernel, parallel, prange, register_jitable
-from flockana.kernels.encounters import bounds_of, squares_beside
+from flockana.kernels.encounter_checks import bounds_of, squares_beside
 
 PARTS = 64  # of the agents, or of a list of pairs
 
 
 class Reaches(NamedTuple):
-    """Fields of `flockana.kernels.encounters.Around` that say what pairs may do."""
+    """Fields of `flockana.kernels.encounter_checks.Around` that say what pairs may do."""
 
     radii: Any
     far: Any
@@ -45,7 +45,7 @@ def _sum_part(ends, part, sums):
 
 @kernel
 def means_in_parts(ends):
-    """As `flockana.kernels.encounters.means_of`, part by part."""
+    """As `flockana.kernels.encounter_checks.means_of`, part by part."""
     n, m = ends.q0.shape
     sums, means = np.empty((PARTS, 6, m)), np.zeros((6, m))
     for component in prange(PARTS):
@@ -70,7 +70,7 @@ def _square_part(ends, mean, slope, centre, part, squares):
 
 @kernel
 def ways_in_parts(ends, mean, slope, centre):
-    """As `flockana.kernels.encounters.farthest_ways`, part by part."""
+    """As `flockana.kernels.encounter_checks.farthest_ways`, part by part."""
     squares, way2, most2, most3 = np.empty((PARTS, 3)), 0.0, 0.0, 0.0
     for part in prange(PARTS):
         _square_part(ends, mean, slope, centre, np.int64(part), squares[part])

@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana.jit import kernel, parallel, prange, register_jitable
-from flockana.kernels.grid import cut_into_slabs, sort_into_grid
-from flockana.kernels.verlet import MOST, later_agents, list_cells, list_pairs, noted
+from flockana.kernels.cell_grid import cut_into_slabs, sort_into_grid
+from flockana.kernels.verlet_list import MOST, later_agents, list_cells, list_pairs, noted
 
 
 @register_jitable

@@ -41,7 +41,7 @@ def combined_by_threads(y, h, weights, rates, rows, count, out):
 
 @kernel
 def covered_by_threads(pairs, q, within):
-    """Check a pair list with several threads, as `flockana.kernels.verlet.covers`."""
+    """Check a pair list with several threads, as `flockana.kernels.verlet_list.covers`."""
     reference, m = pairs.places, q.shape[1]
     mean_motion, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
     for stretch_axis in range(2 if pairs.reach[0] > 0.0 else 0):

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.jit import inlined
 from flockana.kernels.adaptive_steps import GROWTH, spacing
-from flockana.kernels.encounters import Ends
+from flockana.kernels.encounter_checks import Ends
 from flockana.kernels.step_shares import POLE
 
 ROUNDINGS = 64.0  # of the time: a step of so few is not made again
@@ -31,7 +31,7 @@ class Rules(NamedTuple):
 class Judged(NamedTuple):
     """Data for checking steps."""
 
-    around: Any  # `flockana.kernels.encounters.Around`
+    around: Any  # `flockana.kernels.encounter_checks.Around`
     rules: Any
     ledger: Any  # of the balance
     share: Any  # `flockana.kernels.step_shares.share_of_step`

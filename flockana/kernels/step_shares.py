@@ -8,8 +8,8 @@ from zlib import crc32
 import numpy as np
 
 from flockana.jit import inlined, kernel, parallel, prange, register_jitable
-from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest, way_of_means
-from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.cell_grid import sort_into_grid
+from flockana.kernels.encounter_checks import band, common_way, farthest_ways, share_of_listed, steepest, way_of_means
 from flockana.kernels.neighbours import fill_from_grid
 from flockana.kernels.pole_crossings import crossing_listed
 from flockana.kernels.quintic_paths import bernstein
@@ -23,7 +23,7 @@ from flockana.kernels.slab_checks import (
     parallel_ways_in_parts,
     ways_in_parts,
 )
-from flockana.kernels.verlet import COUNT, CROWDED, SKIN
+from flockana.kernels.verlet_list import COUNT, CROWDED, SKIN
 
 # Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list; whether the flock is
 # large, and then looked at in parts, and whether by several threads.

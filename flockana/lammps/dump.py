@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_path
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
-from flockana.recorded.reading.lammps import read_dump
+from flockana.recorded.reading.lammps_dumps import read_dump
 
 
 def read_lammps(

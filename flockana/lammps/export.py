@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base import checks
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import ensure_path, ensure_target, write_atomic
 from flockana.lammps import script
@@ -49,7 +49,7 @@ def export_lammps(
     law: Any,
     q0: Any = None,
     p0: Any = None,
-    t_span: checks.TimeSpan | None = None,
+    t_span: value_checks.TimeSpan | None = None,
     folder: str | os.PathLike[str] = "",
     *,
     points: int = 20_000,
@@ -108,13 +108,13 @@ def export_lammps(
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
     _ensure_own(folder / name for name in (script.SCRIPT, script.DATA, script.TABLE, script.README))
-    q0, p0 = checks.draw_start(q0, p0, checks.ensure_seed(seed))
+    q0, p0 = value_checks.draw_start(q0, p0, value_checks.ensure_seed(seed))
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)
-    checks.ensure_known("choice of consensus", consensus, CONSENSUS)
+    value_checks.ensure_known("choice of consensus", consensus, CONSENSUS)
     first_index = _first_distance(term, q0, inner)
-    start, end = checks.ensure_time_span(t_span)
+    start, end = value_checks.ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)
     table = pair_table(term, points, first_index)
     result = script.translated(law, q0.shape[1], table, nearest=consensus == "nearest")
@@ -151,14 +151,14 @@ def _translatable(law: Any) -> tuple[Law, PairTerm]:
 
 
 def _count(name: str, value: Any, least: int, most: int) -> int:
-    number = checks.ensure_finite_scalar(name, value)
+    number = value_checks.ensure_finite_scalar(name, value)
     if number != int(number) or not least <= number <= most:
         raise ArgumentError(f"{name} = {value!r}: expected a whole number from {least} to {most}")
     return int(number)
 
 
-def _first_distance(term: PairTerm, q: checks.FloatArray, inner: float | None) -> float:
-    first = inner_cutoff(term) if inner is None else checks.ensure_positive("inner", inner)
+def _first_distance(term: PairTerm, q: value_checks.FloatArray, inner: float | None) -> float:
+    first = inner_cutoff(term) if inner is None else value_checks.ensure_positive("inner", inner)
     if first >= term.pair.range:
         raise ArgumentError(f"inner = {first:g}: expected less than the range {term.pair.range:g}")
     nearest = min_distance(q) if len(q) > 1 else np.inf
@@ -174,7 +174,9 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
     """Return a clock of equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {law.title} has no time of its own; give a step")
-    longest = _STEP * law.scales.time if dt is None and law.scales is not None else checks.ensure_positive("dt", dt)
+    longest = (
+        _STEP * law.scales.time if dt is None and law.scales is not None else value_checks.ensure_positive("dt", dt)
+    )
     stride = max(1, ceil((end - start) / (longest * samples) * (1.0 - 1e-12)))
     return script.Clock(start, (end - start) / (samples * stride), samples * stride, stride)
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.lammps.table import KEYWORD, PairTable, adjacency
 from flockana.lammps.target_pull import AXES, pull_commands
 from flockana.laws.law import Law

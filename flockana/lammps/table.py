@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.laws.terms.pairs import PairTerm
 
 KEYWORD = "PAIR"

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
 from flockana.base.errors import format_value
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
 
 _RISE = 0.75**0.5
 _STEPS = np.array([(1.0, 0.0), (0.5, _RISE), (-0.5, _RISE), (-1.0, 0.0), (-0.5, -_RISE), (0.5, -_RISE)])

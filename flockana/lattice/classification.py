@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_nonnegative, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_nonnegative, ensure_points, ensure_positive
 from flockana.measures import nets
 from flockana.measures.nets import LinkArray, link_lengths
 

@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import scaled_near_one
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive
+from flockana.base.vector_norms import scaled_near_one
 from flockana.jit import thawed
+from flockana.kernels.link_segments import UNSURE, crossing_signs, meet, nearest_links
 from flockana.kernels.little_work import for_little
-from flockana.kernels.segments import UNSURE, crossing_signs, meet, nearest_links
 from flockana.measures.nets import LinkArray
 
 LISTED = 100_000  # crossings that are listed at most where all are asked for; beyond, a count says "at least"

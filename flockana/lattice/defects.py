@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points
-from flockana.base.vectors import scaled_near_one
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_links, ensure_points
+from flockana.base.vector_norms import scaled_near_one
 from flockana.lattice.crossings import turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.measures.nets import LinkArray

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import FloatArray
 
 Indices = npt.NDArray[np.int64]
 

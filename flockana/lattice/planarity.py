@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import ensure_count, ensure_links
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_count, ensure_links
 from flockana.measures.nets import LinkArray
 
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
-from flockana.base.vectors import scaled_near_one
+from flockana.base.value_checks import FloatArray, ensure_links, ensure_points, ensure_positive
+from flockana.base.vector_norms import scaled_near_one
 from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:

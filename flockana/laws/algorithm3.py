@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from flockana.base.checks import ensure_kind
 from flockana.base.errors import ArgumentError, format_value
-from flockana.environment.beta import ObstacleField
+from flockana.base.value_checks import ensure_kind
+from flockana.environment.beta_agents import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction

@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import normalise
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
-from flockana.environment.beta import ObstacleField
+from flockana.base.value_checks import normalise
+from flockana.environment.beta_agents import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
@@ -30,7 +30,7 @@ from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm, ensure_one_dimension
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -89,21 +89,21 @@ class Composition(GainedLaw):
 
     def __post_init__(self) -> None:
         none_type = type(None)
-        checks.ensure_kind("alpha", self.alpha, (PairInteraction, none_type), PAIR)
-        checks.ensure_kind("net", self.net, (PairInteraction, Weight, none_type), PAIR)
-        checks.ensure_kind("target", self.target, (Target, none_type), TARGET)
+        value_checks.ensure_kind("alpha", self.alpha, (PairInteraction, none_type), PAIR)
+        value_checks.ensure_kind("net", self.net, (PairInteraction, Weight, none_type), PAIR)
+        value_checks.ensure_kind("target", self.target, (Target, none_type), TARGET)
         ensure_gains(self)
-        checks.ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
+        value_checks.ensure_kind("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
         if self.unit is not None:
-            normalise(self, checks.ensure_positive, "unit")
-        normalise(self, checks.ensure_finite_scalar, "thrust")
-        normalise(self, checks.ensure_nonnegative, "brake")
+            normalise(self, value_checks.ensure_positive, "unit")
+        normalise(self, value_checks.ensure_finite_scalar, "thrust")
+        normalise(self, value_checks.ensure_nonnegative, "brake")
         if self.target is not None:
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        normalise(self, checks.ensure_flag, "feedforward")
+        normalise(self, value_checks.ensure_flag, "feedforward")
         if self.feedforward and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "
@@ -176,7 +176,7 @@ class Composition(GainedLaw):
         q, p : array_like, shape (n, m)
             Positions and velocities in any frame; a γ-agent that holds the flock in the given frame is at rest.
         """
-        q, p = checks.ensure_state(q, p)
+        q, p = value_checks.ensure_state(q, p)
         is_free = self.target is None and not self.obstacles and self.brake == 0.0
         return self.hamiltonian(0.0, q, moving_frame(p) if is_free else p)
 
@@ -267,7 +267,7 @@ def compose(
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
         net, consensus = consensus, 1.0
-    obstacles, feedforward = ensure_obstacles(obstacles), checks.ensure_flag("feedforward", feedforward)
+    obstacles, feedforward = ensure_obstacles(obstacles), value_checks.ensure_flag("feedforward", feedforward)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)
     _ensure_parts(
@@ -317,9 +317,9 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
         return gain
     if agents is None:
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
-    n = checks.ensure_count("agents", agents)
-    members = {checks.ensure_index("informed has", i, n) for i in informed}
-    common_motion = checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    n = value_checks.ensure_count("agents", agents)
+    members = {value_checks.ensure_index("informed has", i, n) for i in informed}
+    common_motion = value_checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
     return tuple(common_motion if i in members else 0.0 for i in range(n))
 
 
@@ -331,7 +331,7 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
         if pair is None:
             raise ArgumentError("bounded = True without a pair: give the length at which the pull saturates")
         return pair.bend_length
-    return checks.ensure_positive("bounded", bounded)
+    return value_checks.ensure_positive("bounded", bounded)
 
 
 def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float, float]:
@@ -340,5 +340,5 @@ def _along(drag: float | None, speed: tuple[float, float] | None) -> tuple[float
     if speed is not None:
         if not isinstance(speed, tuple | list) or len(speed) != 2:
             raise ArgumentError(f"speed = {speed!r}: expected (α, β), as in (1.0, 0.25) for a speed of 2")
-        thrust_gain, brake_gain = (checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
-    return thrust_gain - (0.0 if drag is None else checks.ensure_nonnegative("drag", drag)), brake_gain
+        thrust_gain, brake_gain = (value_checks.ensure_positive(f"speed[{k}]", value) for k, value in enumerate(speed))
+    return thrust_gain - (0.0 if drag is None else value_checks.ensure_nonnegative("drag", drag)), brake_gain

@@ -13,9 +13,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state, normalise, per_agent
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
+from flockana.base.value_checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_positive,
+    ensure_state,
+    normalise,
+    per_agent,
+)
 from flockana.interactions import AlphaInteraction
 from flockana.interactions.alpha import slopes_within
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues, LawFunction, SlopeBound
@@ -25,9 +32,9 @@ from flockana.kernels.directed_sums import directed_forces, seen_edges
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.scalars import bump_slope, taper
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.features import Feature, function_feature
 from flockana.laws.law import Arrays
-from flockana.laws.matrices import assembled
+from flockana.laws.law_features import Feature, function_feature
+from flockana.laws.law_matrices import assembled
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Derivatives

@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.natural_scales import Scales
 from flockana.base.override_checks import ensure_consistent
-from flockana.base.scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray
 from flockana.laws.law import Arrays, Law, LawOfMotion
 
 IndexArray = npt.NDArray[np.int64]

@@ -6,9 +6,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from flockana.base.checks import ensure_kind
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import scaled_fields
+from flockana.base.value_checks import ensure_kind
 from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction
 from flockana.interactions.gains import GainsField, gains_of

@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.finite_differences import differences
+from flockana.base.natural_scales import Scales
+from flockana.base.override_checks import overrides_consistently
+from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import (
     FloatArray,
     ensure_finite_scalar,
     ensure_fits,
@@ -16,20 +21,15 @@ from flockana.base.checks import (
     ensure_returned_array,
     ensure_state,
 )
-from flockana.base.differences import differences
-from flockana.base.errors import ArgumentError, format_value
-from flockana.base.override_checks import overrides_consistently
-from flockana.base.scales import Scales
-from flockana.base.short_repr import ShortRepr
 from flockana.interactions.distance_functions import LawFunction, PairCorner, UnknownEdges
 from flockana.interactions.pair_interaction import PairInteraction
-from flockana.laws.features import Feature, Unknown, function_feature
+from flockana.laws.law_features import Feature, Unknown, function_feature
 
 if TYPE_CHECKING:
     from control import StateSpace
     from scipy.sparse import csr_array, sparray
 
-    from flockana.environment.beta import ObstacleField
+    from flockana.environment.beta_agents import ObstacleField
     from flockana.environment.obstacles import Obstacle
     from flockana.environment.target import Target
     from flockana.laws.terms.term import Compiled, Term
@@ -336,7 +336,7 @@ class Law(LawOfMotion):
         return self.checked_flow(*self._checked(t, q, p))[1]
 
     def compiled(self, m: int) -> Compiled | None:
-        """Return the law for compiled integrators (`flockana.dynamics.compiled`); None if it has no such form."""
+        """Return the law for compiled integrators (`flockana.dynamics.compiled_steps`); None if it has no such form."""
         return None
 
     def compiled_push(self, m: int) -> Compiled | None:

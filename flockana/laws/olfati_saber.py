@@ -4,16 +4,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
-from flockana.base.checks import ensure_kind, ensure_state
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
+from flockana.base.value_checks import ensure_kind, ensure_state
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
 from flockana.interactions.gains import GainsField
 from flockana.laws.gain_laws import GAINS, GainedLaw, alpha_scales
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.term import Term
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 
 
 def ensure_one_gain(gains: Gains) -> None:

@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray, ensure_kind
+from flockana.base.vector_norms import lengths
 from flockana.environment.gamma_agent_copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
 from flockana.interactions.gains import GainsField
 from flockana.laws.gain_laws import GainedLaw
 from flockana.laws.law import Arrays
-from flockana.laws.terms.copies import CopiesTerm
+from flockana.laws.terms.target_copies import CopiesTerm
 from flockana.laws.terms.term import Term
 
 

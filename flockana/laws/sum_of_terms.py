@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.override_checks import overrides_consistently
+from flockana.base.value_checks import FloatArray, ensure_points
 from flockana.laws.law import Law
-from flockana.laws.matrices import assembled
+from flockana.laws.law_matrices import assembled
 from flockana.laws.terms.term import Compiled, Derivatives, Term, TermKernel
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 
 if TYPE_CHECKING:
     from flockana.symbolic.energy import EnergyIdentity
@@ -99,7 +99,7 @@ class SumOfTerms(Law):
         ArgumentError
             If the law is no sum of a pair law with a formula and a linear pull common to all agents.
         """
-        from flockana.laws.derivation import law_derivation
+        from flockana.laws.energy_derivation import law_derivation
 
         return law_derivation(self, m)
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from flockana.base.modules import source_modules
+from flockana.base.module_discovery import source_modules
 from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1
 

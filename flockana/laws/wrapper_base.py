@@ -8,12 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_seed, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_seed, normalise
+from flockana.laws.first_order_law import VelocityLaw, first_order
 from flockana.laws.law import Law
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.velocity import VelocityLaw, first_order
 
 _BLOCK = 256  # steps whose random numbers are drawn at once
 _CHANNELS = 8  # kinds of random numbers

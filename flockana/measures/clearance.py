@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points
-from flockana.base.vectors import lengths
-from flockana.environment.beta import ObstacleField
+from flockana.base.value_checks import FloatArray, ensure_points
+from flockana.base.vector_norms import lengths
+from flockana.environment.beta_agents import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.kernels.quintic_paths import bernstein

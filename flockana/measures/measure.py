@@ -10,8 +10,8 @@ from functools import cache, cached_property
 from math import nan
 from typing import Any, NamedTuple
 
-from flockana.base.checks import FloatArray
-from flockana.base.modules import modules, source_modules
+from flockana.base.module_discovery import modules, source_modules
+from flockana.base.value_checks import FloatArray
 from flockana.measures.metrics import nets
 
 

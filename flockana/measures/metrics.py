@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.vectors import centres, lengths, scaled_near_one
-from flockana.kernels.components import labelled, squared_excess, unite
+from flockana.base.value_checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.vector_norms import centres, lengths, scaled_near_one
+from flockana.kernels.connected_components import labelled, squared_excess, unite
 from flockana.kernels.extreme_distances import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
 

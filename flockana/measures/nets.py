@@ -11,9 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
-from flockana.base.vectors import lengths, scaled_near_one
-from flockana.kernels.components import labelled, unite
+from flockana.base.value_checks import (
+    FloatArray,
+    ensure_count,
+    ensure_links,
+    ensure_points,
+    ensure_positive,
+    ensure_series,
+)
+from flockana.base.vector_norms import lengths, scaled_near_one
+from flockana.kernels.connected_components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 
 if TYPE_CHECKING:

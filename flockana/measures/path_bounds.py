@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.kernels import quintic_paths
 from flockana.kernels.neighbours import DENSE_MAX, pair_blocks
 from flockana.measures.metrics import cohesion_radii, min_distances

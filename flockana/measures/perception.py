@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.measures.nets import components
 
 Edges = tuple[tuple[int, int], ...]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_index, ensure_state
+from flockana.base.value_checks import FloatArray, ensure_index, ensure_state
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.neighbours import pair_list
 

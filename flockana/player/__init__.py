@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flockana.base.checks import ensure_count, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
+from flockana.base.value_checks import ensure_count, normalise
 from flockana.dynamics.trajectory import Trajectory
-from flockana.player.marks import marks_of
+from flockana.player.marked_instants import marks_of
 from flockana.player.page import framed, page, script, style
 from flockana.player.scene import scene
 from flockana.theorems import Verdict

@@ -1,4 +1,4 @@
-// Runs from bytes: the reverse of flockana/player/codec.py.
+// Runs from bytes: the reverse of flockana/player/run_codec.py.
 function bytesOfText(text) {
   const raw = atob(text.trim());
   const bytes = new Uint8Array(raw.length);

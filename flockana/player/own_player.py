@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from flockana.base.checks import TimeSpan
+from flockana.base.value_checks import TimeSpan
 from flockana.dynamics.trajectory import Trajectory
 from flockana.player import Player
 from flockana.scenarios import Flock, Scenario

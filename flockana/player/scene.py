@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.base.modules import source_modules
-from flockana.base.vectors import lengths
+from flockana.base.module_discovery import source_modules
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.player.codec import Packed, encode
+from flockana.player.run_codec import Packed, encode
 
 SHOWN = (
     "connectivity",

@@ -2,8 +2,8 @@
 
 from collections import deque
 
-from flockana.base.lazy import attach_stub
-from flockana.base.modules import source_modules
+from flockana.base.lazy_imports import attach_stub
+from flockana.base.module_discovery import source_modules
 
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 

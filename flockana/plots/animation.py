@@ -16,11 +16,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 from scipy.interpolate import CubicHermiteSpline
 
-from flockana.base.checks import FloatArray, TimeSpan, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import atomic_write, ensure_folder_of, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
 from flockana.base.progress import progress_bar
+from flockana.base.value_checks import FloatArray, TimeSpan, ensure_positive
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.snapshot import drawn_law, in_view, snapshot

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ensure_finite_scalar
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_finite_scalar
 from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
 from flockana.plots.style import finish, subplots
 

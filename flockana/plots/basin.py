@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from flockana.base.argument_kinds import check_kinds
 from flockana.plots.palette import BLUE, INK, VERMILLION
 from flockana.plots.style import LEGEND, ensure_axes, write_title
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.certified.sampling import SampledBasin
+    from flockana.certified.basin_sampling import SampledBasin
 
 
 @check_kinds
@@ -24,7 +24,7 @@ def sampled_basin(sampled: SampledBasin, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     sampled : SampledBasin
-        Of `flockana.certified.sampling.sample_basin`.
+        Of `flockana.certified.basin_sampling.sample_basin`.
     """
     ax = ensure_axes(ax)
     d, basin = sampled.basin.law.alpha.d, sampled.basin

@@ -15,7 +15,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import ensure_axes, finish_over_time, lines, subplots, write_title
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 from flockana.scenarios.one_start import RANGE, Outcome
 
 _COLUMNS = 5

@@ -13,13 +13,13 @@ from flockana.base.argument_kinds import check_kinds
 from flockana.base.errors import ArgumentError, format_value
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import ensure_axes, finish, hairlines, line_width_and_opacity, mark, style
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from flockana.stability.gain_sweeps import MarginSweep, Sweep
     from flockana.stability.law_studies import NormTable
-    from flockana.stability.sweeps import MarginSweep, Sweep
 
 _DASHES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"))
 _NAMES = {"c1_alpha": "c1α", "c2_alpha": "c2α", "c1_gamma": "c1γ", "c2_gamma": "c2γ"}
@@ -148,7 +148,7 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    sweep : flockana.stability.sweeps.Sweep
+    sweep : flockana.stability.gain_sweeps.Sweep
         From `centre_locus` or `gain_sweep`.
     """
     ax = ensure_axes(ax)
@@ -169,7 +169,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    sweep : flockana.stability.sweeps.Sweep
+    sweep : flockana.stability.gain_sweeps.Sweep
         From `gain_sweep` or `centre_locus`.
     """
     ax = ensure_axes(ax)
@@ -209,7 +209,7 @@ def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) ->
 
     Parameters
     ----------
-    sweeps : mapping of str to flockana.stability.sweeps.MarginSweep
+    sweeps : mapping of str to flockana.stability.gain_sweeps.MarginSweep
         By label, over the same gain; four at most. The area below the first is shaded.
     """
     ax = ensure_axes(ax)

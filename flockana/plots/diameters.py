@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.windows import windows_of
+from flockana.measures.connectivity_windows import windows_of
 from flockana.plots.palette import BLUE, FAINT, INK, VERMILLION
 from flockana.plots.style import over_time, write_title
 

@@ -10,11 +10,11 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import PercentFormatter
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_known
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_known
 from flockana.plots.palette import BLUE, FAINT, GREEN, MUTED, ORANGE, VERMILLION
 from flockana.plots.style import ABOVE, LEGEND, ensure_axes, write_title
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 if TYPE_CHECKING:
     import xarray

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
 from flockana.plots.style import ensure_axes, finish, write_title
 

@@ -10,15 +10,15 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ensure_links, ensure_points, ensure_series
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_links, ensure_points, ensure_series
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, STRAIN, VERMILLION
 from flockana.plots.style import LEGEND, colour_bar, ensure_axes, finish, frame_space, in_plane, lines, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flockana.equilibria.collapse import CollapseDiagram
+    from flockana.equilibria.lattice_collapse import CollapseDiagram
 
 _MOST = 12
 _SKY, _YELLOW = "#56B4E9", "#F0E442"  # the rest of Okabe and Ito's colours

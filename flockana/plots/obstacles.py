@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.environment import Obstacle
 from flockana.plots.palette import FAINT, MUTED
 from flockana.plots.style import ensure_axes, finish

@@ -12,7 +12,7 @@ from flockana.interactions.distance_functions import DistanceFunction
 from flockana.measures.metrics import deviation_energy
 from flockana.plots.palette import BLUE, MUTED, VERMILLION
 from flockana.plots.style import ensure_axes, finish, mark, place_legend
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 _SAMPLES = 600
 

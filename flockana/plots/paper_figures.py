@@ -6,9 +6,9 @@ from typing import Any
 
 import matplotlib as mpl
 
-from flockana.base.checks import ensure_known
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.files import ensure_path
+from flockana.base.value_checks import ensure_known
 
 COLUMNS = {  # widths in inches
     "ieee": 3.5,

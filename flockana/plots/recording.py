@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_known
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import ensure_known
+from flockana.base.vector_norms import lengths
 from flockana.plots.palette import BLUE
 from flockana.plots.style import ensure_axes, finish_over_time
 

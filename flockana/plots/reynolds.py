@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ensure_points
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_points
 from flockana.measures.reynolds import Reynolds
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, VERMILLION
 from flockana.plots.style import ensure_axes, finish, frame_space

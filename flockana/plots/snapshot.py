@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 
-from flockana.base import checks
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
@@ -65,18 +65,18 @@ def snapshot(
     return axes_drawn
 
 
-def nearest_sample(t: checks.FloatArray, time: float | None) -> int:
+def nearest_sample(t: value_checks.FloatArray, time: float | None) -> int:
     """Return the index of the sample nearest to a time; the last by default."""
     if time is None:
         return len(t) - 1
-    sample_time, first_index, last_time = checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
+    sample_time, first_index, last_time = value_checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
     time_tolerance = _ROUNDING * (last_time - first_index)
     if not first_index - time_tolerance <= sample_time <= last_time + time_tolerance:
         raise ArgumentError(f"time = {sample_time:g}: expected a time of the run, {first_index:g} to {last_time:g}")
     return int(np.argmin(np.abs(t - sample_time)))
 
 
-def _range_circles(ax: Any, q: checks.FloatArray, law: Any) -> None:
+def _range_circles(ax: Any, q: value_checks.FloatArray, law: Any) -> None:
     """Draw circles at the range of the pair law, or of each agent."""
     if law.pair is None or not np.isfinite(law.pair.range) or q.shape[1] != 2:
         raise ArgumentError(
@@ -115,7 +115,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 
 
 @singledispatch
-def in_view(law: Any, trajectory: Trajectory) -> checks.FloatArray:
+def in_view(law: Any, trajectory: Trajectory) -> value_checks.FloatArray:
     """Return points that must be visible in a film of a run, shape (N, m)."""
     corners = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
@@ -161,9 +161,9 @@ def configuration(
     bar : bool
         Draw the colour bar of the strain.
     """
-    points = checks.ensure_points("q", q)
+    points = value_checks.ensure_points("q", q)
     m = points.shape[1]
-    pairs = None if edges is None else checks.ensure_links(edges, len(points), "edges")
+    pairs = None if edges is None else value_checks.ensure_links(edges, len(points), "edges")
     d = None if d is None else _lengths(d, pairs)
     axes = ensure_axes(ax, m=m)
     x = in_plane(points)
@@ -192,14 +192,14 @@ def configuration(
 def _lengths(d: Any, pairs: Any) -> Any:
     """Return desired distances: one number > 0, or one for each edge."""
     if pairs is None or np.isscalar(d):
-        return checks.ensure_positive("d", d)
-    link_lengths = checks.ensure_series("d", d, len(pairs))
+        return value_checks.ensure_positive("d", d)
+    link_lengths = value_checks.ensure_series("d", d, len(pairs))
     if not (link_lengths > 0.0).all():
         raise ArgumentError(f"d has the entry {link_lengths.min():g}: expected numbers > 0")
     return link_lengths
 
 
-def _multiplicities(ax: Any, x: checks.FloatArray) -> None:
+def _multiplicities(ax: Any, x: value_checks.FloatArray) -> None:
     """Write ×k beside each position shared by k agents."""
     extent = float(np.ptp(x, axis=0).max())
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
@@ -212,7 +212,7 @@ def _multiplicities(ax: Any, x: checks.FloatArray) -> None:
 
 
 def _links(
-    ax: Any, x: checks.FloatArray, points: checks.FloatArray, pairs: Any, d: Any, r: float | None, bar: bool
+    ax: Any, x: value_checks.FloatArray, points: value_checks.FloatArray, pairs: Any, d: Any, r: float | None, bar: bool
 ) -> None:
     """Draw links coloured by strain; the scale ends at the breaking strain, at most 1."""
     # Where agents have many, links are thin, and those near d lie above the others.
@@ -232,7 +232,7 @@ def _links(
         colour_bar(ax, coloured, "strain (length − d)/d", extend="min" if limit < 1.0 else "max")
 
 
-def _arrowheads(ax: Any, x: checks.FloatArray, pairs: Any) -> None:
+def _arrowheads(ax: Any, x: value_checks.FloatArray, pairs: Any) -> None:
     """Mark one-way links with arrowheads at their midpoints."""
     pair_set = {tuple(pair) for pair in pairs.tolist()}
     one_way = np.array([pair for pair in pairs.tolist() if (pair[1], pair[0]) not in pair_set], dtype=np.int64)
@@ -245,7 +245,7 @@ def _arrowheads(ax: Any, x: checks.FloatArray, pairs: Any) -> None:
     ax.quiver(*(0.45 * start + 0.55 * end).T, *direction.T, color=MUTED, zorder=2.2, **look, **head_sizes)
 
 
-def _beta_agents(ax: Any, points: checks.FloatArray, field: ObstacleField, size: float) -> None:
+def _beta_agents(ax: Any, points: value_checks.FloatArray, field: ObstacleField, size: float) -> None:
     """Draw the β-agents in range, each joined to its agent."""
     near_links = field.links(points, np.zeros_like(points))
     if near_links.agent.size == 0:
@@ -258,7 +258,7 @@ def _beta_agents(ax: Any, points: checks.FloatArray, field: ObstacleField, size:
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     """Draw velocities as arrows; return a note on their scale for the title, empty without arrows."""
-    x, v = in_plane(checks.ensure_points("q", q)), in_plane(checks.ensure_points("p", p))
+    x, v = in_plane(value_checks.ensure_points("q", q)), in_plane(value_checks.ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest == 0.0:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ensure_links, ensure_points
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_links, ensure_points
 from flockana.plots.animation import animate
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import ensure_axes, finish, frame_space, in_plane, lines, star, write_title
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 from flockana.stability.modes import Mode
 from flockana.stability.motion_of_mode import mode_motion
 

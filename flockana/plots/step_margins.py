@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_positive
 from flockana.plots.palette import BLUE, INK, VERMILLION
 from flockana.plots.style import ensure_axes, finish
 

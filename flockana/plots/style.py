@@ -15,12 +15,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.value_checks import FloatArray, ensure_count
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.paper_figures import column_size
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 _STYLE = {
     "axes.prop_cycle": cycler(color=[BLUE, VERMILLION, GREEN, PURPLE, INK])

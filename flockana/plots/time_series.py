@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 from scipy.interpolate import CubicHermiteSpline
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import UnknownNameError
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.profiles import pair_distance_profile
+from flockana.measures.distance_profiles import pair_distance_profile
 from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import (
     curves,
@@ -25,7 +25,7 @@ from flockana.plots.style import (
     over_time,
     subplots,
 )
-from flockana.scenarios.findings import PANEL, component_counts, has_metric
+from flockana.scenarios.report_claims import PANEL, component_counts, has_metric
 
 _FEW = 12  # components that a linear scale shows as well
 _INSTANTS = 1500  # about as many as a figure has pixels across

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
 from flockana.plots.style import ensure_axes, finish, frame_space, limit, line_width_and_opacity, lines, star
-from flockana.plots.symbols import typeset
+from flockana.plots.symbol_typesetting import typeset
 
 _STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
 

@@ -4,9 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.recorded.contributions import over_samples, over_steps
+from flockana.base.value_checks import FloatArray
+from flockana.recorded.law_contributions import over_samples, over_steps
 from flockana.recorded.one_step_predictions import kinematic_scheme
 from flockana.recorded.recording import Recording
 from flockana.recorded.velocities import motions

@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_nonnegative
 
 Kind = Literal["bound", "sd", "estimated", "unknown"]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 _ALONE = 1e-9  # of the squared slopes: if the other agents have no more, one agent determines an estimate alone
 

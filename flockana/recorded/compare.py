@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.short_repr import ShortRepr
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
-from flockana.recorded.maps import map_steps
+from flockana.recorded.map_predictions import map_steps
 from flockana.recorded.one_step_predictions import scheme_by_law
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.regression_findings import Share, explained

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.recorded.samples import Samples
+from flockana.recorded.sample_interface import Samples
 
 if TYPE_CHECKING:
     import xarray

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_known
+from flockana.base.value_checks import FloatArray, ensure_known
 from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.recorded.recording import Recording

@@ -7,17 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray, ensure_flag, ensure_positive
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.compare import compare
-from flockana.recorded.contributions import SYMBOLS
+from flockana.recorded.law_contributions import SYMBOLS
+from flockana.recorded.law_parameters import FreeParameters
 from flockana.recorded.likelihood_profiles import LowerMinimumError, profile_interval
-from flockana.recorded.parameters import FreeParameters
+from flockana.recorded.matching_windows import Window, deviations, rescaled, usual_window, windows
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.shooting import MatchResult, Problem, matched
-from flockana.recorded.windows import Window, deviations, rescaled, usual_window, windows
 
 _LEVEL = 0.95
 _OPEN = 10.0  # times a parameter's value, from which width of its interval on it is not identifiable

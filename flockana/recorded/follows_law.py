@@ -5,15 +5,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.base.vectors import lengths
-from flockana.dynamics.tolerance import rounding_floors
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
+from flockana.dynamics.error_tolerances import rounding_floors
 from flockana.recorded.accuracy import CONFIDENCE
+from flockana.recorded.matching_windows import usual_window, windows
 from flockana.recorded.one_step_predictions import SHARE, predicted
 from flockana.recorded.recording import Recording
 from flockana.recorded.shooting import Problem, matched
-from flockana.recorded.windows import usual_window, windows
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to

@@ -4,8 +4,8 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import FlockanaError
+from flockana.base.value_checks import FloatArray
 from flockana.recorded.shooting import MatchResult, Problem, matched
 
 _FINE = 0.1  # of the law's time, over which slopes are carried by one linearisation

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.recorded.recording import Recording
 
 SHARE = 0.05  # of the law's time, which a step of the integration is at most

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_known, normalise
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import atomic_write, ensure_path
-from flockana.base.memory import ResultCache
+from flockana.base.result_cache import ResultCache
 from flockana.base.units import times
+from flockana.base.value_checks import FloatArray, ensure_flag, ensure_known, normalise
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
@@ -281,7 +281,7 @@ class Recording(ResultCache):
         d, r : float
             Scale and interaction range that nets and lattices are measured with.
         """
-        from flockana.recorded.measured import measured
+        from flockana.recorded.recorded_measures import measured
 
         return measured(self, d, r)
 

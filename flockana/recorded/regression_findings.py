@@ -4,11 +4,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.recorded.accelerations import Accelerations
 from flockana.recorded.clustered_covariance import covariance_over_agents
-from flockana.recorded.contributions import contributions, remainder, variants
+from flockana.recorded.law_contributions import contributions, remainder, variants
 
 _OTHER = 0.01  # relative difference from which on a gain is reported
 _CHANCE = 3e-5  # probability that noise alone shows a gain as larger, likewise

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.recorded.windows import Window, neighbouring_laws
+from flockana.base.value_checks import FloatArray
+from flockana.recorded.matching_windows import Window, neighbouring_laws
 
 _ROUNDS = 120  # residuals that are computed at most
 _GAIN = 1e-2  # of squared deviations, that a round must promise for the search to go on

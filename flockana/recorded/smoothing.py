@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 _FINEST = 1e-7  # noise, over the spread of a series, below which it counts as exact
 _DIFFUSE = 6.0  # deviation of the state before the first sample, over the largest differences of the samples

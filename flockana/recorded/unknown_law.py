@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw
 

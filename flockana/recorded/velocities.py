@@ -10,8 +10,8 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive
-from flockana.recorded.samples import Samples
+from flockana.base.value_checks import FloatArray, ensure_positive
+from flockana.recorded.sample_interface import Samples
 from flockana.recorded.smoothing import smoothed
 
 _Recording = TypeVar("_Recording", bound=Samples)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 _WIDTH, _HEIGHT = 720, 380  # whole numbers of this drawing are half a pixel of the page
 _LEFT, _RIGHT, _TOP, _BELOW = 112, 20, 24, 60

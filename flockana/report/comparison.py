@@ -7,8 +7,8 @@ from functools import cache
 from typing import Any
 
 from flockana.report.figures import Picture, drawn
-from flockana.report.image import plots, svg
-from flockana.report.section import MANY_LAWS
+from flockana.report.section_request import MANY_LAWS
+from flockana.report.svg_figures import plots, svg
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems import Verdict
 from flockana.theorems.theorem import unmet

@@ -10,14 +10,14 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.report.pages import Finding, Page, ScenarioPage
+from flockana.report.page_data import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
 from flockana.report.tables import FoldingTable, column, headed_table
 from flockana.report.value_texts import MARKS, show
 from flockana.theorems import Verdict
 from flockana.theorems.claim import BYLINES
 from flockana.theorems.errata import SORTS, errata, erratum_of
-from flockana.theorems.headline import merged
+from flockana.theorems.verdict_summary import merged
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}

@@ -12,11 +12,11 @@ from flockana.interactions import Gains
 from flockana.laws import Algorithm1
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture
-from flockana.report.image import plots, svg
+from flockana.report.svg_figures import plots, svg
 from flockana.stability import Linearisation
 from flockana.stability.centre_transfer import CentreOfMass
+from flockana.stability.gain_sweeps import centre_locus
 from flockana.stability.law_studies import norms_against_size
-from flockana.stability.sweeps import centre_locus
 
 _SIZES = (3, 7, 12, 19)
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.modules import source_modules
-from flockana.base.vectors import lengths
+from flockana.base.module_discovery import source_modules
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.charts import Chart, Curve, panels
-from flockana.report.image import svg
-from flockana.report.stills import stills
-from flockana.scenarios.findings import PANEL, component_counts, has_metric
+from flockana.report.flock_stills import stills
+from flockana.report.svg_figures import svg
+from flockana.scenarios.report_claims import PANEL, component_counts, has_metric
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from scipy.spatial.distance import pdist
 
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.report.figures import Picture, drawn
-from flockana.report.image import plots
-from flockana.report.pages import Page
+from flockana.report.page_data import Page
+from flockana.report.svg_figures import plots
 from flockana.theorems import Verdict
 
 _SIZES = range(3, 21)

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from flockana.report.coverage.anchors import verdict_id
-from flockana.report.pages import Finding, ScenarioPage
+from flockana.report.coverage.report_anchors import verdict_id
+from flockana.report.page_data import Finding, ScenarioPage
 
 FINDINGS = (
     ("hexagon", "os-1", "Seven agents settle on a hexagon, and stay: Theorem 1 holds, certified for t → ∞."),

@@ -11,13 +11,13 @@ from typing import Any
 
 import xarray
 
-from flockana.base.checks import ensure_seed
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_seed
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.trajectory import Trajectory
 from flockana.recorded.recording import Recording
-from flockana.report import build
-from flockana.report.pages import ScenarioPage, scenario_page, verdicts_page
+from flockana.report import report_writer
+from flockana.report.page_data import ScenarioPage, scenario_page, verdicts_page
 from flockana.report.statistics import section_of
 from flockana.scenarios import Scenario
 from flockana.scenarios.flock import Flock
@@ -73,9 +73,11 @@ def write_report(
     if isinstance(subject, xarray.Dataset):
         _ensure_unused("runs of an ensemble have", law=law, theorems=theorems)
         section = section_of(subject)
-        return build.write_report([], directory, seed=seed, statistics=section, of=section.entries[0].scenario)
+        return report_writer.write_report([], directory, seed=seed, statistics=section, of=section.entries[0].scenario)
     pages = own_pages(subject, law=law, theorems=theorems, seed=seed)
-    return build.write_report(pages, directory, seed=seed, seconds=time.perf_counter() - start_time, of=pages[0].name)
+    return report_writer.write_report(
+        pages, directory, seed=seed, seconds=time.perf_counter() - start_time, of=pages[0].name
+    )
 
 
 def own_pages(

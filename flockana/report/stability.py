@@ -15,9 +15,9 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.report.control_figures import Download, control_pictures, state_space
 from flockana.report.figures import Picture, drawn
-from flockana.report.image import plots, svg
-from flockana.report.pages import Page
-from flockana.report.section import DECAYS, LINEARISED, MARGINS
+from flockana.report.page_data import Page
+from flockana.report.section_request import DECAYS, LINEARISED, MARGINS
+from flockana.report.svg_figures import plots, svg
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor

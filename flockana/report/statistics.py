@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.binomial import clopper_pearson
+from flockana.base.binomial_intervals import clopper_pearson
 from flockana.ensemble.one_run import COMPLETE, Record
 from flockana.ensemble.shares import STATUSES, shares
 from flockana.report.figures import Picture
-from flockana.report.image import svg
 from flockana.report.seed_surveys import Survey, SurveyResult
+from flockana.report.svg_figures import svg
 from flockana.scenarios import Scenario, scenario
 from flockana.theorems.catalogue import catalogue
 

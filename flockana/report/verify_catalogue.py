@@ -11,8 +11,8 @@ from flockana.base.interrupts import restore_interrupts
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.ensemble.batches import map_in_batches
 from flockana.ensemble.executors import worker_pool
-from flockana.report.pages import Page, fixed_page, scenario_page
-from flockana.report.section import MANY_LAWS, Section
+from flockana.report.page_data import Page, fixed_page, scenario_page
+from flockana.report.section_request import MANY_LAWS, Section
 from flockana.report.seed_surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify

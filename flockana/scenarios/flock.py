@@ -4,18 +4,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import draw_start, ensure_seed, ensure_state, ensure_time_span
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.first_order_law import ensure_any_law, start_velocities
 from flockana.laws.law_with_start import WithStart
-from flockana.laws.velocity import ensure_any_law, start_velocities
-from flockana.recorded.parameters import with_parameter
+from flockana.recorded.law_parameters import with_parameter
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.scenario import scenario as named_scenario
 from flockana.theorems import Theorem, Tolerances, verify
 from flockana.theorems.evidence import NotEvidence
-from flockana.theorems.on_runs import RunEvidence, theorems_about
+from flockana.theorems.run_verdicts import RunEvidence, theorems_about
 from flockana.theorems.verdicts import Verdicts
 from flockana.theorems.verification import T_SPAN, ensure_tolerances
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, cast
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_known
-from flockana.base.modules import source_modules
+from flockana.base.module_discovery import source_modules
+from flockana.base.value_checks import FloatArray, ensure_known
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import LinearTarget

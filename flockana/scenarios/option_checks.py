@@ -4,9 +4,9 @@ import inspect
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
-from flockana.base import checks
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError
-from flockana.laws.velocity import ensure_any_law
+from flockana.laws.first_order_law import ensure_any_law
 from flockana.scenarios.lazy_start import LazyArray
 from flockana.theorems import Status, theorems
 
@@ -19,10 +19,10 @@ def ensure_parts(parts: Mapping[str, Any]) -> None:
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
     ensure_any_law(parts["law"])
-    checks.ensure_time_span(parts["t_span"])
-    checks.ensure_seed(parts["seed"])
+    value_checks.ensure_time_span(parts["t_span"])
+    value_checks.ensure_seed(parts["seed"])
     shapes = {
-        key: v.shape if isinstance(v := parts[key], LazyArray) else checks.ensure_points(key, v).shape
+        key: v.shape if isinstance(v := parts[key], LazyArray) else value_checks.ensure_points(key, v).shape
         for key in ("q0", "p0")
     }
     if shapes["q0"] != shapes["p0"]:
@@ -51,7 +51,7 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
 def ensure_judged(names: Iterable[str]) -> None:
     """Raise unless all theorem ids exist."""
     for name in names:
-        checks.ensure_known("theorem", name, theorems())
+        value_checks.ensure_known("theorem", name, theorems())
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
@@ -70,10 +70,12 @@ def _ensure_like(default: Any, key: str, value: Any) -> None:
         if not isinstance(value, bool):
             raise ArgumentError(f"{key} = {value!r}: expected True or False")
     elif isinstance(default, float):
-        checks.ensure_finite_scalar(key, value)
+        value_checks.ensure_finite_scalar(key, value)
     elif key == "m":
-        checks.ensure_dimension(value)
+        value_checks.ensure_dimension(value)
     elif isinstance(default, int):
-        count = checks.ensure_count(key, value)
+        count = value_checks.ensure_count(key, value)
         if key == "n":
-            checks.ensure_fits(f"a short run of {count} agents,", (3 * _SAMPLES, count, 3), "ask for fewer agents")
+            value_checks.ensure_fits(
+                f"a short run of {count} agents,", (3 * _SAMPLES, count, 3), "ask for fewer agents"
+            )

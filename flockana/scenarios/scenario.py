@@ -7,19 +7,19 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
-from flockana.base.checks import FloatArray, ensure_known, ensure_seed
-from flockana.base.modules import source_modules
+from flockana.base.module_discovery import source_modules
 from flockana.base.units import rescale, times
+from flockana.base.value_checks import FloatArray, ensure_known, ensure_seed
+from flockana.dynamics.error_tolerances import options_in_units
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws import DiscreteLaw, Law
 from flockana.laws.law_with_start import WithStart
-from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.lazy_start import LazyField
 from flockana.scenarios.option_checks import SOURCE, ensure_judged, ensure_options, ensure_parts
+from flockana.scenarios.rigorous_verdicts import Enclosure
 from flockana.theorems import Claim, Status, Theorem, Tolerances, Verdict, verify
-from flockana.theorems.observed import Observed, by_both_runs, with_resolution
+from flockana.theorems.observed_run import Observed, by_both_runs, with_resolution
 
 OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own about the paper's laws
 

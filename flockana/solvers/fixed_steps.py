@@ -12,15 +12,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.override_checks import overrides_consistently
+from flockana.base.value_checks import FloatArray, ensure_fits, ensure_kind, ensure_positive, normalise
 from flockana.kernels.fixed_steps import Coefficients, fixed_steps
-from flockana.kernels.verlet import Pairs, no_pairs, with_room
-from flockana.laws.delayed import Delayed
+from flockana.kernels.verlet_list import Pairs, no_pairs, with_room
+from flockana.laws.delayed_law import Delayed
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
+from flockana.laws.first_order_law import first_order
 from flockana.laws.law import Arrays, Law, LawOfMotion
-from flockana.laws.velocity import first_order
 from flockana.laws.wrapper_base import Step, View, Wrapper, WrappingLaw, input_of, needs_steps, wrappers_within
 from flockana.solvers.hermite_past import Past, Row
 from flockana.solvers.solver import Limits, Rate, Rows, Solver

@@ -9,7 +9,7 @@ from functools import partial
 from math import ceil
 from typing import Any
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 
 Row = tuple[FloatArray, FloatArray, FloatArray, FloatArray]  # q, p, input that arrives there, input that departs
 _WHOLE = 1e-9  # of a step: so near a step it is that step

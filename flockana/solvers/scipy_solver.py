@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_choice
+from flockana.base.value_checks import ensure_choice
 from flockana.solvers.solver import AdaptivePair, FloatArray, Limits, Rate, Solver, open_scipy
 from flockana.solvers.tableau import Tableau, shared_rows
 

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
-from flockana.base.checks import ensure_kind, ensure_known
 from flockana.base.errors import ArgumentError
-from flockana.base.modules import modules
+from flockana.base.module_discovery import modules
+from flockana.base.value_checks import ensure_kind, ensure_known
 from flockana.solvers.fixed_steps import FixedStep
 from flockana.solvers.scipy_solver import KINDS, Scipy
 from flockana.solvers.solver import Solver

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from flockana.base.checks import ensure_kind
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_kind
 from flockana.laws.wrapper_base import Wrapper
 from flockana.solvers.euler_maruyama import EulerMaruyama
 from flockana.solvers.fixed_steps import FixedSteps

@@ -23,6 +23,9 @@ from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
 from .first_order import VelocityLinearisation as VelocityLinearisation
 from .gain_problems import gain_problem as gain_problem
+from .gain_sweeps import centre_locus as centre_locus
+from .gain_sweeps import gain_sweep as gain_sweep
+from .gain_sweeps import margin_sweep as margin_sweep
 from .informed_agents import InformedAgents as InformedAgents
 from .informed_agents import agents_to_inform as agents_to_inform
 from .law_studies import delay_system as delay_system
@@ -55,8 +58,5 @@ from .slow_modes import SlowModes as SlowModes
 from .slow_modes import slowest_modes as slowest_modes
 from .specifications import Specifications as Specifications
 from .specifications import SpecifiedGains as SpecifiedGains
-from .sweeps import centre_locus as centre_locus
-from .sweeps import gain_sweep as gain_sweep
-from .sweeps import margin_sweep as margin_sweep
 from .tracking import response_ratio as response_ratio
 from .tracking import tracking as tracking

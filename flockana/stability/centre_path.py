@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_vector
 from flockana.environment import RescaledVelocity, Target
 from flockana.interactions import Gains
 from flockana.laws import ensure_one_gain

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import ensure_finite_scalar, ensure_series, real_array
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_finite_scalar, ensure_series, real_array
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
 from flockana.laws import ensure_one_gain

@@ -10,9 +10,9 @@ from math import log, nan
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_kind
 from flockana.base.errors import ArgumentError, format_value
-from flockana.stability.estimates import LIMIT, ensure_study
+from flockana.base.value_checks import FloatArray, Numbers, ensure_count, ensure_kind
+from flockana.stability.cost_estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.norms import Balanced, largest_gain
 

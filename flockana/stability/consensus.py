@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_fits, ensure_positive
 from flockana.equilibria.curvature import EPS
 from flockana.stability.delay import DelaySystem
 

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_fits, ensure_positive
 from flockana.equilibria.curvature import EPS
-from flockana.stability.rounding import eigenvalues
+from flockana.stability.eigenvalue_errors import eigenvalues
 from flockana.stability.zero_modes import complement
 
 if TYPE_CHECKING:

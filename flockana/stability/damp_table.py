@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ensure_positive
 
 
 class DampTable(pd.DataFrame):  # type: ignore[misc]  # pandas has no types here

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_known, ensure_points, ensure_positive
 from flockana.equilibria.solve import find_equilibrium
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray, ensure_positive
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.nets import links
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode

@@ -15,7 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.progress import progress_bar
+from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import (
     ComplexArray,
     FloatArray,
     ensure_affordable,
@@ -25,14 +28,11 @@ from flockana.base.checks import (
     ensure_nonnegative,
     ensure_numbers,
 )
-from flockana.base.errors import ArgumentError, format_value
-from flockana.base.progress import progress_bar
-from flockana.base.short_repr import ShortRepr
-from flockana.stability.components import strong_components
-from flockana.stability.crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
-from flockana.stability.estimates import LIMIT
+from flockana.stability.axis_crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
+from flockana.stability.cost_estimates import LIMIT
+from flockana.stability.eigenvalue_errors import eigenvalues
 from flockana.stability.linear_flock import LinearFlock
-from flockana.stability.rounding import eigenvalues
+from flockana.stability.strong_components import strong_components
 from flockana.stability.zero_modes import NEUTRAL, ZERO, kernel_of
 
 DELAYED = ("all", "pairs", "neighbours")
@@ -223,9 +223,10 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
     """Return the least delay at which a root reaches the imaginary axis.
 
     In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;
-    else by a search over all frequencies that excludes whole intervals by a bound (`flockana.stability.crossings`): no
-    band is too narrow for it. Parts that hear others and are not heard by them are looked at by themselves. Neutral
-    motions are set apart; a flock that has any is searched from a millionth of its highest frequency on.
+    else by a search over all frequencies that excludes whole intervals by a bound
+    (`flockana.stability.axis_crossings`): no band is too narrow for it. Parts that hear others and are not heard by
+    them are looked at by themselves. Neutral motions are set apart; a flock that has any is searched from a millionth
+    of its highest frequency on.
 
     Parameters
     ----------

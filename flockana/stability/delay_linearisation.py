@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.table_export import facts_html, facts_text
+from flockana.base.value_checks import ComplexArray, FloatArray
 from flockana.laws import Law
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin, neutral_roots
 from flockana.stability.delay_roots import LatePart, error_of_root, rightmost

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_count, ensure_kind, ensure_positive
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_count, ensure_kind, ensure_positive
 from flockana.equilibria.curvature import EPS
-from flockana.stability.components import strong_components
 from flockana.stability.delay import DelaySystem, kernels, neutral_roots
-from flockana.stability.rounding import eigenvalues
+from flockana.stability.eigenvalue_errors import eigenvalues
+from flockana.stability.strong_components import strong_components
 
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
 _STEPS = 12  # of Newton's method

@@ -10,7 +10,8 @@ from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import (
     ComplexArray,
     FloatArray,
     ensure_count,
@@ -19,7 +20,6 @@ from flockana.base.checks import (
     ensure_nonnegative,
     ensure_positive,
 )
-from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.stability.gain_problems import GainProblem
 from flockana.stability.specifications import AT_MOST, Specifications, SpecifiedGains, evaluated

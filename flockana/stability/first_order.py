@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_flag, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.table_export import facts_html, facts_text
-from flockana.laws.velocity import VelocityLaw
-from flockana.stability.estimates import LIMIT
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_fits, ensure_flag, ensure_positive
+from flockana.laws.first_order_law import VelocityLaw
+from flockana.stability.cost_estimates import LIMIT
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
 from flockana.stability.zero_modes import extent

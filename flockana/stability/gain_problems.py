@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_points
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_known, ensure_points
 from flockana.environment import StaticTarget
 from flockana.equilibria.final_state import rigid_motions
 from flockana.interactions import Gains

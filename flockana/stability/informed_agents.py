@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_count, ensure_known, ensure_positive
 from flockana.equilibria.curvature import EPS
 from flockana.stability.controllability import (
     PoleGroup,

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, Numbers, ensure_count, ensure_points
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, Numbers, ensure_count, ensure_points
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL, find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law
+from flockana.stability.cost_estimates import LIMIT
 from flockana.stability.delay import DelaySystem, delayed_flock
 from flockana.stability.delay_linearisation import DelayLinearisation
-from flockana.stability.estimates import LIMIT
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ComplexArray, FloatArray
 from flockana.laws import Sampled
 from flockana.stability.delay import kernels
 from flockana.stability.delay_roots import LatePart
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.map_linearisation import MapLinearisation
-from flockana.stability.signals import labels
+from flockana.stability.signal_names import labels
 from flockana.stability.zero_modes import ZERO, complement
 
 MOST = 3000  # states of a lifted map

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.table_export import facts_html, facts_text
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.laws import Law
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray
 from flockana.stability.modes import Mode, SecondOrder
-from flockana.stability.signals import structural_system, translational_system, whole_system
+from flockana.stability.signal_names import structural_system, translational_system, whole_system
 
 if TYPE_CHECKING:
     import control

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import ensure_known, ensure_nonnegative, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.base.files import atomic_write
-from flockana.stability.estimates import LIMIT, ensure_study
+from flockana.base.value_checks import ensure_known, ensure_nonnegative, ensure_series
+from flockana.stability.cost_estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ class Linearisation(LinearFlock):  # noqa: D101  # documented by its base, whose
         import control
 
         from flockana.stability.controllability import ensure_agents
-        from flockana.stability.signals import labels
+        from flockana.stability.signal_names import labels
 
         n, m = self.q.shape
         names = labels("u", n, m)

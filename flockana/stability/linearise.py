@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, get_args, ove
 
 import numpy as np
 
-from flockana.base.checks import (
+from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import (
     FloatArray,
     ensure_finite_scalar,
     ensure_flag,
@@ -18,12 +19,11 @@ from flockana.base.checks import (
     ensure_positive,
     ensure_state,
 )
-from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws import Delayed, DiscreteLaw, Law, Sampled, ensure_law
-from flockana.laws.velocity import VelocityLaw, first_order
+from flockana.laws.first_order_law import VelocityLaw, first_order
 from flockana.laws.wrapper_base import needs_steps
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.nets import links as links_within
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.stability.delay_linearisation import DelayLinearisation

@@ -18,16 +18,16 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import Polynomial
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
-from flockana.base.differences import ORDER_2, central_differences
 from flockana.base.errors import ArgumentError
+from flockana.base.finite_differences import ORDER_2, central_differences
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_fits
 from flockana.equilibria.curvature import EPS
 from flockana.laws import DiscreteLaw
+from flockana.stability.eigenvalue_errors import eigen
 from flockana.stability.mode_names import translations
 from flockana.stability.modes import Mode, SecondOrder
-from flockana.stability.rounding import eigen
-from flockana.stability.signals import axes_of, labels
+from flockana.stability.signal_names import axes_of, labels
 
 if TYPE_CHECKING:
     import control

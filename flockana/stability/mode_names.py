@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.final_state import generators, rigid_motions
 
 _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found in

@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.final_state import rigid_motions
-from flockana.stability.components import IndexArray, StrongComponents, strong_components
+from flockana.stability.eigenvalue_errors import eigen_of_one, root_error, slowest_first
 from flockana.stability.mode_names import name_kernel, normalised, pure_fields, translations
-from flockana.stability.rounding import eigen_of_one, root_error, slowest_first
+from flockana.stability.strong_components import IndexArray, StrongComponents, strong_components
 from flockana.stability.zero_modes import ZERO, Kernel, Quotient, Split, agent_scales, joined_kernel, kernel_of, split
 
 _HUGE = 1e100  # answer of followers that is too long to be squared

@@ -4,8 +4,8 @@ from math import pi
 
 import numpy as np
 
-from flockana.base.checks import ensure_count, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import ensure_count, ensure_positive
 from flockana.dynamics.trajectory import Trajectory
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode

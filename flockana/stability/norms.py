@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.equilibria.curvature import EPS
-from flockana.stability.rounding import eigenvalues
+from flockana.stability.eigenvalue_errors import eigenvalues
 from flockana.stability.second_order_blocks import Blocks
 from flockana.stability.zero_modes import complement
 

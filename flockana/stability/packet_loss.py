@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_known, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray, ensure_known, ensure_positive
 from flockana.stability.delay import late_part
 from flockana.stability.lifted_loops import first_growth
 from flockana.stability.linear_flock import LinearFlock

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
-from flockana.stability.estimates import LIMIT, ensure_study
+from flockana.base.value_checks import FloatArray
+from flockana.stability.cost_estimates import LIMIT, ensure_study
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.modes import SecondOrder
 from flockana.stability.norms import Balanced, largest_gain

@@ -5,10 +5,10 @@ from math import inf, nan, pi
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.value_checks import FloatArray, ensure_positive
+from flockana.stability.cost_estimates import LIMIT, ensure_maps
 from flockana.stability.delay import DelayMargin, DelaySystem, delay_margin
 from flockana.stability.delay_roots import LatePart
-from flockana.stability.estimates import LIMIT, ensure_maps
 from flockana.stability.lifted_loops import MOST, first_growth, moving_multipliers
 from flockana.stability.sampling import ModePeriod, SamplingMargin
 

@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_affordable, ensure_fits, ensure_nonnegative, ensure_positive
+from flockana.base.value_checks import FloatArray, ensure_affordable, ensure_fits, ensure_nonnegative, ensure_positive
 from flockana.equilibria.curvature import EPS
-from flockana.stability.estimates import LIMIT
-from flockana.stability.growth import CLOSE, MOST, Growth, Steps, first_growth
+from flockana.stability.cost_estimates import LIMIT
 from flockana.stability.linear_flock import LinearFlock
 from flockana.stability.map_linearisation import moved_before, stepped_equation
 from flockana.stability.modes import SecondOrder
+from flockana.stability.unstable_steps import CLOSE, MOST, Growth, Steps, first_growth
 
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
 _SECONDS, _SECONDS_OF_INTERVALS = 2e-9, 7.5e-7  # per cubed number of states: of all modes, of certified intervals

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray, ensure_points
 from flockana.equilibria.final_state import rigid_motions
 from flockana.laws import Navigation, PairTerm
 from flockana.stability.zero_modes import NEUTRAL, complement

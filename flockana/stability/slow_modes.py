@@ -5,12 +5,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.value_checks import FloatArray, ensure_count
 from flockana.lattice.elimination import Elimination
+from flockana.stability.eigenvalue_errors import mode_errors
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode, SecondOrder
-from flockana.stability.rounding import mode_errors
 
 _SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3

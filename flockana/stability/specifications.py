@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import ensure_positive
+from flockana.base.vector_norms import lengths
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws import Algorithm2

@@ -8,8 +8,8 @@ from math import inf, pi
 import numpy as np
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import ComplexArray, FloatArray
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import CircleTarget, SineTarget

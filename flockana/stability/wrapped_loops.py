@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.laws import Delayed, Disturbed, Law, Lossy, Measured, PairTerm, Sampled, Saturated
 from flockana.laws.wrapper_base import Step, View, Wrapper, WrappingLaw, input_of
 from flockana.stability.delay import late_part

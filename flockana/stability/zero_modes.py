@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
+from flockana.base.value_checks import FloatArray
 from flockana.equilibria.curvature import EPS
-from flockana.measures.frame import moving_frame
-from flockana.stability.components import StrongComponents
+from flockana.measures.centre_frame import moving_frame
 from flockana.stability.mode_names import translations
+from flockana.stability.strong_components import StrongComponents
 
 NEUTRAL = 1e-9  # of the stiffness of its agents: a rigid motion that meets no more than that is neutral
 ZERO = 1e-8  # of the agents' own row sums: what K does to a motion that costs nothing

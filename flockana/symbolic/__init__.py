@@ -12,6 +12,6 @@ Examples
 (0, False)
 """
 
-from flockana.base.lazy import attach_stub
+from flockana.base.lazy_imports import attach_stub
 
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

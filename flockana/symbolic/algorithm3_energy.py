@@ -12,12 +12,23 @@ import sympy as sp
 from flockana.symbolic.derivation import Step
 from flockana.symbolic.energy import EnergyIdentity, GenericPair
 from flockana.symbolic.errata import RisingEnergy, with_pair_law
-from flockana.symbolic.functions import HALF
+from flockana.symbolic.generic_pair import along_flow, vector
 from flockana.symbolic.obstacles import KINDS, PSI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import along_flow, vector
-from flockana.symbolic.parameters import GAINS, AlphaSymbols, GainSymbols
+from flockana.symbolic.parameter_symbols import GAINS, AlphaSymbols, GainSymbols
+from flockana.symbolic.scalar_functions import HALF
 from flockana.symbolic.sigma_norms import sigma_1, sigma_norm
-from flockana.symbolic.sums import I_, K_, N, P, Q, collective_potential, half_square, indexed, over_agents, sum_over
+from flockana.symbolic.sums_over_pairs import (
+    I_,
+    K_,
+    N,
+    P,
+    Q,
+    collective_potential,
+    half_square,
+    indexed,
+    over_agents,
+    sum_over,
+)
 
 COUNT = sp.Symbol("l", integer=True, nonnegative=True)  # of obstacles
 CLEARANCE = sp.IndexedBase("zhat", nonnegative=True)  # sigma-norm of q_hat_ik - q_i

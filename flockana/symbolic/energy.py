@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
-from flockana.symbolic import sums
+from flockana.base.value_checks import ensure_dimension
+from flockana.symbolic import sums_over_pairs
 from flockana.symbolic.derivation import Printed, Step, latex_steps
-from flockana.symbolic.functions import HALF
-from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
-from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.generic_pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
+from flockana.symbolic.parameter_symbols import GAINS, GainSymbols
+from flockana.symbolic.scalar_functions import HALF
 from flockana.symbolic.sigma_norms import EPS, sigma_norm
-from flockana.symbolic.sums import I_, J_, P, Q, V, X, Z, indexed, over_agents, over_pairs
+from flockana.symbolic.sums_over_pairs import I_, J_, P, Q, V, X, Z, indexed, over_agents, over_pairs
 
 
 @dataclass(frozen=True)
@@ -143,12 +143,12 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     """
     pair = GenericPair(m)
     total, stated_rate, steps = _pair_steps(pair, kinetic_factor, gains)
-    energy = sums.hamiltonian(m, gains=gains, factor=kinetic_factor)
+    energy = sums_over_pairs.hamiltonian(m, gains=gains, factor=kinetic_factor)
     rate = pair.lift(total)
     stated_form = pair.lift(stated_rate)
     lifting_step = (
         Step("The energy, every pair once, with", energy),
-        Step("the sigma-distance of a pair:", sums.sigma_distance(Q, m)),
+        Step("the sigma-distance of a pair:", sums_over_pairs.sigma_distance(Q, m)),
         *steps,
         Step(
             r"Lifting: $\dot H = \sum_{i<j} \dot\psi_{ij} + \sum_i p_i \cdot u_i$ and "
@@ -194,12 +194,12 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     agent = sp.factor_terms(sp.expand(along_flow(HALF * (lambda_ * x_i.dot(x_i) + v_i.dot(v_i)), x_i, v_i, own_part)))
     agent_claimed = -gains.c2_gamma * v_i.dot(v_i)
     names = indexed((X, x_i), (V, v_i))
-    energy = sums.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
+    energy = sums_over_pairs.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
     rate = pair.lift(total) + over_agents(agent.xreplace(names))
     stated_form = pair.lift(stated_rate) + over_agents(agent_claimed.xreplace(names))
     lifting_step = (
         Step("The energy in the moving frame, with", energy),
-        Step("the sigma-distance of a pair:", sums.sigma_distance(X, m)),
+        Step("the sigma-distance of a pair:", sums_over_pairs.sigma_distance(X, m)),
         *steps,
         Step(
             r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; the feedback on it minus that on the centre is",

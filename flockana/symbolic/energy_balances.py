@@ -8,9 +8,9 @@ from itertools import combinations
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
+from flockana.base.value_checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import energy_balance, vector, with_derivative
+from flockana.symbolic.generic_pair import energy_balance, vector, with_derivative
 
 K_2 = sp.Symbol("k_2", nonnegative=True)  # of velocity consensus
 THRUST, BRAKE, DAMPING = sp.symbols("alpha beta c", real=True)

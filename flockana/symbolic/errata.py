@@ -10,11 +10,11 @@ import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import EnergyIdentity, algorithm1_identity
-from flockana.symbolic.functions import HALF, adjacency, phi_alpha
-from flockana.symbolic.pair import ADJACENCY, PHI
-from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
+from flockana.symbolic.generic_pair import ADJACENCY, PHI
+from flockana.symbolic.parameter_symbols import AlphaSymbols, GainSymbols
+from flockana.symbolic.scalar_functions import HALF, adjacency, phi_alpha
 from flockana.symbolic.sigma_norms import EPS
-from flockana.symbolic.sums import sum_over
+from flockana.symbolic.sums_over_pairs import sum_over
 from flockana.symbolic.written_out_flock import ConcreteFlock
 
 FRIENDS, NEGATIVE = sp.symbols("k l", integer=True, positive=True)  # |F+| and |F-|

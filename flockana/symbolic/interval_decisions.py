@@ -14,8 +14,8 @@ from typing import NamedTuple
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.base.facts import Fact
-from flockana.symbolic.enclosed import NONNEGATIVE, POSITIVE, Enclosed, interval, precision
+from flockana.base.function_facts import Fact
+from flockana.symbolic.formula_enclosures import NONNEGATIVE, POSITIVE, Enclosed, interval, precision
 
 MOST = 6000  # intervals looked at
 _DEEPEST = 130  # halvings; then the point is looked at from both sides

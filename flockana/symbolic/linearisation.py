@@ -8,13 +8,13 @@ from typing import Any
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
+from flockana.base.value_checks import ensure_dimension
 from flockana.symbolic.algorithm3_energy import gamma_force
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import GenericPair
+from flockana.symbolic.generic_pair import ADJACENCY, PHI, own_force, vector, with_derivative
 from flockana.symbolic.obstacles import PHI_BETA, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI, own_force, vector, with_derivative
-from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.parameter_symbols import GAINS, GainSymbols
 from flockana.symbolic.sigma_norms import EPS, sigma_norm
 
 ROOT = sp.Symbol("w", positive=True)  # √(1 + ε s²), s the distance

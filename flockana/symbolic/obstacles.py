@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension, ensure_known
+from flockana.base.value_checks import ensure_dimension, ensure_known
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.functions import HALF
-from flockana.symbolic.pair import along_flow, vector, with_derivative
-from flockana.symbolic.parameters import GAINS, GainSymbols
+from flockana.symbolic.generic_pair import along_flow, vector, with_derivative
+from flockana.symbolic.parameter_symbols import GAINS, GainSymbols
+from flockana.symbolic.scalar_functions import HALF
 from flockana.symbolic.sigma_norms import EPS, sigma_norm, sigma_norm_gradient
 
 KINDS = ("wall", "sphere")

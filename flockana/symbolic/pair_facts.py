@@ -9,8 +9,8 @@ from math import inf, isfinite, sqrt
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
-from flockana.symbolic.enclosed import Enclosed, Germ, germ, interval, precision, rational
+from flockana.base.function_facts import Fact, FactStatus, PairFacts, conjunction
+from flockana.symbolic.formula_enclosures import Enclosed, Germ, germ, interval, precision, rational
 from flockana.symbolic.interval_decisions import (
     Least,
     Region,

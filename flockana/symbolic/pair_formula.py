@@ -15,8 +15,8 @@ import sympy as sp
 
 from flockana.base.errors import ArgumentError
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.functions import adjacency, phi_alpha
-from flockana.symbolic.grammar import FUNCTIONS, expression_size, read_formula
+from flockana.symbolic.formula_grammar import FUNCTIONS, expression_size, read_formula
+from flockana.symbolic.scalar_functions import adjacency, phi_alpha
 
 DIGITS = 160  # of values that decide something: they are asked for where a formula cancels almost all of them
 S, Z = sp.Symbol("s", positive=True), sp.Symbol("z", positive=True)

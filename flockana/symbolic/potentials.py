@@ -16,9 +16,9 @@ import sympy as sp
 from flockana.base.argument_kinds import check_kinds
 from flockana.base.errors import ArgumentError
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth, phi, taper
 from flockana.symbolic.named_functions import PhiIntegral, written
-from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
+from flockana.symbolic.parameter_symbols import ALPHA, BETA, AlphaSymbols, BetaSymbols
+from flockana.symbolic.scalar_functions import alpha_smooth, beta_closed, beta_smooth, phi, taper
 
 Z = sp.Symbol("z", nonnegative=True)
 _S = sp.Symbol("s", nonnegative=True)

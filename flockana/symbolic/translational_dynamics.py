@@ -4,10 +4,10 @@ import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.energy import GenericPair, relative_feedback
-from flockana.symbolic.pair import ADJACENCY, own_force, pair_potential, vector
-from flockana.symbolic.parameters import GAINS, GainSymbols, exact
+from flockana.symbolic.generic_pair import ADJACENCY, own_force, pair_potential, vector
+from flockana.symbolic.parameter_symbols import GAINS, GainSymbols, exact
 from flockana.symbolic.sigma_norms import sigma_norm
-from flockana.symbolic.sums import V, X
+from flockana.symbolic.sums_over_pairs import V, X
 
 S = sp.Symbol("s")
 OMEGA = sp.Symbol("omega", positive=True)

@@ -17,14 +17,21 @@ import numpy as np
 import numpy.typing as npt
 import sympy as sp
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_dimension, ensure_known, ensure_state, ensure_vector
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import sums
+from flockana.base.value_checks import (
+    FloatArray,
+    ensure_count,
+    ensure_dimension,
+    ensure_known,
+    ensure_state,
+    ensure_vector,
+)
+from flockana.symbolic import sums_over_pairs
 from flockana.symbolic.derivation import Printed, Step, latex_steps
-from flockana.symbolic.functions import HALF, adjacency, phi_alpha
-from flockana.symbolic.pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
-from flockana.symbolic.parameters import GAINS, AlphaSymbols, GainSymbols
+from flockana.symbolic.generic_pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
+from flockana.symbolic.parameter_symbols import GAINS, AlphaSymbols, GainSymbols
 from flockana.symbolic.potentials import ALPHA_NAMED, Z, psi_alpha
+from flockana.symbolic.scalar_functions import HALF, adjacency, phi_alpha
 from flockana.symbolic.sigma_norms import EPS, sigma_norm
 
 LAWS = ("algorithm1", "algorithm2")
@@ -142,7 +149,7 @@ class ConcreteFlock(Printed):
         Parameters
         ----------
         generic : sympy.Expr
-            An expression of `flockana.symbolic.sums`, such as an `EnergyIdentity` has.
+            An expression of `flockana.symbolic.sums_over_pairs`, such as an `EnergyIdentity` has.
 
         Examples
         --------
@@ -150,13 +157,13 @@ class ConcreteFlock(Printed):
         p_11**2/2 + p_21**2/2
         """
         x, v = self.moving
-        rows = {sums.Q: self.q, sums.P: self.p, sums.X: x, sums.V: v}
+        rows = {sums_over_pairs.Q: self.q, sums_over_pairs.P: self.p, sums_over_pairs.X: x, sums_over_pairs.V: v}
 
         def entry(indexed: sp.Indexed) -> sp.Expr:
             i, k = (int(index) - 1 for index in indexed.indices)
-            return sigma_norm(self.q[k] - self.q[i]) if indexed.base == sums.Z else rows[indexed.base][i][k]
+            return sigma_norm(self.q[k] - self.q[i]) if indexed.base == sums_over_pairs.Z else rows[indexed.base][i][k]
 
-        written_sum = sums.write_out(generic, self.n, self.m)
+        written_sum = sums_over_pairs.write_out(generic, self.n, self.m)
         return written_sum.xreplace({indexed: entry(indexed) for indexed in written_sum.atoms(sp.Indexed)})
 
     def latex(self) -> str:

@@ -12,7 +12,16 @@ import numpy as np
 
 from flockana.interactions.weights import RationalWeight
 from flockana.theorems.claims import judged, undecided
-from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Observed, limit_claim, positive_room, unmet
+from flockana.theorems.theorem_toolkit import (
+    Checked,
+    Claim,
+    Enclosure,
+    Hypothesis,
+    Observed,
+    limit_claim,
+    positive_room,
+    unmet,
+)
 
 QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
 _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more

@@ -6,7 +6,7 @@ from functools import cache
 from types import ModuleType
 
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
-from flockana.base.modules import modules, source_modules
+from flockana.base.module_discovery import modules, source_modules
 from flockana.theorems.theorem import Theorem
 
 

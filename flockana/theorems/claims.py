@@ -13,9 +13,9 @@ import numpy as np
 from flockana.theorems.claim import does_not_hold
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import erratum_of, printed
-from flockana.theorems.headline import overall
-from flockana.theorems.proofs import CITES, RIGOUR
+from flockana.theorems.proof_register import CITES, RIGOUR
 from flockana.theorems.theorem import About, Check, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
+from flockana.theorems.verdict_summary import overall
 
 
 def judged(name: str, margin: Enclosure, needs: Needs = (), *, about: About = "run", **fields: Any) -> Claim:

@@ -5,12 +5,21 @@ import numpy as np
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.navigation import Navigation
-from flockana.theorems.between_samples import polygons, radius_over
+from flockana.theorems.bounds_between_samples import polygons, radius_over
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.energy import nothing_adds_energy
 from flockana.theorems.meeting_energy import least_is_known, meeting
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, Trajectory, condition, law_is, lengths, stacked
+from flockana.theorems.theorem_toolkit import (
+    Enclosure,
+    FloatArray,
+    Observed,
+    Trajectory,
+    condition,
+    law_is,
+    lengths,
+    stacked,
+)
 
 
 def gains_of(run: Trajectory | Observed) -> FloatArray:

@@ -17,10 +17,18 @@ from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import counted, judged
 from flockana.theorems.meeting_energy import above_least, meeting
-from flockana.theorems.rounding import energy_error
+from flockana.theorems.rounding_bounds import energy_error
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
-from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, Trajectory, condition, lengths, positive_room
+from flockana.theorems.theorem_toolkit import (
+    Enclosure,
+    FloatArray,
+    Observed,
+    Trajectory,
+    condition,
+    lengths,
+    positive_room,
+)
 
 Pair = tuple[int, int]
 IndexArray = npt.NDArray[np.intp]

@@ -18,7 +18,7 @@ from flockana.stability.decay import Decay, LinearRange, decay, decay_table, lin
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.theorems.claims import erratum, run_theorem, spectral, undecided
-from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Observed, Tolerances, condition
+from flockana.theorems.theorem_toolkit import Checked, Claim, FloatArray, Hypothesis, Observed, Tolerances, condition
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense

@@ -7,7 +7,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DelaySystem, delay_margin, scalar_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
 from flockana.stability.law_studies import delay_system
-from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, spectral
+from flockana.theorems.theorem_toolkit import EPS, Claim, Tolerances, erratum, spectral
 
 _WHAT = {
     "all": "all terms delayed",

@@ -6,12 +6,12 @@ import numpy as np
 
 from flockana.base.errors import FlockanaError
 from flockana.equilibria.solve import find_equilibrium
-from flockana.laws.disturbed import Disturbed
+from flockana.laws.disturbed_law import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.theorems.claims import conclude, run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Tolerances
-from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, condition
+from flockana.theorems.theorem_toolkit import Enclosure, FloatArray, Observed, condition
 
 _CLAIMS, _PROOF = ("stays", "ultimate"), "disturbed-basins"
 _SLACK = 1e-12  # relative: rounding of a force's length

@@ -13,10 +13,19 @@ from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.claims import run_theorem
-from flockana.theorems.gamma_agent import declared_rate_is_true, target_rests
+from flockana.theorems.gamma_agent_checks import declared_rate_is_true, target_rests
 from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, lengths, undecided
+from flockana.theorems.theorem_toolkit import (
+    EPS,
+    Enclosure,
+    FloatArray,
+    Observed,
+    Trajectory,
+    judged,
+    lengths,
+    undecided,
+)
 
 
 def proved(run: Any, proof: str = "energy-identities") -> str | None:

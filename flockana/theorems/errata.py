@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.modules import source_files
+from flockana.base.module_discovery import source_files
 
 Sort = Literal["wrong", "incomplete", "vacuous", "confirmed"]
 

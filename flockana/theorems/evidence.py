@@ -4,8 +4,8 @@ from abc import ABC, abstractmethod
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive
 from flockana.base.progress import progress_bar
+from flockana.base.value_checks import FloatArray, ensure_points, ensure_positive
 from flockana.theorems.catalogue import theorem
 from flockana.theorems.theorem import Known, Theorem, Tolerances, Verdict
 from flockana.theorems.verdicts import Verdicts

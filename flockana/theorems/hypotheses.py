@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from flockana.base.facts import Fact, conjunction
+from flockana.base.function_facts import Fact, conjunction
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
 from flockana.interactions.distance_functions import DistanceFunction
 from flockana.laws.composition import Composition
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from flockana.theorems.theorem import Decided, Hypothesis
 
 if TYPE_CHECKING:

@@ -1,8 +1,9 @@
 """Certificates of limits, and claims by the best of several certificates.
 
 A claim about t → ∞ is verified by a certificate alone: a state in the basin of a strict minimum
-(`flockana.theorems.basin`), an exact solution, or a proof. It is refuted by an escape: something that is certain at all
-later times, such as two groups that part. A run that decays is evidence, which the text tells, and decides nothing.
+(`flockana.theorems.energy_basins`), an exact solution, or a proof. It is refuted by an escape: something that is
+certain at all later times, such as two groups that part. A run that decays is evidence, which the text tells, and
+decides nothing.
 """
 
 from collections.abc import Callable, Iterable

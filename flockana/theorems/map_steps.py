@@ -1,8 +1,8 @@
 """Runs of maps: consistency with the map at some samples, and the known length of their orbits.
 
-Where a scheme steps a law that is known in balls, its exact orbit is enclosed (`flockana.certified.orbits`), and judged
-instead of the run's own numbers. Elsewhere two orbits from starts nudged to both sides are an estimate of its error:
-nothing is known after they part.
+Where a scheme steps a law that is known in balls, its exact orbit is enclosed (`flockana.certified.map_orbits`), and
+judged instead of the run's own numbers. Elsewhere two orbits from starts nudged to both sides are an estimate of its
+error: nothing is known after they part.
 """
 
 from collections.abc import Iterator
@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.second_runs import DOUBT, Errors, Pair, doubt_about, unbounded_errors
@@ -63,7 +63,7 @@ def _growth(run: Trajectory, k: int, steps: int, name: str) -> float:
 
 def paired_orbit(run: Trajectory) -> Pair:
     """Return a map's run with errors, from its orbit in balls or from perturbed starts."""
-    from flockana.certified.orbits import enclose_orbit, has_ball_orbit
+    from flockana.certified.map_orbits import enclose_orbit, has_ball_orbit
 
     if doubt := doubt_about(run):
         return Pair(run, run, unbounded_errors(run), doubt)

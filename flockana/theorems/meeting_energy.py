@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flockana.interactions import PairInteraction
-from flockana.theorems.toolkit import EPS, Enclosure, Hypothesis, Observed, Trajectory
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Hypothesis, Observed, Trajectory
 
 
 class PairEnergies(NamedTuple):

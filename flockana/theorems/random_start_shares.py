@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from flockana.base.binomial import clopper_pearson
+from flockana.base.binomial_intervals import clopper_pearson
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.theorem import Claim

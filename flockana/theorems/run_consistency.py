@@ -7,8 +7,8 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.switched import SwitchedLaw
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.first_order_law import VelocityLaw
+from flockana.laws.jump_laws import SwitchedLaw
 from flockana.theorems.map_steps import ensure_steps_of_map
 
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not

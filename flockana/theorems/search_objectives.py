@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.measures.nets import links
 from flockana.theorems.collisions import contacts_of
-from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, lengths
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, Trajectory, lengths
 
 
 def squash(x: float) -> float:

@@ -11,15 +11,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base import units
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import centres, lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import centres, lengths
+from flockana.dynamics.error_tolerances import FINEST
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.steps_between_samples import Between
-from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.beta import InsideObstacleError
+from flockana.environment.beta_agents import InsideObstacleError
 from flockana.solvers.solver_names import solvers
 from flockana.theorems.step_resolution import demand_of, steps_of, unresolved
 

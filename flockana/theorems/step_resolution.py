@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.distance_functions import DistanceFunction, LawFunction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.quintic_paths import control_points
-from flockana.laws.features import Feature
+from flockana.laws.law_features import Feature
 
 NAME = "the steps resolve the law"
 RESOLVED = 2.0  # hω, up to which a step resolves the law

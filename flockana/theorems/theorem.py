@@ -133,13 +133,13 @@ class Theorem:
         Parameters
         ----------
         start : Observed
-            A start as `flockana.theorems.applicable.start_of` returns it, or a run.
+            A start as `flockana.theorems.applicability.start_of` returns it, or a run.
 
         Examples
         --------
         >>> import numpy as np
         >>> import flockana as fl
-        >>> from flockana.theorems.applicable import start_of
+        >>> from flockana.theorems.applicability import start_of
         >>> start = start_of(fl.Algorithm1(), np.array([[0.0], [7.0]]), np.zeros((2, 1)), 0.0)
         >>> [need.name for need in fl.theorem("collision-energy").hypotheses(start)]
         ['Algorithm 1 or 2 is applied', 'c1α > 0', 'H(0) < c*', 'H(0) < 2 c*']

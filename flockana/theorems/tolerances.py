@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, fields
 
-from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import ensure_nonnegative, ensure_positive
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from flockana.base.table_export import MARKS, html_table, latex_table, number, tex
 from flockana.theorems.claim import BYLINES, RIGOURS, By, Claim, Hypothesis, Rigour, Status
-from flockana.theorems.headline import headline, merged, overall, plain
 from flockana.theorems.tolerances import Tolerances
+from flockana.theorems.verdict_summary import headline, merged, overall, plain
 
 if TYPE_CHECKING:
     import pandas

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, TypedDict, Unpack, overload
 
-from flockana.base.checks import TimeSpan, ensure_time_span
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.value_checks import TimeSpan, ensure_time_span
 from flockana.dynamics.predicates import ensure_uninterrupted
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.velocity import start_velocities
+from flockana.laws.first_order_law import start_velocities
 from flockana.theorems.catalogue import theorem
 from flockana.theorems.evidence import Evidence, NoCase, NotEvidence, State
-from flockana.theorems.on_runs import RunEvidence
+from flockana.theorems.run_verdicts import RunEvidence
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 from flockana.theorems.verdicts import Verdicts
 
@@ -87,7 +87,7 @@ def verify(
     Verdict, or Verdicts of several theorems or without one
 
     A claim about a run carries the error of its integration: the same start is integrated once more, a hundred times
-    more tightly, and both must agree (`flockana.theorems.observed`). A failed run verifies nothing.
+    more tightly, and both must agree (`flockana.theorems.observed_run`). A failed run verifies nothing.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def ensure_tolerances(tolerances: Any) -> Tolerances:
 def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> Evidence:
     """Return the evidence of a run, a recording, a tube, a state, or none; raise on unsuitable arguments."""
     if _is("recording", case["trajectory"]):
-        from flockana.theorems.on_recordings import RecordingEvidence  # which loads what fits and smooths
+        from flockana.theorems.recording_verdicts import RecordingEvidence  # which loads what fits and smooths
 
         if any(entry is not None for entry in (basin, *(case[name] for name in ("q0", "p0", "t_span", "q")))):
             raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
@@ -134,7 +134,7 @@ def _choose_evidence(item: Theorem | None, case: dict[str, Any], basin: Any) -> 
         return RunEvidence(_run(*motion))
     _ensure_given(item, **case)
     if _is("tube", case["trajectory"]):
-        from flockana.theorems.on_tubes import TubeEvidence  # which loads ball arithmetic
+        from flockana.theorems.tube_verdicts import TubeEvidence  # which loads ball arithmetic
 
         return TubeEvidence(case["trajectory"], basin)
     if basin is not None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flockana import Law
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.value_checks import FloatArray, ensure_positive
 
 
 @dataclass(frozen=True)

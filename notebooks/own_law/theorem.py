@@ -8,7 +8,7 @@ from flockana import Tolerances
 from flockana.theorems import Theorem
 from flockana.theorems.claims import judged
 from flockana.theorems.hypotheses import law_is
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from flockana.theorems.theorem import Checked
 from own_law.law import CuckerSmale
 

@@ -34,14 +34,14 @@ def test_a_true_rate_is_never_refuted_however_long_and_loose_the_run(decay, unti
 
 
 def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before(monkeypatch):
-    from flockana.sources.cucker_smale_2007.theorems import guarantee
-    from flockana.theorems.observed import Observed
+    from flockana.sources.cucker_smale_2007.theorems import spread_functional
+    from flockana.theorems.observed_run import Observed
 
-    monkeypatch.setattr(guarantee, "PROOF", "")
+    monkeypatch.setattr(spread_functional, "PROOF", "")
     law = fl.CuckerSmale(RationalWeight(1.0, 0.5, 1.0))
     for until in (10.0, 100.0):
         seen = Observed.of(fl.simulate(law, *TRIANGLE, (0.0, until)))
-        _, (bounded, rate, limit) = guarantee.guarantee_of(seen, 2.0).claims([])
+        _, (bounded, rate, limit) = spread_functional.guarantee_of(seen, 2.0).claims([])
         assert (bounded.status, rate.status, limit.status) == ("verified", "verified", "inconclusive")
         assert f"to t = {min(until, 11.57):.4g}" in rate.detail
 

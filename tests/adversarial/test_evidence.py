@@ -10,7 +10,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import is_sealed
+from flockana.base.integrity_seals import is_sealed
 from flockana.certified.certificate import basin_certificate, tube_certificate
 from flockana.equilibria.equilibrium_files import write_equilibrium
 from flockana.explore.streamed_runs import shown

@@ -37,7 +37,7 @@ from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlockin
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.theorems import Tolerances, second_runs, theorem, theorems
-from flockana.theorems.observed import Observed, with_doubt
+from flockana.theorems.observed_run import Observed, with_doubt
 
 HERE, ROUND = StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 9.0, 0.05)
 APART, NEAR = [[0.0, 0.0], [7.5, 0.0]], [[0.0, 0.0], [1.2, 0.0]]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana import NetAveraging, Tolerances, theorem
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.adversarial.cases import VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds
 

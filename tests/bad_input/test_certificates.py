@@ -6,7 +6,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import FileError
-from flockana.base.seals import with_digest
+from flockana.base.integrity_seals import with_digest
 from flockana.certified.certificate_check import RejectedError, check_data
 from tests.bad_input.test_fuzz import flipped, shortened
 

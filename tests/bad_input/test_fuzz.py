@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm1, find_equilibrium, read_lammps
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.seals import sealed
+from flockana.base.integrity_seals import sealed
 from flockana.cli.positions_source import read_csv
 from flockana.ensemble.one_run import Job, Record
 from flockana.ensemble.store import Store

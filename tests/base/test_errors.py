@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from flockana.base import checks
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError, FileError, FlockanaError, SolverError, UnknownNameError
 from tests.refused import refused
 
@@ -48,18 +48,18 @@ test_ensure_finite_scalar = refused(
     (10**400, "expected one real number"),
     (np.nan, "d = nan: expected a finite number"),
     (-np.inf, "d = -inf: expected a finite number"),
-    make=partial(checks.ensure_finite_scalar, "d"),
+    make=partial(value_checks.ensure_finite_scalar, "d"),
     exact=True,
 )
 
 
 def test_signs():
-    assert checks.ensure_positive("d", 5e-324) == 5e-324
-    assert checks.ensure_nonnegative("d", 0) == 0.0
+    assert value_checks.ensure_positive("d", 5e-324) == 5e-324
+    assert value_checks.ensure_nonnegative("d", 0) == 0.0
     with raises("d = 0: expected a number > 0"):
-        checks.ensure_positive("d", 0.0)
+        value_checks.ensure_positive("d", 0.0)
     with raises("d = -1: expected a number >= 0"):
-        checks.ensure_nonnegative("d", -1)
+        value_checks.ensure_nonnegative("d", -1)
 
 
 test_ensure_points = refused(
@@ -73,13 +73,13 @@ test_ensure_points = refused(
     (np.zeros((3, 4)), "q has shape (3, 4): expected m = 1, 2 or 3 columns"),
     (np.zeros((3, 0)), "q has shape (3, 0): expected m = 1, 2 or 3 columns"),
     ([[0.0, 0.0], [np.nan, 1.0], [np.inf, 0.0]], "q[1] = [nan  1.]: expected finite numbers (2 bad agents)"),
-    make=partial(checks.ensure_points, "q"),
+    make=partial(value_checks.ensure_points, "q"),
     exact=True,
 )
 
 
 def test_points_are_contiguous_float64():
-    points = checks.ensure_points("q", np.arange(6).reshape(2, 3).T)
+    points = value_checks.ensure_points("q", np.arange(6).reshape(2, 3).T)
     assert points.dtype == np.float64
     assert points.flags.c_contiguous
     assert points.tolist() == [[0.0, 3.0], [1.0, 4.0], [2.0, 5.0]]
@@ -87,9 +87,9 @@ def test_points_are_contiguous_float64():
 
 def test_ensure_state():
     with raises("q has shape (2, 1) but p has shape (1, 1): expected equal shapes (n, m)"):
-        checks.ensure_state([[0.0], [1.0]], [[0.0]])
+        value_checks.ensure_state([[0.0], [1.0]], [[0.0]])
     with raises("p[0] = [inf]: expected finite numbers (1 bad agents)"):
-        checks.ensure_state([[0.0]], [[np.inf]])
+        value_checks.ensure_state([[0.0]], [[np.inf]])
 
 
 test_ensure_vector = refused(
@@ -101,7 +101,7 @@ test_ensure_vector = refused(
     (([1.0, 2.0, 3.0, 4.0], None), "v has shape (4,): expected a vector of 1, 2 or 3 components"),
     (([1.0, 2.0], 3), "v has 2 components: expected 3, the dimension of the flock"),
     (([1.0, np.nan], 2), "v = [ 1. nan]: expected finite numbers"),
-    make=lambda case: checks.ensure_vector("v", *case),
+    make=lambda case: value_checks.ensure_vector("v", *case),
     exact=True,
 )
 
@@ -115,6 +115,6 @@ test_ensure_time_span = refused(
     ((2.0, 1.0), "t_span = (2, 1): expected finite t0 < t1"),
     ((0.0, np.inf), "t_span = (0, inf): expected finite t0 < t1"),
     ((np.nan, 1.0), "t_span = (nan, 1): expected finite t0 < t1"),
-    make=checks.ensure_time_span,
+    make=value_checks.ensure_time_span,
     exact=True,
 )

@@ -11,7 +11,7 @@ import pytest
 
 from flockana import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Tolerances
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.modules import source_modules
+from flockana.base.module_discovery import source_modules
 from flockana.base.serialize import from_data, parameter_classes, to_data, to_data_mapping
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

@@ -6,7 +6,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana import CallableTarget, Capsule, MinimalFlocking, Polygon, RescaledVelocity, SineTarget, rescale, symbolic
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.sources.notebook_r2.laws import PushedAlgorithm2
 from tests.refused import refused
 

@@ -9,7 +9,7 @@ import pytest
 from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, find_equilibrium, lattice
-from flockana.base.seals import with_digest
+from flockana.base.integrity_seals import with_digest
 
 TETRAHEDRON = 7.0 / np.sqrt(8.0) * np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 STARTS = {"pair": lattice.hexagonal_spiral(2, 7.0), "triangle": lattice.hexagonal_spiral(3, 7.0)}

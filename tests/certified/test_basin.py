@@ -8,7 +8,7 @@ from flint import arb
 
 from flockana import DeadZoneFlocking, Gains, StaticTarget, certify, find_equilibrium, simulate
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.certified.shells import SHELLS
+from flockana.certified.curvature_shells import SHELLS
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.certified.conftest import ALL, STARTS, basin_of, displaced

@@ -14,7 +14,7 @@ import flockana as fl
 import flockana.certified.certificate_check
 from flockana import Algorithm1, certify
 from flockana.base.errors import FileError
-from flockana.base.seals import with_digest
+from flockana.base.integrity_seals import with_digest
 from flockana.certified import certificate_check as forms
 from flockana.certified import check_basin
 from flockana.certified.certificate import basin_certificate, tube_certificate, write_certificate

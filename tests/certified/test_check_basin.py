@@ -10,12 +10,12 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.certified import check_basin
-from flockana.certified.at_rest import unique_projection
 from flockana.certified.balls import dot
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.certificate_check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS, ROOT_TWO, Net
-from flockana.certified.decimals import decimal, round_down
+from flockana.certified.decimal_rounding import decimal, round_down
+from flockana.certified.enclosed_equilibrium import unique_projection
 from flockana.certified.structural_potential import Structure
 from tests.certified.conftest import basin_of, resealed, text_of
 

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, CuckerSmale, Gains, StaticTarget
 from flockana.base.errors import ArgumentError
 from flockana.certified import krawczyk
-from flockana.certified.at_rest import centred, rotated_to
+from flockana.certified.enclosed_equilibrium import centred, rotated_to
 from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
 from flockana.certified.structural_potential import Structure
 from tests.refused import refused

@@ -3,7 +3,7 @@ import os
 
 import pytest
 
-from flockana.base.garbage import SELDOM
+from flockana.base.garbage_collection import SELDOM
 from flockana.cli import main as program
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.verify import verify_command

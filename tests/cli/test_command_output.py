@@ -5,7 +5,7 @@ import pytest
 
 from flockana.base.errors import FileError
 from flockana.cli.command_output import show_files, show_json
-from flockana.cli.picture import ensure_file
+from flockana.cli.picture_file import ensure_file
 
 
 def test_only_files_that_were_written_are_named_and_never_broken(capsys, monkeypatch):

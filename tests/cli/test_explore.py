@@ -17,7 +17,7 @@ def test_an_unknown_name_or_a_bad_file(call, tmp_path):
 
 def test_without_the_extra_the_remedy_is_said(call, monkeypatch):
     monkeypatch.setitem(sys.modules, "tornado.httpserver", None)
-    monkeypatch.delitem(sys.modules, "flockana.explore.server", raising=False)
+    monkeypatch.delitem(sys.modules, "flockana.explore.page_server", raising=False)
     code, _, err = call("hexagon")
     assert code == 2
     assert "pip install 'flockana[explore]'" in err

@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import with_digest
+from flockana.base.integrity_seals import with_digest
 from flockana.cli.falsify import known_false, read_ranges
-from flockana.falsify import evaluate
+from flockana.falsify import point_evaluation
 from flockana.theorems import Claim, theorems
 from tests.programs import Starts
 
@@ -54,28 +54,28 @@ def test_a_true_claim_is_not_found_and_no_file_is_written(call, tmp_path):
 
 
 def test_a_true_claim_that_breaks_is_3(call, monkeypatch):
-    verify = evaluate.verify
+    verify = point_evaluation.verify
 
     def wrong(theorem, run, **options):
         verdict = verify(theorem, run, **options)
         broken = Claim("below", "refuted", margin=-1.0, error=0.0, detail="it broke")
         return type(verdict)(verdict.theorem, verdict.hypotheses, (broken,), verdict.tolerances)
 
-    monkeypatch.setattr(evaluate, "verify", wrong)
+    monkeypatch.setattr(point_evaluation, "verify", wrong)
     code, out, _ = call("collision-energy", "--on", "head-on", "--claim", "below", "--budget", 10)
     assert code == 3
     assert "NOT known to be false" in out
 
 
 def test_ctrl_c_is_130_with_the_best_so_far(call, monkeypatch):
-    verify, starts = evaluate.verify, Starts()
+    verify, starts = point_evaluation.verify, Starts()
 
     def interrupted(theorem, run, **options):
         if starts.number(run) == 4:
             raise KeyboardInterrupt
         return verify(theorem, run, **options)
 
-    monkeypatch.setattr(evaluate, "verify", interrupted)
+    monkeypatch.setattr(point_evaluation, "verify", interrupted)
     code, out, err = call("collision-energy", "--on", "head-on", "--claim", "below", "--budget", 30)
     assert code == 130
     assert "4 of 30 runs; interrupted" in " ".join(out.split())

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flockana.cli import matplotlib_home
+from flockana.cli import matplotlib_folder
 from flockana.cli.root_help import EXAMPLES
 from flockana.theorems import theorems
 
@@ -17,7 +17,7 @@ def test_root_help_has_every_command_once_with_its_example(call):
         assert example.startswith(f"flockana {name} ")
         assert f"$ {example}" in text
     assert max(map(len, text.splitlines())) <= 80
-    commands = Path(matplotlib_home.__file__).parent.glob("*.py")
+    commands = Path(matplotlib_folder.__file__).parent.glob("*.py")
     assert {*re.findall(r"^def (\w+)_command\(", "".join(path.read_text() for path in commands), re.M)} == {*EXAMPLES}
 
 

@@ -12,7 +12,7 @@ import flockana as fl
 from flockana import lattice
 from flockana.base.errors import ArgumentError
 from flockana.course import build, grade, is_own, shows
-from flockana.course.pages import number_of
+from flockana.course.course_pages import number_of
 from tests.course.answers import ANSWERS, connectivity
 from tests.refused import refused
 

@@ -15,7 +15,7 @@ from flockana.dynamics.simulate import simulate
 from flockana.interactions import BetaInteraction, Gains
 from flockana.jit import callback_like, kernel
 from flockana.kernels.agent_sums import put
-from flockana.kernels.verlet import COUNT, CROWDED, no_pairs
+from flockana.kernels.verlet_list import COUNT, CROWDED, no_pairs
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.solvers.solver_names import ADAPTIVE, METHODS
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking

@@ -10,7 +10,7 @@ import xarray
 
 from flockana import Algorithm1, Trajectory, simulate
 from flockana.base.errors import FileError
-from flockana.base.seals import is_sealed
+from flockana.base.integrity_seals import is_sealed
 
 SERIES = ("t", "q", "p", "u")
 RUN = simulate(Algorithm1(), [[0.0], [8.0], [15.0]], np.zeros((3, 1)), (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 5))

@@ -11,7 +11,7 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.sample import Samples
+from flockana.dynamics.run_samples import Samples
 from flockana.dynamics.steps_between_samples import Between, Recorder, merged
 from flockana.measures.metrics import cohesion_radii, min_distances
 from flockana.measures.path_bounds import closest_approach, cohesion_bound

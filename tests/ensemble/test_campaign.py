@@ -12,14 +12,14 @@ import xarray
 
 from flockana import Tolerances, scenario, verify
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.base.seals import digest
+from flockana.base.integrity_seals import digest
 from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, numerics_version
 from flockana.ensemble.executors import Serial, WorkerPool, worker_pool
 from flockana.ensemble.one_run import Job, Request, run_batch
-from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.runs import make_runs
+from flockana.ensemble.worker_processes import ProcessPool
 from flockana.measures.measure import measures
 from tests.ensemble import tiny_flocks
 
@@ -265,7 +265,11 @@ def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeyp
         "sources/olfati_saber_2006/theorems/theorem_1_free_flock.py",
         "base/errors.py",
     } <= names
-    assert {"sources/isola_2024/scenarios/cases.py", "measures/standard.py", "equilibria/strained13.json"} <= names
+    assert {
+        "sources/isola_2024/scenarios/cases.py",
+        "measures/standard_measures.py",
+        "equilibria/strained13.json",
+    } <= names
     silent = ("plots/", "plots.py", "figures", "report/", "player/", "explore/", "course/", "cli/", "falsify/")
     assert not any(part in name for part in silent for name in names)
     assert not {"ensemble/store.py", "base/bibtex_entries.py", "_version.py", "__init__.py"} & names

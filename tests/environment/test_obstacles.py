@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from flockana import BetaInteraction, Capsule, Obstacle, Polygon, Sphere, Wall
 from flockana.base.errors import ArgumentError
-from flockana.environment.beta import ObstacleField, check_free
+from flockana.environment.beta_agents import ObstacleField, check_free
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle
 from tests.refused import refused

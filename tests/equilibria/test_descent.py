@@ -7,8 +7,8 @@ from scipy.spatial.distance import pdist
 from flockana import Algorithm3, DeadZoneFlocking, Gains, Sphere, StaticTarget, find_equilibrium, rescale
 from flockana.base.errors import SolverError
 from flockana.equilibria.descent import anneal, descend, newton, pairs_collapsed
+from flockana.equilibria.equilibrium_search import random_starts
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.search import random_starts
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 

@@ -9,7 +9,7 @@ import pytest
 
 from flockana import Algorithm1, DeadZoneFlocking, find_equilibrium
 from flockana.base.errors import FileError
-from flockana.base.seals import sealed
+from flockana.base.integrity_seals import sealed
 from flockana.equilibria.equilibrium_files import read_equilibrium, smallest_strained, write_equilibrium
 from flockana.lattice import hexagonal_patch
 

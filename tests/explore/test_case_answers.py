@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.explore.case import Case
 from flockana.explore.case_answers import answer, poles
+from flockana.explore.page_case import Case
 
 
 def told(case, limit=60.0):

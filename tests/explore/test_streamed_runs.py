@@ -5,9 +5,9 @@ import pytest
 
 import flockana as fl
 from flockana.explore import streamed_runs
-from flockana.explore.case import Case
+from flockana.explore.page_case import Case
 from flockana.explore.streamed_runs import TooLargeError, ensure_small, watched
-from flockana.player.codec import decode
+from flockana.player.run_codec import decode
 
 
 def parts(**more):

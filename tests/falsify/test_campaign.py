@@ -10,11 +10,11 @@ import pytest
 from flockana import Algorithm2, Gains, StaticTarget, Tolerances, falsify, replay, scenario, simulate, theorem, verify
 from flockana.base.errors import ArgumentError
 from flockana.falsify.bounded_space import search_space
-from flockana.falsify.evaluate import Problem
-from flockana.falsify.search import Search
+from flockana.falsify.cma_search import Search
+from flockana.falsify.point_evaluation import Problem
 from flockana.sources.geschwender_2016.theorems.energy_printed import _printed_rate
-from flockana.theorems.attraction import final_basin
-from flockana.theorems.observed import Observed
+from flockana.theorems.attraction_basin import final_basin
+from flockana.theorems.observed_run import Observed
 from tests.falsify.conftest import HEAD_ON, OWN, THREE_AT_REST, fast
 from tests.programs import Starts, out_of_a_kernel
 

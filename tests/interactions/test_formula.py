@@ -17,7 +17,7 @@ import flockana as fl
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.serialize import from_data, to_data
 from flockana.interactions import AlphaInteraction
-from flockana.kernels.elementary import cosine, sine
+from flockana.kernels.sine_and_cosine import cosine, sine
 from tests.refused import refused
 from tests.toys.formulas import alpha_formula, formula_flock, spring
 

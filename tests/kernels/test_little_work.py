@@ -8,10 +8,10 @@ import pytest
 from flockana import AlphaInteraction
 from flockana.jit import njit, register_jitable
 from flockana.kernels.bound_templates import bound
-from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.cell_grid import sort_into_grid
+from flockana.kernels.link_segments import crossing_signs, nearest_links
 from flockana.kernels.little_work import ENOUGH, for_little, in_python
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.segments import crossing_signs, nearest_links
 
 LAW = AlphaInteraction()
 

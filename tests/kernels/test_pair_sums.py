@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from flockana import AlphaInteraction, DeadZoneInteraction
 from flockana.jit import register_jitable
-from flockana.kernels.grid import LARGE, sort_into_grid
+from flockana.kernels.cell_grid import LARGE, sort_into_grid
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.pair_lift import lift
+from flockana.kernels.pair_kernels import lift
 
 ALPHA = AlphaInteraction(d=2.0, r=2.6, a=2.0, b=5.0)
 

@@ -7,7 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.dynamics.encounters import Encounters, State
-from flockana.kernels.encounters import Ends
+from flockana.kernels.encounter_checks import Ends
 from flockana.kernels.pole_crossings import crossing_listed
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
 

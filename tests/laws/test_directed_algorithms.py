@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, DirectedNet, LinearTarget, Sphere, simulate
-from flockana.base.differences import differences
+from flockana.base.finite_differences import differences
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from tests.refused import refused
 

@@ -11,7 +11,7 @@ from flockana.environment.obstacles import Sphere, Wall, _onto_sphere
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.alpha import kernel
 from flockana.kernels.obstacles import lift_obstacle
-from flockana.kernels.pair_lift import lift
+from flockana.kernels.pair_kernels import lift
 from flockana.sources.notebook_r2.laws import PushedAlgorithm1
 from tests.refused import refused
 

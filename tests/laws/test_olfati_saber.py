@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Law, LinearTarget
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.gain_laws import alpha_scales
 from tests.refused import refused

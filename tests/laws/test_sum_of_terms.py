@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm3, Copies, Navigation, PairTerm, PeerToPeer, Sphere, Spring, Wall, ZoneFlocking
-from flockana.environment.beta import ObstacleField
+from flockana.environment.beta_agents import ObstacleField
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

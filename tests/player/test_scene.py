@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm3, Capsule, Gains, LinearTarget, Sphere, Wall, scenario, simulate
-from flockana.player.codec import decode
+from flockana.player.run_codec import decode
 from flockana.player.scene import kept, outlines, scene
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 

@@ -7,8 +7,8 @@ from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.plots import control_plots as draw
 from flockana.stability.centre_transfer import CentreOfMass
+from flockana.stability.gain_sweeps import MarginSweep, Sweep, centre_locus
 from flockana.stability.law_studies import NormTable
-from flockana.stability.sweeps import MarginSweep, Sweep, centre_locus
 from tests.plots.artists import axes
 
 

@@ -4,7 +4,7 @@ from matplotlib.collections import LineCollection
 
 from flockana import plots
 from flockana.base.errors import ArgumentError
-from flockana.equilibria.collapse import CollapseDiagram
+from flockana.equilibria.lattice_collapse import CollapseDiagram
 from flockana.lattice import coordination, hexagonal_patch, links
 from tests.plots.artists import axes
 

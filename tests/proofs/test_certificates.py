@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
 
-from flockana.base.modules import modules, source_modules
+from flockana.base.module_discovery import modules, source_modules
 from flockana.theorems.catalogue import theorems_in
 from proofs.proof import load, names
 

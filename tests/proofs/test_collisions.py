@@ -14,7 +14,7 @@ from scipy.linalg import expm
 
 from flockana import scenario, simulate, verify
 from flockana.certified.balls import AlphaParameters
-from flockana.certified.intervals import c_star, far_potential
+from flockana.certified.scalar_functions_in_balls import c_star, far_potential
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria.energy_barrier import (
     bound_range,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
-from flockana.certified import intervals
+from flockana.certified import scalar_functions_in_balls
 from flockana.certified.balls import AlphaParameters, BetaParameters, exact
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from proofs import enclosures
@@ -64,24 +64,26 @@ def test_alpha_functions_of_the_kernels_lie_on_the_enclosures(par):
     alpha = floats(par)
     scale = float(par.b.p) / float(par.b.q)
     for z in np.linspace(0.0, 1.1 * alpha.r_alpha, 23):
-        assert error(alpha.phi_alpha(z), intervals.phi_alpha(arb(z), par)) <= 32 * EPS * scale
-        assert error(alpha.phi_alpha_slope(z), intervals.phi_alpha_slope(arb(z), par)) <= 64 * EPS * scale
-        assert error(alpha.psi_alpha(z), intervals.psi_alpha(arb(z), par)) <= 1e-13 * alpha.c_star
-        assert error(alpha.adjacency(z), intervals.adjacency(arb(z), par)) <= 16 * EPS
+        assert error(alpha.phi_alpha(z), scalar_functions_in_balls.phi_alpha(arb(z), par)) <= 32 * EPS * scale
+        assert (
+            error(alpha.phi_alpha_slope(z), scalar_functions_in_balls.phi_alpha_slope(arb(z), par)) <= 64 * EPS * scale
+        )
+        assert error(alpha.psi_alpha(z), scalar_functions_in_balls.psi_alpha(arb(z), par)) <= 1e-13 * alpha.c_star
+        assert error(alpha.adjacency(z), scalar_functions_in_balls.adjacency(arb(z), par)) <= 16 * EPS
 
 
 def test_beta_functions_of_the_kernels_lie_on_the_enclosures():
     par = BetaParameters()
     beta = floats(par)
     for z in np.linspace(0.0, 1.1 * beta.d_beta, 23):
-        assert error(beta.phi_beta(z), intervals.phi_beta(arb(z), par)) <= 32 * EPS
-        assert error(beta.psi_beta(z), intervals.psi_beta(arb(z), par)) <= 1e-13 * beta.psi_beta(0.0)
+        assert error(beta.phi_beta(z), scalar_functions_in_balls.phi_beta(arb(z), par)) <= 32 * EPS
+        assert error(beta.psi_beta(z), scalar_functions_in_balls.psi_beta(arb(z), par)) <= 1e-13 * beta.psi_beta(0.0)
 
 
 def test_a_printed_value_with_one_wrong_digit_is_told():
     (par,) = (par for par in ALPHA if par == AlphaParameters())
     with ctx.workdps(45):
-        c_star = intervals.c_star(par)
+        c_star = scalar_functions_in_balls.c_star(par)
         assert enclosures.agree(c_star, "52.383811786644864")
         assert not enclosures.agree(c_star, "52.383811786644865")
 
@@ -90,12 +92,26 @@ def test_a_ball_encloses_the_function_on_all_of_it():
     par, rng = AlphaParameters(), np.random.default_rng(0)
     beta = BetaParameters()
     functions = [
-        *(lambda z, f=f: f(z, par) for f in (intervals.phi_alpha, intervals.phi_alpha_slope, intervals.psi_alpha)),
-        *(lambda z, f=f: f(z, beta) for f in (intervals.phi_beta, intervals.phi_beta_slope, intervals.psi_beta)),
-        lambda x: intervals.sigma_norm(x, par.eps),
-        lambda z: intervals.bump(z / 20, par.h),
-        intervals.sigma_1,
-        intervals.square,
+        *(
+            lambda z, f=f: f(z, par)
+            for f in (
+                scalar_functions_in_balls.phi_alpha,
+                scalar_functions_in_balls.phi_alpha_slope,
+                scalar_functions_in_balls.psi_alpha,
+            )
+        ),
+        *(
+            lambda z, f=f: f(z, beta)
+            for f in (
+                scalar_functions_in_balls.phi_beta,
+                scalar_functions_in_balls.phi_beta_slope,
+                scalar_functions_in_balls.psi_beta,
+            )
+        ),
+        lambda x: scalar_functions_in_balls.sigma_norm(x, par.eps),
+        lambda z: scalar_functions_in_balls.bump(z / 20, par.h),
+        scalar_functions_in_balls.sigma_1,
+        scalar_functions_in_balls.square,
     ]
     with ctx.workdps(20):
         for _ in range(40):
@@ -108,11 +124,13 @@ def test_a_ball_encloses_the_function_on_all_of_it():
 
 def test_monotone_functions_are_not_overestimated():
     par = AlphaParameters()
-    wide = intervals.psi_alpha(arb(4, 3), par)  # [1, 7], left of d_α: between ψ(7) and ψ(1), up to the balls' rounding
-    ends = [intervals.psi_alpha(arb(z), par) for z in (7, 1)]
+    wide = scalar_functions_in_balls.psi_alpha(
+        arb(4, 3), par
+    )  # [1, 7], left of d_α: between ψ(7) and ψ(1), up to the balls' rounding
+    ends = [scalar_functions_in_balls.psi_alpha(arb(z), par) for z in (7, 1)]
     assert float(wide.lower()) == pytest.approx(float(ends[0]), abs=1e-6)
     assert float(wide.upper()) == pytest.approx(float(ends[1]), abs=1e-6)
-    around = intervals.psi_alpha(arb(intervals.d_alpha(par).mid(), 1), par)
+    around = scalar_functions_in_balls.psi_alpha(arb(scalar_functions_in_balls.d_alpha(par).mid(), 1), par)
     assert around.lower() <= 0
     assert float(around.lower()) > -1e-6
 

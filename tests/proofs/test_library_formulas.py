@@ -11,10 +11,10 @@ import sympy as sp
 from flint import arb, ctx
 
 from flockana.certified.balls import AlphaParameters, BetaParameters
-from flockana.certified.intervals import psi_alpha, psi_beta
+from flockana.certified.scalar_functions_in_balls import psi_alpha, psi_beta
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.jit import register_jitable
-from flockana.kernels import elementary, scalars
+from flockana.kernels import scalars, sine_and_cosine
 from flockana.sources.li_dead_zone.kernels import pair as kernel
 from flockana.symbolic.named_functions import Phi, PhiAbove, PhiIntegral, SigmaNorm
 from proofs import library_formulas, library_potentials
@@ -27,7 +27,7 @@ def wrong_action(s, par):
 
 
 def test_a_slip_in_a_sine_is_told(monkeypatch):
-    monkeypatch.setattr(elementary, "_S3", elementary._S3 * (1.0 + 2.0**-50))
+    monkeypatch.setattr(sine_and_cosine, "_S3", sine_and_cosine._S3 * (1.0 + 2.0**-50))
     assert [text.partition(":")[0] for text in failing(library_formulas._steps())] == ["taper"]
 
 

@@ -13,8 +13,8 @@ import sympy as sp
 import z3
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, Capsule, Sphere, StaticTarget, simulate, theorems, verify
-from flockana.symbolic import functions, obstacles, structural_identity
-from flockana.theorems.proofs import RIGOUR
+from flockana.symbolic import obstacles, scalar_functions, structural_identity
+from flockana.theorems.proof_register import RIGOUR
 from proofs import cohesion, signs_of_phi, smoothness, structural_split, theorem6
 from proofs.proof import RIGOURS, Proof, Step, names, proofs
 from proofs.smt import implication, impossible, lemma
@@ -88,7 +88,7 @@ def test_z3_decides_proves_refutes_and_distrusts_contradictions():
     assert "unknown, " in hard.evidence
 
 
-def wrong_taper(z, *, h=functions.AlphaSymbols.h):
+def wrong_taper(z, *, h=scalar_functions.AlphaSymbols.h):
     """The bump's cosine over twice its range: it ends at ½."""
     return (1 + sp.cos(sp.pi * (z - h) / (2 * (1 - h)))) / 2
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import flockana
-from flockana.theorems.proofs import CITES, RIGOUR
+from flockana.theorems.proof_register import CITES, RIGOUR
 from proofs.proof import load
 
 PACKAGE = Path(flockana.__file__).parent

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, SemiImplicitEuler, TaylorStep
-from flockana.base.modules import modules, source_modules
+from flockana.base.module_discovery import modules, source_modules
 from flockana.base.serialize import from_data, to_data
 from flockana.laws.law import LawOfMotion
 from flockana.laws.wrapper_base import Wrapper

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from flockana import scenario, verify
-from flockana.report.build import verdicts_json
-from flockana.report.pages import fixed_page, scenario_page
+from flockana.report.page_data import fixed_page, scenario_page
+from flockana.report.report_writer import verdicts_json
 
 ORDER = ("refuted", "inconclusive", "verified", "vacuous")
 

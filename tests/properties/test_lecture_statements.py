@@ -6,7 +6,7 @@ import numpy as np
 
 import flockana as fl
 from flockana.course import build
-from flockana.course.pages import number_of
+from flockana.course.course_pages import number_of
 from flockana.scenarios.one_start import entries
 
 TEXT = {

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.course import build, pages
+from flockana.course import build
+from flockana.course import course_pages as pages
 
 PAGES = {name.partition("/")[2]: content.decode() for name, content in build.lecturer_pages().items()}
 PATH, RING = ((0, 1), (1, 2)), ((0, 1), (1, 2), (2, 3), (3, 0))

@@ -3,7 +3,7 @@
 import pytest
 
 import flockana as fl
-from flockana.theorems.on_runs import theorems_about
+from flockana.theorems.run_verdicts import theorems_about
 from tests.properties.test_every_law import LAWS, OWN_RATE, state
 from tests.theorems.made_up import same_in_all_units
 

@@ -7,8 +7,8 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
-from flockana.recorded.contributions import contributions, remainder, variants
+from flockana.base.vector_norms import lengths
+from flockana.recorded.law_contributions import contributions, remainder, variants
 from flockana.recorded.one_step_predictions import kinematic_scheme, scheme_by_law
 from flockana.recorded.recording import recording_of
 from flockana.sources.isola_2024.laws import MSNDiscretisation

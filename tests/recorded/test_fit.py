@@ -9,11 +9,11 @@ from scipy.optimize import least_squares
 from scipy.sparse import csr_array
 
 import flockana as fl
-from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError
-from flockana.recorded.parameters import FreeParameters
+from flockana.base.finite_differences import differences
+from flockana.recorded.law_parameters import FreeParameters
+from flockana.recorded.matching_windows import Window, _propagator, neighbouring_laws
 from flockana.recorded.shooting import NormalEquations, _refinement, _share
-from flockana.recorded.windows import Window, _propagator, neighbouring_laws
 from tools import fit_coverage
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)

@@ -7,8 +7,8 @@ from markupsafe import escape
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.cli.verify import verify_command
 from flockana.report import comparison, verify_catalogue
-from flockana.report.build import write_report
 from flockana.report.figures import Picture
+from flockana.report.report_writer import write_report
 from flockana.report.stability import LinearisedFlocks
 from flockana.report.verify_catalogue import Task
 from flockana.scenarios.one_start import compare, entries

@@ -1,9 +1,9 @@
 import pytest
 
 from flockana.lattice import harborth
-from flockana.report.build import write_report
 from flockana.report.lattices import lattice_section
-from flockana.report.pages import Finding, FixedPage
+from flockana.report.page_data import Finding, FixedPage
+from flockana.report.report_writer import write_report
 from flockana.theorems import Claim, Hypothesis, Verdict
 
 

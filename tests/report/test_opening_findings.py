@@ -4,7 +4,7 @@ import pytest
 
 from flockana import scenario, theorem
 from flockana.report.opening_findings import FINDINGS, front_findings, most_telling, opening_sentence
-from flockana.report.pages import Finding, ScenarioPage, scenario_page
+from flockana.report.page_data import Finding, ScenarioPage, scenario_page
 from flockana.theorems import Claim, Verdict
 
 

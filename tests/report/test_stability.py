@@ -4,10 +4,10 @@ import pytest
 from flockana.plots.decay import linear_range
 from flockana.plots.style import subplots
 from flockana.report import stability
-from flockana.report.build import write_report
 from flockana.report.control_figures import Download
 from flockana.report.figures import Picture
-from flockana.report.pages import Finding, FixedPage
+from flockana.report.page_data import Finding, FixedPage
+from flockana.report.report_writer import write_report
 from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.theorems import Claim, Verdict
 

@@ -7,8 +7,8 @@ from rich.console import Console
 
 from flockana import clopper_pearson, ensemble, scenario, shares
 from flockana.ensemble.one_run import Job, Record, Request, run_batch
-from flockana.report.build import page_environment, verdicts_json, write_report
 from flockana.report.console import statistics_table
+from flockana.report.report_writer import page_environment, verdicts_json, write_report
 from flockana.report.seed_surveys import make_survey, surveys
 from flockana.report.statistics import TEMPLATE, Share, entry_of, gather
 from flockana.report.verify_catalogue import check_all

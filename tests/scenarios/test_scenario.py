@@ -10,7 +10,7 @@ import pytest
 from flockana import Tolerances, rescale, theorems
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import Report, scenario
-from flockana.scenarios.findings import finding, in_source_units
+from flockana.scenarios.report_claims import finding, in_source_units
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.notebook_r2.laws import PushedAlgorithm1, PushedAlgorithm2
 
@@ -159,6 +159,8 @@ def test_a_tube_that_was_interrupted_ends_its_verdict(monkeypatch):
     """Ctrl-C during the enclosure of proved-flock once left verdicts that differ from the expected."""
     entry = scenario("proved-flock")
     run = entry.run()
-    monkeypatch.setattr("flockana.certified.enclose.enclose", lambda *_, **__: SimpleNamespace(status="interrupted"))
+    monkeypatch.setattr(
+        "flockana.certified.enclose_run.enclose", lambda *_, **__: SimpleNamespace(status="interrupted")
+    )
     with pytest.raises(KeyboardInterrupt):
         entry.verdict(next(iter(entry.enclosed.theorems)), run)

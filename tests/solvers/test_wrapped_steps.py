@@ -8,7 +8,7 @@ import pytest
 from flockana import Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Trajectory, simulate
 from flockana.ensemble import ensemble
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.explore.parameters import changed, numbers, tree_of
+from flockana.explore.law_parameters import changed, numbers, tree_of
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.solvers.euler_maruyama import EulerMaruyama

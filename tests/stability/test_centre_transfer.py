@@ -15,7 +15,7 @@ from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.centre_transfer import CentreOfMass, map_gain, predicted_gain
 from flockana.stability.tracking import response_ratio, tracking
-from flockana.symbolic.parameters import GainSymbols
+from flockana.symbolic.parameter_symbols import GainSymbols
 from flockana.symbolic.translational_dynamics import S, damping_ratio, natural_frequency, transfer_function
 from tests.refused import refused
 

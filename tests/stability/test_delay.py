@@ -11,7 +11,7 @@ from scipy.special import lambertw
 from flockana import Algorithm1, Algorithm2, Delayed, Gains, MinimalFlocking, StaticTarget, find_equilibrium, simulate
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
-from flockana.stability import crossings
+from flockana.stability import axis_crossings
 from flockana.stability.delay import DelaySystem, delay_margin, scalar_margin
 from flockana.stability.delay_roots import rightmost_roots
 from flockana.stability.law_studies import delay_system
@@ -141,7 +141,7 @@ def test_a_search_that_is_cut_short_says_at_most(monkeypatch):
     whole = delay_margin(system)
     assert whole.certified
     assert 0.999998 * whole.delay < whole.least < whole.delay
-    monkeypatch.setattr(crossings, "MOST", 40)
+    monkeypatch.setattr(axis_crossings, "MOST", 40)
     cut = delay_margin(system)
     assert cut.least == 0.0
     assert not cut.certified

@@ -24,9 +24,9 @@ from flockana import (
     stability,
 )
 from flockana.base.errors import ArgumentError
+from flockana.stability.cost_estimates import ensure_maps, ensure_study
 from flockana.stability.damp_table import damp_table
 from flockana.stability.delay import DelaySystem, late_part
-from flockana.stability.estimates import ensure_maps, ensure_study
 from tests.refused import refused
 
 K, D = 4.0, 1.0

@@ -24,8 +24,8 @@ from flockana import (
     linearise,
     simulate,
 )
-from flockana.base.differences import differences
 from flockana.base.errors import ArgumentError
+from flockana.base.finite_differences import differences
 from flockana.interactions import AlphaInteraction
 from flockana.laws.wrapper_base import Step, View
 from flockana.stability import DelayLinearisation, DelaySystem, Linearisation, MapLinearisation

@@ -8,8 +8,8 @@ import pytest
 from scipy.sparse import csr_array
 
 from flockana import Algorithm2, Gains, MinimalFlocking, StaticTarget, find_equilibrium, linearise, slowest_modes
-from flockana.stability.components import strong_components
 from flockana.stability.modes import SecondOrder
+from flockana.stability.strong_components import strong_components
 from flockana.stability.zero_modes import kernel_of, zero_threshold
 
 ROOT = complex(-0.5, 0.5 * sqrt(3.0))  # of s² + s + 1

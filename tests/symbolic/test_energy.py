@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import GAINS, ConcreteFlock, derive_split, energy, pair, sigma_norms, sums
+from flockana.symbolic import GAINS, ConcreteFlock, derive_split, energy, generic_pair, sigma_norms, sums_over_pairs
 from flockana.symbolic.algorithm3_energy import theorem6_identity
 from flockana.symbolic.energy import algorithm1_identity, structural_identity
 from flockana.symbolic.errata import e1_counterexample, e1_identity
@@ -21,7 +21,7 @@ def test_identities_hold_for_generic_n(m: int) -> None:
     for identity in (algorithm1_identity(m), structural_identity(m)):
         assert identity.residual == 0
         assert identity.rate == identity.claimed
-        assert identity.rate.has(sums.N)
+        assert identity.rate.has(sums_over_pairs.N)
 
 
 @pytest.mark.parametrize("law", ["algorithm1", "algorithm2"])
@@ -42,16 +42,18 @@ def test_a_wrong_kinetic_factor_leaves_a_residual(factor: sp.Expr) -> None:
 def test_a_wrong_lambda_leaves_exactly_its_excess() -> None:
     excess = sp.Symbol("mu", positive=True)
     identity = structural_identity(1, lambda_=GAINS.c1_gamma + excess)
-    x, v = sums.X[sums.I_, 1], sums.V[sums.I_, 1]
-    assert sp.expand(identity.residual - sums.over_agents(excess * x * v)) == 0
+    x, v = sums_over_pairs.X[sums_over_pairs.I_, 1], sums_over_pairs.V[sums_over_pairs.I_, 1]
+    assert sp.expand(identity.residual - sums_over_pairs.over_agents(excess * x * v)) == 0
 
 
 def _one_sided(q_i, p_i, q_j, p_j, *, gains=GAINS):  # type: ignore[no-untyped-def]
-    return pair.pair_force(q_i, p_i, q_j, p_j, gains=gains) + gains.c2_alpha * pair.ADJACENCY(q_i[0]) * p_j
+    return (
+        generic_pair.pair_force(q_i, p_i, q_j, p_j, gains=gains) + gains.c2_alpha * generic_pair.ADJACENCY(q_i[0]) * p_j
+    )
 
 
 def _doubled(q_i, p_i, q_j, p_j, *, gains=GAINS):  # type: ignore[no-untyped-def]
-    return 2 * pair.pair_force(q_i, p_i, q_j, p_j, gains=gains)
+    return 2 * generic_pair.pair_force(q_i, p_i, q_j, p_j, gains=gains)
 
 
 @pytest.mark.parametrize("mutant", [_one_sided, _doubled])
@@ -68,7 +70,7 @@ def test_algorithm_2_splits(m: int) -> None:
     assert derivation.holds
     assert len(derivation.residuals) == 4 * m
     own, translational = derivation.result
-    frame = {symbol for name in ("q_c", "p_c", "q_r", "p_r") for symbol in pair.vector(name, m)}
+    frame = {symbol for name in ("q_c", "p_c", "q_r", "p_r") for symbol in generic_pair.vector(name, m)}
     assert not own.free_symbols & frame
     assert translational.free_symbols <= frame | {GAINS.c1_gamma, GAINS.c2_gamma}
     assert sp.hessian(sum(translational), sorted(frame, key=str)).is_zero_matrix
@@ -76,13 +78,16 @@ def test_algorithm_2_splits(m: int) -> None:
 
 @DIMENSIONS
 def test_e1_leaves_exactly_minus_the_rate_of_v_and_the_dissipation(m: int) -> None:
-    i, j = sums.I_, sums.J_
-    z = sums.Z[i, j]
-    relative = [(sums.Q[i, k] - sums.Q[j, k], sums.P[i, k] - sums.P[j, k]) for k in range(1, m + 1)]
-    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*(y * w for y, w in relative))
-    dissipated = GAINS.c2_alpha * pair.ADJACENCY(z) * sp.Add(*(w**2 for _, w in relative))
+    i, j = sums_over_pairs.I_, sums_over_pairs.J_
+    z = sums_over_pairs.Z[i, j]
+    relative = [
+        (sums_over_pairs.Q[i, k] - sums_over_pairs.Q[j, k], sums_over_pairs.P[i, k] - sums_over_pairs.P[j, k])
+        for k in range(1, m + 1)
+    ]
+    v_rate = GAINS.c1_alpha * generic_pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*(y * w for y, w in relative))
+    dissipated = GAINS.c2_alpha * generic_pair.ADJACENCY(z) * sp.Add(*(w**2 for _, w in relative))
     identity = e1_identity(m)
-    assert identity.residual == sums.over_pairs(-v_rate) + sums.over_pairs(-dissipated)
+    assert identity.residual == sums_over_pairs.over_pairs(-v_rate) + sums_over_pairs.over_pairs(-dissipated)
     assert sp.expand(identity.rate - identity.claimed - identity.residual) == 0
     assert identity.steps[-1].equation == identity.residual
 

@@ -8,10 +8,10 @@ from flockana import Algorithm1, Algorithm2, Algorithm3, Sphere, StaticTarget, W
 from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.symbolic import linearisation as lin
-from flockana.symbolic.functions import adjacency, bump, phi_alpha, phi_beta
+from flockana.symbolic.generic_pair import ADJACENCY, PHI
 from flockana.symbolic.obstacles import PHI_BETA, RADIUS, WEIGHT, GenericObstacle
-from flockana.symbolic.pair import ADJACENCY, PHI
-from flockana.symbolic.parameters import GAINS, AlphaSymbols, BetaSymbols
+from flockana.symbolic.parameter_symbols import GAINS, AlphaSymbols, BetaSymbols
+from flockana.symbolic.scalar_functions import adjacency, bump, phi_alpha, phi_beta
 from flockana.symbolic.sigma_norms import EPS
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from flockana.symbolic import GAINS, algorithm3_energy, obstacles, pair, sigma_norms, sums
+from flockana.symbolic import GAINS, algorithm3_energy, generic_pair, obstacles, sigma_norms, sums_over_pairs
 from flockana.symbolic.algorithm3_energy import condition_76_residual, e2_counterexample, e2_identity, theorem6_identity
 from flockana.symbolic.obstacles import KINDS, GenericObstacle, derive_braking, derive_envelope, sphere_beta, wall_beta
 from tests.refused import refused
@@ -44,22 +44,24 @@ def test_theorem_6_holds_for_generic_n_and_any_obstacles(m: int, moving: bool) -
     identity = theorem6_identity(m, moving=moving)
     assert identity.residual == 0
     assert identity.rate == identity.claimed
-    assert identity.rate.has(sums.N)
+    assert identity.rate.has(sums_over_pairs.N)
     assert identity.rate.has(algorithm3_energy.COUNT)
 
 
 def test_the_closed_form_is_the_printed_one() -> None:
     """m = 1, term by term."""
-    i, j, k = sums.I_, sums.J_, sums.K_
-    p, p_r, s, q_r = sums.P, *sp.symbols("p_r1 s1 q_r1", real=True)
-    consensus = -GAINS.c2_alpha * sums.over_pairs(pair.ADJACENCY(sums.Z[i, j]) * (p[i, 1] - p[j, 1]) ** 2)
+    i, j, k = sums_over_pairs.I_, sums_over_pairs.J_, sums_over_pairs.K_
+    p, p_r, s, q_r = sums_over_pairs.P, *sp.symbols("p_r1 s1 q_r1", real=True)
+    consensus = -GAINS.c2_alpha * sums_over_pairs.over_pairs(
+        generic_pair.ADJACENCY(sums_over_pairs.Z[i, j]) * (p[i, 1] - p[j, 1]) ** 2
+    )
     term = obstacles.WEIGHT(algorithm3_energy.CLEARANCE[i, k]) * algorithm3_energy.BRAKING[i, k]
-    walls = GAINS.c2_beta * sp.Sum(term, (k, 1, algorithm3_energy.COUNT), (i, 1, sums.N))
-    drag = -GAINS.c2_gamma * (sums.over_agents(p[i, 1] ** 2) - p_r * sums.over_agents(p[i, 1]))
+    walls = GAINS.c2_beta * sp.Sum(term, (k, 1, algorithm3_energy.COUNT), (i, 1, sums_over_pairs.N))
+    drag = -GAINS.c2_gamma * (sums_over_pairs.over_agents(p[i, 1] ** 2) - p_r * sums_over_pairs.over_agents(p[i, 1]))
     assert sp.expand(theorem6_identity(1).claimed - consensus - walls - drag) == 0
     moving = theorem6_identity(1, moving=True).claimed.coeff(s)
-    x = sums.Q[i, 1] - q_r
-    by_hand = sums.over_agents(sp.expand(-GAINS.c1_gamma * x / sp.sqrt(sp.expand(x**2) + 1)))
+    x = sums_over_pairs.Q[i, 1] - q_r
+    by_hand = sums_over_pairs.over_agents(sp.expand(-GAINS.c1_gamma * x / sp.sqrt(sp.expand(x**2) + 1)))
     assert sp.expand(moving - by_hand) == 0
 
 
@@ -70,13 +72,16 @@ def test_condition_76_is_the_sign_of_the_drag(m: int) -> None:
 
 @DIMENSIONS
 def test_e2_leaves_exactly_the_rate_of_v_alpha(m: int) -> None:
-    i, j = sums.I_, sums.J_
-    z = sums.Z[i, j]
-    relative = [(sums.Q[i, k] - sums.Q[j, k]) * (sums.P[i, k] - sums.P[j, k]) for k in range(1, m + 1)]
-    v_rate = GAINS.c1_alpha * pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*relative)
+    i, j = sums_over_pairs.I_, sums_over_pairs.J_
+    z = sums_over_pairs.Z[i, j]
+    relative = [
+        (sums_over_pairs.Q[i, k] - sums_over_pairs.Q[j, k]) * (sums_over_pairs.P[i, k] - sums_over_pairs.P[j, k])
+        for k in range(1, m + 1)
+    ]
+    v_rate = GAINS.c1_alpha * generic_pair.PHI(z) / (1 + sigma_norms.EPS * z) * sp.Add(*relative)
     identity = e2_identity(m)
     assert not identity.holds
-    assert identity.residual == sums.over_pairs(v_rate)
+    assert identity.residual == sums_over_pairs.over_pairs(v_rate)
     assert identity.steps[-1].equation == identity.residual
 
 

@@ -10,7 +10,7 @@ import sympy as sp
 
 import flockana as fl
 from flockana import AlphaInteraction, DeadZoneInteraction, FormulaInteraction, RationalWeight
-from flockana.base.facts import Fact, conjunction
+from flockana.base.function_facts import Fact, conjunction
 from flockana.symbolic.interval_decisions import is_zero
 from flockana.symbolic.pair_facts import _NumericFormula
 from tests.toys.formulas import alpha_formula, spring

@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana import Tolerances, Trajectory, Verdict, rescale, theorem, verify
 from flockana.lattice import hexagonal_patch
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 
 def made_up(law, q, p=None, t=None, u=None):

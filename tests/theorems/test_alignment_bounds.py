@@ -9,9 +9,9 @@ import pytest
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.measures.metrics import spreads
-from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
+from flockana.sources.cucker_smale_2007.theorems.spread_functional import guarantee_of
 from flockana.theorems.alignment_bounds import QUADRATURE, AlignmentRate
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 
 @pytest.mark.parametrize("start", [-2.0, 0.0, 0.7])

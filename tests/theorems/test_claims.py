@@ -5,7 +5,7 @@ import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.claims import counted, erratum, exact, judged, undecided, vacuous
-from flockana.theorems.toolkit import Certificate, Claim, Enclosure, Hypothesis, Tolerances, limit_claim
+from flockana.theorems.theorem_toolkit import Certificate, Claim, Enclosure, Hypothesis, Tolerances, limit_claim
 
 MET, ASSUMED, UNMET = (Hypothesis(status, status) for status in ("met", "assumed", "unmet"))
 HOLDS, OPEN, FAILS = Enclosure.around(1.0, 0.1), Enclosure.around(0.0, 0.1), Enclosure.around(-1.0, 0.1)

@@ -13,7 +13,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.measures.path_bounds import contacts
 from flockana.theorems import collisions
 from flockana.theorems.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
-from flockana.theorems.toolkit import Enclosure, Observed
+from flockana.theorems.theorem_toolkit import Enclosure, Observed
 from tests.theorems.made_up import judged, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)

@@ -6,7 +6,7 @@ import pytest
 import flockana as fl
 from flockana import DeadZoneFlocking, Gains, Trajectory, find_equilibrium, linearise, rescale, simulate
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
+from flockana.base.integrity_seals import sealed
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

@@ -11,7 +11,7 @@ from flockana import Algorithm3, PairTerm, Sphere, StaticTarget, Tolerances, sim
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.energy import balance, falling_share, never_rises, stays_outside
-from flockana.theorems.observed import Observed, observed
+from flockana.theorems.observed_run import Observed, observed
 from flockana.theorems.second_runs import Errors
 from tests.theorems.made_up import hexagon, hypothesis, judged, made_up, statuses
 from tests.toys.sources.toy_2026.laws import ToyDrag, ToySwarm

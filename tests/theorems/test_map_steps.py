@@ -9,7 +9,7 @@ import pytest
 import flockana as fl
 from flockana import SemiImplicitEuler, Trajectory
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
+from flockana.base.integrity_seals import sealed
 from flockana.theorems.map_steps import ensure_steps_of_map
 
 _NEAR, _TURNED = [[1.0, 1.0], [1.0, 1.0], [2.0, 2.0]], [[0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]]

@@ -8,7 +8,7 @@ import pytest
 import flockana as fl
 from flockana.interactions.distance_functions import LawFunction
 from flockana.theorems import Claim, step_resolution
-from flockana.theorems.observed import Observed, with_resolution
+from flockana.theorems.observed_run import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
 from flockana.theorems.step_resolution import NAME, _hidden, demand_of, steps_of
 

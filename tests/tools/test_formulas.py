@@ -5,8 +5,8 @@ import sympy as sp
 
 import flockana
 from flockana.symbolic import BETA, named_functions
-from flockana.symbolic.functions import beta_closed, beta_smooth
 from flockana.symbolic.named_functions import Bump, Phi, PhiIntegral, SigmaNorm, written
+from flockana.symbolic.scalar_functions import beta_closed, beta_smooth
 from tools.formulas import sources
 
 A, Y, H, Z = sp.symbols("a y h z", positive=True)

@@ -12,7 +12,7 @@ import pytest
 import flockana
 from flockana import plots, scenario, symbolic
 from flockana.course import build
-from flockana.report.stills import stills
+from flockana.report.flock_stills import stills
 from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
 from tools.site import lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts

@@ -19,7 +19,7 @@ from flockana.symbolic import (
     translational_dynamics,
 )
 from flockana.symbolic import bearing_distance as zone
-from flockana.symbolic.pair import own_force, vector
+from flockana.symbolic.generic_pair import own_force, vector
 
 Made = Callable[[], Any]
 _Z, _S = sp.Symbol("z", nonnegative=True), sp.Symbol("s", real=True)

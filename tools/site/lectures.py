@@ -11,7 +11,7 @@ import jupytext
 import nbformat
 
 from flockana.course import build, slides
-from flockana.course.pages import entry_of, fold_depth, number_of, number_statements
+from flockana.course.course_pages import entry_of, fold_depth, number_of, number_statements
 from flockana.theorems.catalogue import catalogue
 from tools.site.cache import ROOT
 from tools.site.words import contents

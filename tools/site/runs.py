@@ -7,8 +7,8 @@ import re
 from typing import Any
 
 from flockana.player.page import page as player_page
-from flockana.report.pages import scenario_page
-from flockana.report.stills import stills
+from flockana.report.flock_stills import stills
+from flockana.report.page_data import scenario_page
 from flockana.scenarios import scenario
 from tools.site.cache import kept
 

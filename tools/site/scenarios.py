@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flockana.base.progress import progress_bar
-from flockana.report.coverage.anchors import verdict_id
+from flockana.report.coverage.report_anchors import verdict_id
 from flockana.scenarios import Scenario, scenario, scenarios
 from tools.site.runs import ran
 from tools.site.verdicts import Verdicts

@@ -10,12 +10,12 @@ from typing import Any
 
 from flockana import cite
 from flockana.report.catalogues import theorem_entries
-from flockana.report.coverage.anchors import verdict_id
+from flockana.report.coverage.report_anchors import verdict_id
 from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.claim import BYLINES
-from flockana.theorems.on_fixed_steps import scheme_note
+from flockana.theorems.fixed_step_verdicts import scheme_note
 from tools.site.lectures import back_links
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail

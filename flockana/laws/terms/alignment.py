@@ -5,11 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.pair_interaction import pair_matrix
 from flockana.interactions.weights import Weight
-from flockana.kernels.listed import no_energy
+from flockana.kernels.listed_pairs import no_energy
 from flockana.laws.terms.pairs import ensure_apart
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
 

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.kernels import agent_terms as kernel
-from flockana.kernels.listed import no_energy
+from flockana.kernels.listed_pairs import no_energy
 from flockana.laws.terms.term import Term, TermKernel
 
 

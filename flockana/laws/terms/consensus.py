@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.pair_interaction import PairInteraction
-from flockana.kernels.listed import no_energy
+from flockana.kernels.listed_pairs import no_energy
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
 

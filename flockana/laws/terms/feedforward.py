@@ -5,11 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.kernels import agent_terms as kernel
-from flockana.kernels.listed import no_energy
-from flockana.laws.features import Feature, target_feature
+from flockana.kernels.listed_pairs import no_energy
+from flockana.laws.law_features import Feature, target_feature
 from flockana.laws.terms.term import Term, TermKernel
 
 

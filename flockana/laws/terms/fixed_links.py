@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.pair_interaction import PairInteraction
 from flockana.laws.terms.term import Derivatives, Term, TermKernel

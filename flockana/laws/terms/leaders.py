@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.pair_interaction import PairInteraction
 from flockana.kernels.neighbours import pair_list
-from flockana.laws.features import Feature, target_feature
-from flockana.laws.matrices import block_diagonal
+from flockana.laws.law_features import Feature, target_feature
+from flockana.laws.law_matrices import block_diagonal
 from flockana.laws.terms.term import Derivatives, Term
 
 

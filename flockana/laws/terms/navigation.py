@@ -5,15 +5,15 @@ from functools import cached_property
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.override_checks import overrides_consistently
+from flockana.base.value_checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel
-from flockana.laws.features import Feature, target_feature
+from flockana.laws.law_features import Feature, target_feature
 from flockana.laws.terms.term import Invariance, Term, TermKernel
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.environment.beta import ObstacleField, check_free
+from flockana.base.value_checks import FloatArray
+from flockana.environment.beta_agents import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
 from flockana.kernels.obstacle_terms import body_numbers
-from flockana.laws.features import Feature
+from flockana.laws.law_features import Feature
 from flockana.laws.terms.term import Invariance, Term, TermKernel
 
 _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.pair_interaction import PairInteraction
-from flockana.kernels.listed import listed_numbers
+from flockana.kernels.listed_pairs import listed_numbers
 from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 

@@ -5,18 +5,18 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.short_repr import ShortRepr
+from flockana.base.value_checks import FloatArray
 from flockana.interactions.distance_functions import LawFunction
 from flockana.jit import Kernel
-from flockana.kernels.blocks import BLOCK
-from flockana.kernels.grid import LARGE, empty_cuts
-from flockana.kernels.large import work_of
-from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
-from flockana.kernels.listed import Listed
+from flockana.kernels.cell_grid import LARGE, empty_cuts
+from flockana.kernels.large_flocks import work_of
+from flockana.kernels.law_kernels import LawFunctions, LawNumbers, law_functions, law_numbers
+from flockana.kernels.listed_pairs import Listed
+from flockana.kernels.pair_helpers import BLOCK
 from flockana.kernels.runge_kutta import System
-from flockana.kernels.verlet import SKIN
-from flockana.laws.features import Feature, Unknown, function_feature
+from flockana.kernels.verlet_list import SKIN
+from flockana.laws.law_features import Feature, Unknown, function_feature
 
 _NO_PAIRS = np.zeros(2, np.int64)  # where those of the only slab begin and end
 Derivatives = tuple[Any, Any]  # (∂u/∂q, ∂u/∂p), sparse or as blocks
@@ -24,7 +24,7 @@ Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
 
 class TermKernel(NamedTuple):
-    """Term in the form of compiled integrators (`flockana.kernels.laws`).
+    """Term in the form of compiled integrators (`flockana.kernels.law_kernels`).
 
     Attributes
     ----------

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.axes import (
+from flockana.recorded.reading.array_axes import (
     AXES,
     is_smoother_along_second,
     order_of,
@@ -19,9 +19,9 @@ from flockana.recorded.reading.axes import (
     turned,
     with_joined_axes,
 )
-from flockana.recorded.reading.names import is_header
+from flockana.recorded.reading.column_names import is_header
+from flockana.recorded.reading.column_words import coordinate, is_agent, is_frame, is_time, words_of
 from flockana.recorded.reading.table import table_arrays
-from flockana.recorded.reading.words import coordinate, is_agent, is_frame, is_time, words_of
 
 _NAMES = {
     "t": ("t", "time", "times", "timestamp", "timestamps", "seconds", "tau"),

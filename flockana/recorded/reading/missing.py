@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_numbers
 from flockana.base.errors import ArgumentError
-from flockana.recorded.reading.names import MEANINGS
+from flockana.base.value_checks import FloatArray, ensure_numbers
+from flockana.recorded.reading.column_names import MEANINGS
 
 _Mask = npt.NDArray[np.bool_]
 _SMALL = (0.0, -1.0)  # ordinary coordinates, too: agents must leap there and back

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.recorded.reading.names import MEANINGS, Columns, Layout, layout_of
-from flockana.recorded.reading.text import numbers, row_name
-from flockana.recorded.reading.words import AXES, Unit
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.recorded.reading.column_names import MEANINGS, Columns, Layout, layout_of
+from flockana.recorded.reading.column_words import AXES, Unit
+from flockana.recorded.reading.text_tables import numbers, row_name
 
 AGENTS = "agents from "  # begins what is said of a column of agents
 _LARGEST = 2e8  # numbers that a recording holds at most, gaps among them

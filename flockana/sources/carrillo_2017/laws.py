@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
-from flockana.base.checks import ensure_kind
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
+from flockana.base.value_checks import ensure_kind
 from flockana.interactions.weights import SingularWeight
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.alignment import AlignmentTerm

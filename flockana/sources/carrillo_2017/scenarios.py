@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.interactions.weights import SingularWeight
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.carrillo_2017.laws import SingularAlignment
 
 _REFERENCES = ("carrillo-2017", "ahn-2012", "flockana")

@@ -6,7 +6,7 @@ from flockana.sources.carrillo_2017.laws import SingularAlignment
 from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.collisions import least_distance
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, positive_room
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, law_is, positive_room
 
 _LAW = law_is("alignment with a singular weight", SingularAlignment)
 _PAIR = "singular-pair"

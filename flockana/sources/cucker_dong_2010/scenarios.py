@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.interactions.weights import RationalWeight
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.cucker_dong_2010.laws import CuckerDong
 
 _NAMES = ("cucker-dong", *(f"cucker-dong:{claim}" for claim in ("functional", "apart", "bounded", "flock")))

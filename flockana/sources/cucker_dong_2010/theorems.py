@@ -4,11 +4,11 @@ import numpy as np
 
 from flockana.sources.cucker_dong_2010.laws import CuckerDong
 from flockana.theorems.alignment_bounds import AlignmentRate, Guarantee
-from flockana.theorems.between_samples import spread_over
+from flockana.theorems.bounds_between_samples import spread_over
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.collisions import least_distance
 from flockana.theorems.theorem import Checked, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim, positive_room
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 _PROOF = "avoided-collisions"
 

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_kind, normalise
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
+from flockana.base.value_checks import FloatArray, ensure_flag, ensure_kind, normalise
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms

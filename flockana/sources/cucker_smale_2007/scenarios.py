@@ -3,8 +3,8 @@
 import numpy as np
 
 from flockana.interactions.weights import RationalWeight
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
 from flockana.scenarios.one_start import RANGE, LawEntry
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
 
 _REFERENCES = ("cucker-smale-2007", "ha-liu-2009", "flockana")

@@ -11,10 +11,10 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.isola_2024 import MSNDiscretisation
 from flockana.sources.jond_2025 import MinimalFlocking
-from flockana.stability.growth import CLOSE
 from flockana.stability.law_studies import sampling_margin
 from flockana.stability.linearise import linearise
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, spectral
+from flockana.stability.unstable_steps import CLOSE
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, spectral
 
 _MSN = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
 _MSN_GAINS = Gains(c1_alpha=100.0, c2_alpha=20.0, c1_gamma=70.0, c2_gamma=2.0 * 70.0**0.5)

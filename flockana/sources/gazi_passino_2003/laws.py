@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues, LawFunction
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.first_order_law import VelocityLaw
 
 
 @dataclass(frozen=True)

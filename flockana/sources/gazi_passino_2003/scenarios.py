@@ -4,7 +4,7 @@ from math import exp
 
 import numpy as np
 
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.gazi_passino_2003.laws import GaziPassino
 
 _REFERENCES = ("gazi-passino-2003", "flockana")

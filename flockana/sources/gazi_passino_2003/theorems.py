@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.sources.gazi_passino_2003.laws import GaziPassino
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
-from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem
+from flockana.theorems.theorem_toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem
 
 _PROOF = "gazi-passino"
 

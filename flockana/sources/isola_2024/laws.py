@@ -6,9 +6,16 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
+from flockana.base.value_checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_flag,
+    ensure_kind,
+    ensure_positive,
+    normalise,
+)
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.discrete import DiscreteLaw, States

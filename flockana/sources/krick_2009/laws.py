@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise, per_agent
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
-from flockana.laws.velocity import VelocityLaw
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise, per_agent
+from flockana.laws.first_order_law import VelocityLaw
 from flockana.measures.perception import ensure_in_flock, ensure_net
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.lattice import hexagonal_patch
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.krick_2009.laws import DistanceFormation
 
 _TRIANGLE = ((0, 1), (1, 2), (0, 2))

@@ -5,14 +5,14 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.sources.krick_2009.laws import DistanceFormation
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is, positive_room
 from flockana.theorems.limit_certificates import limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.observed_run import Observed
+from flockana.theorems.rounding_bounds import EPS
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
 
 _PROOF = "distance-formation"

@@ -8,12 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, normalise
 from flockana.interactions.pair_interaction import PairInteraction, Tabulated, evaluate
 from flockana.kernels.integral_tables import integral_panels, on_panels
-from flockana.kernels.pair_lift import lift, lift_scalar
+from flockana.kernels.pair_kernels import lift, lift_scalar
 from flockana.sources.li_dead_zone.kernels import pair as kernel
 
 _ACTION = lift_scalar(kernel.action)

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.value_checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
 from flockana.plots.snapshot import configuration, draw_sample, in_view

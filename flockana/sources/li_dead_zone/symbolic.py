@@ -2,9 +2,9 @@
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
+from flockana.base.value_checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import along_flow, vector, with_derivative
+from flockana.symbolic.generic_pair import along_flow, vector, with_derivative
 
 RHO = sp.Symbol("rho", positive=True)
 ETA, ETA_POSITIVE = sp.Symbol("eta", nonnegative=True), sp.Symbol("eta", positive=True)

@@ -7,9 +7,9 @@ import numpy as np
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.design import GainDesign, design_gains
+from flockana.stability.eigenvalue_errors import eigenvalues
 from flockana.stability.gain_problems import gain_problem
-from flockana.stability.rounding import eigenvalues
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, spectral, undecided
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, spectral, undecided
 
 _WORTH = 0.01  # least relative improvement that counts: both searches end only near the best, where roots coalesce
 _CUSP = 1e-4  # relative error of a rate at coalescing roots

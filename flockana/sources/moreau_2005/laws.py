@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_numbers, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_numbers, ensure_positive, normalise
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.moreau_2005.laws import NetAveraging
 from flockana.sources.moreau_2005.theorems import HALVES
 

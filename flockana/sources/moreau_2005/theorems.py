@@ -6,7 +6,7 @@ from flockana.sources.moreau_2005.laws import NetAveraging
 from flockana.theorems.claims import by_count, judged, run_theorem, vacuous
 from flockana.theorems.net_roots import describe_groups, unheard_groups
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim
 
 _LAW = law_is("averaging over nets in turn", NetAveraging)
 _PROOF = "rooted-averaging"

@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.interactions.distance_functions import LawFunction
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.law import Law

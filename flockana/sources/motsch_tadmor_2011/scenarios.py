@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.interactions.weights import RationalWeight
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.motsch_tadmor_2011.laws import MotschTadmor
 
 _REFERENCES = ("motsch-tadmor-2011", "flockana")

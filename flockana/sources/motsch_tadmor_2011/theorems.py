@@ -5,8 +5,8 @@ import numpy as np
 from flockana.interactions.weights import RationalWeight
 from flockana.sources.motsch_tadmor_2011.laws import MotschTadmor, diameters
 from flockana.theorems.alignment_bounds import AlignmentRate, Guarantee
-from flockana.theorems.between_samples import fastest_between
-from flockana.theorems.toolkit import EPS, Checked, Enclosure, Observed, Tolerances, law_is, run_theorem
+from flockana.theorems.bounds_between_samples import fastest_between
+from flockana.theorems.theorem_toolkit import EPS, Checked, Enclosure, Observed, Tolerances, law_is, run_theorem
 
 _PROOF = "own-sums"
 _NAMES = ("bounded", "rate", "flock")

@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.interactions import AlphaInteraction
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues, LawFunction
 from flockana.kernels.neighbours import pair_blocks

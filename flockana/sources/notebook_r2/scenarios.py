@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.vectors import lengths
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
-from flockana.scenarios import findings
-from flockana.scenarios.entry import Report, Scenario, Status, refuted, vacuous, verified
+from flockana.scenarios import report_claims as findings
+from flockana.scenarios.scenario_builders import Report, Scenario, Status, refuted, vacuous, verified
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.notebook_r2.laws import MIN_DISTANCE, PushedAlgorithm1, PushedAlgorithm2
 from flockana.theorems import Claim, Tolerances

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.units import Powers
-from flockana.laws.velocity import VelocityLaw
+from flockana.base.value_checks import FloatArray
+from flockana.laws.first_order_law import VelocityLaw
 from flockana.sources.yu_chen_cao_2010 import NetConsensus
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from flockana.laws.in_turn import VelocityInTurn
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.laws.scheduled_laws import VelocityInTurn
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
 
 _NAMES = tuple(f"average-consensus:{part}" for part in ("agreement", "average", "some-start", "decay", "steps"))

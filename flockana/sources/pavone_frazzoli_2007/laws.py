@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import ComplexArray, FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.laws.velocity import VelocityLaw
+from flockana.base.value_checks import ComplexArray, FloatArray, ensure_finite_scalar, ensure_positive, normalise
+from flockana.laws.first_order_law import VelocityLaw
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.pavone_frazzoli_2007.laws import CyclicPursuit
 
 _ALL = verified("cyclic-pursuit", "cyclic-pursuit:motion")

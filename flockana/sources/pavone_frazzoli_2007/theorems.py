@@ -8,7 +8,7 @@ from flockana.certified.balls import exact
 from flockana.sources.pavone_frazzoli_2007.laws import CyclicPursuit
 from flockana.theorems.claims import judged, run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim, positive_room
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 _PROOF = "cyclic-pursuit"
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.measures.measure import Measure
 
 FOLLOWS = 1e-2  # of the law's own speed: an agent this near to the leader's velocity follows it

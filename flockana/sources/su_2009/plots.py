@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.ticker import PercentFormatter
 
 from flockana.base.argument_kinds import check_kinds
-from flockana.base.binomial import clopper_pearson
+from flockana.base.binomial_intervals import clopper_pearson
 from flockana.base.errors import ArgumentError
 from flockana.plots.palette import BLUE, MUTED, ORANGE
 from flockana.plots.style import ensure_axes, finish, place_legend, write_title

@@ -12,9 +12,18 @@ from flockana.environment import CircleTarget, LinearTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws import Algorithm2, compose
-from flockana.scenarios.entry import Builder, Scenario, Start, entry, inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, Claim, Tolerances, Trajectory, finding, report
 from flockana.scenarios.one_start import LawEntry, follower_of
+from flockana.scenarios.report_claims import ROUNDING, Claim, Tolerances, Trajectory, finding, report
+from flockana.scenarios.scenario_builders import (
+    Builder,
+    Scenario,
+    Start,
+    entry,
+    inconclusive,
+    refuted,
+    vacuous,
+    verified,
+)
 from flockana.sources.su_2009.measures import following
 
 _C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler

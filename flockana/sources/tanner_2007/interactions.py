@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues
 from flockana.interactions.pair_interaction import pair_matrix
 

@@ -10,16 +10,16 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.interactions.distance_functions import LawFunction, Within
+from flockana.laws.jump_laws import Margins, Pieces, SwitchedLaw
 from flockana.laws.law import Law
-from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import ensure_apart
 from flockana.laws.terms.term import Derivatives
-from flockana.measures.frame import moving_frame
+from flockana.measures.centre_frame import moving_frame
 from flockana.measures.perception import ensure_in_flock, ensure_net
 from flockana.sources.tanner_2007.interactions import LogPotential, net_derivatives, net_forces
 

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
-from flockana.scenarios.entry import Scenario, Status, inconclusive, vacuous, verified
 from flockana.scenarios.one_start import RANGE, LawEntry, net_of
+from flockana.scenarios.scenario_builders import Scenario, Status, inconclusive, vacuous, verified
 from flockana.sources.tanner_2007.interactions import LogPotential
 from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
 

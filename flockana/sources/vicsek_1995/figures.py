@@ -3,11 +3,11 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.windows import windows_of
+from flockana.measures.connectivity_windows import windows_of
 from flockana.report.charts import Chart, panels
 from flockana.report.figures import Picture, measured, spread
-from flockana.report.stills import stills
-from flockana.scenarios.findings import has_metric
+from flockana.report.flock_stills import stills
+from flockana.scenarios.report_claims import has_metric
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
 _SETTLED = 1e-3  # of the first span of headings: until it falls below there is something to see

@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray, normalise
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, normalise
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.noise import noise as random_number
+from flockana.kernels.random_noise import noise as random_number
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
 from flockana.measures.nets import LinkArray, components
@@ -76,13 +76,13 @@ class HeadingAveraging(DiscreteLaw):
     references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
 
     def __post_init__(self) -> None:
-        normalise(self, checks.ensure_positive, "range", "speed", "dt")
-        normalise(self, checks.ensure_finite_scalar, "zero")
-        normalise(self, checks.ensure_nonnegative, "noise")
-        checks.ensure_choice("average", self.average, AVERAGES)
+        normalise(self, value_checks.ensure_positive, "range", "speed", "dt")
+        normalise(self, value_checks.ensure_finite_scalar, "zero")
+        normalise(self, value_checks.ensure_nonnegative, "noise")
+        value_checks.ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
             raise ArgumentError(f"noise = {self.noise:g}: expected at most 2π radians, at which headings are uniform")
-        object.__setattr__(self, "seed", checks.ensure_seed(self.seed, 63))
+        object.__setattr__(self, "seed", value_checks.ensure_seed(self.seed, 63))
 
     @property
     def scales(self) -> Scales:

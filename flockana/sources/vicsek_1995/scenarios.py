@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.scenarios.entry import Builder, Report, Start, Status, entry, vacuous, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, limit_report, report
+from flockana.base.value_checks import FloatArray
 from flockana.scenarios.one_start import RANGE, SPEED, LawEntry
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, finding, limit_report, report
+from flockana.scenarios.scenario_builders import Builder, Report, Start, Status, entry, vacuous, verified
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.sources.vicsek_1995.theorems.heading_averages import permanently_connected, permanently_separated
 

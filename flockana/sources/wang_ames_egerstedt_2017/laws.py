@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_positive, normalise
 from flockana.laws.law import Law
 from flockana.laws.wrapper_base import Wrapper, WrappingLaw
 

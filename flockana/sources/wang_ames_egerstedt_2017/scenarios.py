@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.scenarios.entry import Builder, Start, Status, entry, vacuous, verified
+from flockana.scenarios.scenario_builders import Builder, Start, Status, entry, vacuous, verified
 from flockana.sources.wang_ames_egerstedt_2017.laws import SafetyFilter
 from flockana.sources.yu_chen_cao_2010 import NetConsensus
 

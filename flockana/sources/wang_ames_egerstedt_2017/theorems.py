@@ -5,7 +5,7 @@ import numpy as np
 from flockana.sources.wang_ames_egerstedt_2017.laws import SafetyFilter
 from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.theorem import Checked, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, positive_room
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, positive_room
 
 _PROOF = "safety-filter"
 

@@ -6,10 +6,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_positive, normalise
 from flockana.interactions.pair_interaction import pair_matrix
 from flockana.laws.law import Law
 from flockana.measures.perception import ensure_in_flock, ensure_net

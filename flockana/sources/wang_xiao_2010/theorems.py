@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana.sources.wang_xiao_2010.laws import FiniteTimeAlignment
 from flockana.theorems.theorem import Checked, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, run_theorem, vacuous
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, judged, law_is, run_theorem, vacuous
 
 _PROOF = "finite-time"
 

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_numbers, normalise
 from flockana.laws.wrapper_base import HearingLaw
 
 _WANTED = "a square array of weights a_ij >= 0, with which agent i hears agent j"

@@ -3,11 +3,25 @@
 import numpy as np
 
 from flockana.certified.balls import exact
-from flockana.certified.second_order import laplacian_of, moving_eigenvalues, stable_off_agreement, velocity_threshold
+from flockana.certified.consensus_polynomials import (
+    laplacian_of,
+    moving_eigenvalues,
+    stable_off_agreement,
+    velocity_threshold,
+)
 from flockana.sources.yu_chen_cao_2010.laws import NetConsensus
 from flockana.theorems.net_roots import has_root
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances
-from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, run_theorem, vacuous
+from flockana.theorems.theorem_toolkit import (
+    Enclosure,
+    Observed,
+    condition,
+    judged,
+    law_is,
+    limit_claim,
+    run_theorem,
+    vacuous,
+)
 
 _PROOF = "net-consensus"
 _MORE = "raise β or lower α"

@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.interactions.formula import FormulaInteraction
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.fixed_links import LinkTerm

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from flockana.scenarios.entry import Builder, Scenario, vacuous, verified
 from flockana.scenarios.one_start import RANGE, LawEntry, net_of
+from flockana.scenarios.scenario_builders import Builder, Scenario, vacuous, verified
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
 
 _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")

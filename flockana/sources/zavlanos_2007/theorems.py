@@ -5,11 +5,11 @@ import numpy as np
 from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.between_samples import polygons
+from flockana.theorems.bounds_between_samples import polygons
 from flockana.theorems.energy import balance, never_rises
+from flockana.theorems.limit_claims import velocities_match
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths, run_theorem
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths, run_theorem
 
 _PROOF = "links-kept"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.laws.velocity import VelocityLaw
+from flockana.laws.first_order_law import VelocityLaw
 from tests.refused import refused
 
 LAW = fl.GaziPassino(0.8, 3.0, 0.7)

@@ -7,7 +7,7 @@ import sympy as sp
 import flockana as fl
 from flockana.sources.tanner_2007.laws import FixedNetFlocking, ProximityFlocking
 from flockana.symbolic.energy_balances import WEIGHT, matching_identity
-from flockana.symbolic.pair import vector
+from flockana.symbolic.generic_pair import vector
 from tests.refused import refused
 
 RNG = np.random.default_rng(5)

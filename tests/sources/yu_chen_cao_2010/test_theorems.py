@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.certified import second_order
+from flockana.certified import consensus_polynomials
 
 
 def ring(n):
@@ -23,8 +23,8 @@ def verdict_of(weights, position, velocity):
 
 @pytest.mark.parametrize(("n", "bound"), [(3, 1 / 6), (4, 1 / 2), (5, 0.5 / np.tan(np.pi / 5) ** 2), (6, 3 / 2)])
 def test_the_bound_of_a_directed_ring_is_half_the_square_of_a_cotangent(n, bound):
-    found = second_order.velocity_threshold(
-        second_order.moving_eigenvalues(second_order.laplacian_of(ring(n).tolist()))
+    found = consensus_polynomials.velocity_threshold(
+        consensus_polynomials.moving_eigenvalues(consensus_polynomials.laplacian_of(ring(n).tolist()))
     )
     assert found.contains(fmpq(3, 2)) if n == 6 else abs(float(found.mid()) - bound) < 1e-14
 
@@ -62,7 +62,7 @@ def test_random_nets_agree_exactly_if_their_poles_decay(n, seed, velocity):
     moduli = np.sort(np.abs(np.linalg.eigvals(laplacian)))
     if moduli[1] < 1e-6 or abs(real[-3]) < 1e-4:
         return
-    stable = second_order.stable_off_agreement(second_order.laplacian_of(weights.tolist()), 1.0, gain)
+    stable = consensus_polynomials.stable_off_agreement(consensus_polynomials.laplacian_of(weights.tolist()), 1.0, gain)
     poles = np.linalg.eigvals(A)
     moving = poles[np.argsort(np.abs(poles))[2:]]
     assert stable == bool((moving.real < 0.0).all())
@@ -73,7 +73,7 @@ def test_random_nets_agree_exactly_if_their_poles_decay(n, seed, velocity):
 def test_hurwitz_by_rouths_array():
     for roots in ([-1, -2, -3], [-1, -2, 1], [-1, 0, -2], [-1 + 2j, -1 - 2j, -4], [2j, -2j, -1]):
         coefficients = [fmpq(round(c.real)) for c in np.poly(roots)[::-1]]
-        assert second_order.is_hurwitz(coefficients) == all(np.real(root) < 0 for root in roots)
+        assert consensus_polynomials.is_hurwitz(coefficients) == all(np.real(root) < 0 for root in roots)
 
 
 def test_a_gain_of_zero_is_no_such_law_and_another_law_is_none():

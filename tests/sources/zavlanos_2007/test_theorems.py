@@ -8,7 +8,7 @@ import pytest
 import flockana as fl
 from flockana.sources.zavlanos_2007.laws import LinkKeeping
 from flockana.sources.zavlanos_2007.theorems import theorem
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import statuses
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from flockana.interactions.pair_interaction import PairInteraction
 from flockana.jit import register_jitable
-from flockana.kernels.pair_lift import lift
+from flockana.kernels.pair_kernels import lift
 
 
 @register_jitable

@@ -3,8 +3,8 @@
 from math import sqrt
 
 from flockana.sources.cucker_smale_2007.laws import CuckerSmale
-from flockana.sources.cucker_smale_2007.theorems.guarantee import guarantee_of
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem
+from flockana.sources.cucker_smale_2007.theorems.spread_functional import guarantee_of
+from flockana.theorems.theorem_toolkit import Checked, Observed, Tolerances, law_is, run_theorem
 
 _NAMES = ("bounded", "rate", "flock")
 

@@ -6,7 +6,7 @@ from flockana.sources.cucker_smale_2007.laws import CuckerSmale
 from flockana.theorems.alignment_bounds import QUADRATURE, AlignmentRate
 from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
-from flockana.theorems.toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
+from flockana.theorems.theorem_toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 
 def _invariant(

@@ -7,8 +7,8 @@ import numpy as np
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws import Algorithm1, DirectedNet
-from flockana.scenarios.entry import OURS, Scenario, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, finding, report
+from flockana.scenarios.scenario_builders import OURS, Scenario, verified
 
 _N = 12
 _WORTH = 1e-3  # of what there is at the start: a change that counts, far above the error of the run

@@ -7,12 +7,12 @@ from flockana.environment import Copies, Spring, SystemTarget
 from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws import Algorithm2, PeerToPeer
-from flockana.scenarios.entry import OURS, Builder, Start, entry, verified
-from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, report
+from flockana.scenarios.report_claims import ROUNDING, connected, finding, fragmented, report
+from flockana.scenarios.scenario_builders import OURS, Builder, Start, entry, verified
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.energy import balance
-from flockana.theorems.gamma_agent import consistent
-from flockana.theorems.observed import Observed
+from flockana.theorems.gamma_agent_checks import consistent
+from flockana.theorems.observed_run import Observed
 
 _N = 8
 _DRIFT = 4.0  # by which the copies of the two halves differ from the true velocity, across the way

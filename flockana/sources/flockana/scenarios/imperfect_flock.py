@@ -9,7 +9,7 @@ from flockana.environment import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws import Algorithm2, Delayed, Disturbed, Lossy, Measured, Sampled, Saturated
-from flockana.scenarios.entry import Scenario, vacuous, verified
+from flockana.scenarios.scenario_builders import Scenario, vacuous, verified
 from flockana.solvers.wrapped_steps import Stepped
 
 DT, LAG, PERIOD, LOSS, LIMIT, NOISE, WIND = 0.01, 0.01, 0.02, 0.05, 20.0, 0.002, 0.5

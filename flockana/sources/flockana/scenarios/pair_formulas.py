@@ -7,7 +7,7 @@ import numpy as np
 from flockana.environment import LinearTarget
 from flockana.interactions import FormulaInteraction, Gains, pair_law
 from flockana.laws import Algorithm1, Algorithm2
-from flockana.scenarios.entry import OURS, Scenario, vacuous, verified
+from flockana.scenarios.scenario_builders import OURS, Scenario, vacuous, verified
 
 _CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
 _VERIFIED = verified("any-potential") | verified(*(f"any-potential:{claim}" for claim in _CLAIMS))

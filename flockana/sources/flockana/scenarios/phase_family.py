@@ -4,11 +4,11 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positive
+from flockana.base.value_checks import ensure_count, ensure_nonnegative, ensure_positive
 from flockana.environment import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws import Algorithm2
-from flockana.scenarios.entry import OURS, Scenario, verified
+from flockana.scenarios.scenario_builders import OURS, Scenario, verified
 
 _C1_ALPHA = 5.0
 _END = 60.0

@@ -7,8 +7,8 @@ import numpy as np
 
 from flockana.environment import StaticTarget
 from flockana.laws import Algorithm1, Algorithm2
-from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.entry import OURS, Scenario, refuted, vacuous, verified
+from flockana.scenarios.rigorous_verdicts import Enclosure
+from flockana.scenarios.scenario_builders import OURS, Scenario, refuted, vacuous, verified
 
 _ALL_OF_OS_3 = verified(*(f"os-3:{name}" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")))
 

@@ -4,12 +4,22 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.environment import Sphere, StaticTarget
 from flockana.interactions import Gains
 from flockana.laws import Algorithm1, Algorithm3, paper_pair
-from flockana.scenarios.entry import OURS, Builder, Scenario, Status, entry, inconclusive, refuted, vacuous, verified
 from flockana.scenarios.lazy_start import lazy_array
+from flockana.scenarios.scenario_builders import (
+    OURS,
+    Builder,
+    Scenario,
+    Status,
+    entry,
+    inconclusive,
+    refuted,
+    vacuous,
+    verified,
+)
 from flockana.sources.geschwender_2016 import rhombus_with_double_agent
 
 

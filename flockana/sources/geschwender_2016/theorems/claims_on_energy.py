@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.theorems.rounding import energy_error
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Needs, Observed, Trajectory, exact, judged
+from flockana.theorems.rounding_bounds import energy_error
+from flockana.theorems.theorem_toolkit import Claim, Enclosure, FloatArray, Needs, Observed, Trajectory, exact, judged
 
 PROOF = "energy-identities"
 

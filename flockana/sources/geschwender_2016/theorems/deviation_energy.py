@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import deviation_energy
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, of_state
 
 _NEAR = 2.0**-20  # of r: how close to the range from within, and of d to coincidence
 _ROUNDING = 1e-13  # relative, of an energy of two agents

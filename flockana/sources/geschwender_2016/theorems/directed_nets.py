@@ -11,7 +11,7 @@ from flockana.laws.directed_algorithms import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import rises
 from flockana.theorems.claims import erratum, judged, of_state
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off

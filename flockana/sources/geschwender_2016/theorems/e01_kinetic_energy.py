@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import PROOF, run_claim, state_claim
-from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, equal, erratum, observed
 
 
 @erratum("E1", expected={"refuted": "printed printed-state printed-run", "verified": "corrected"})

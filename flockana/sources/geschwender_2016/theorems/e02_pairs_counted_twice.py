@@ -5,7 +5,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import PROOF, run_claim, state_claim
 from flockana.sources.geschwender_2016.theorems.energy_printed import pair_energy
-from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, equal, erratum, observed
 
 
 @erratum("E2", expected={"refuted": "printed printed-state printed-run", "verified": "corrected"})

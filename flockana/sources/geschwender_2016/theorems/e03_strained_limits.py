@@ -16,9 +16,18 @@ from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.nets import components, links
-from flockana.theorems.attraction import attraction
+from flockana.theorems.attraction_basin import attraction
 from flockana.theorems.random_start_shares import CONFIDENCE
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, always, erratum, judged, of_state
+from flockana.theorems.theorem_toolkit import (
+    Claim,
+    Enclosure,
+    FloatArray,
+    Tolerances,
+    always,
+    erratum,
+    judged,
+    of_state,
+)
 
 _SIZES, _STARTS = (10, 20, 40), 20
 _STRAINED = (40, 14)  # (n, seed) of a start whose limit is strained and holds no coincident agents

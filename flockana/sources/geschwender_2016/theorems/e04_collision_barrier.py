@@ -14,7 +14,7 @@ from flockana.equilibria.energy_barrier import (
 )
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, of_state
+from flockana.theorems.theorem_toolkit import EPS, Claim, Tolerances, erratum, of_state
 
 _SIZES = (3, 7, 10)  # of the barrier that is searched here; the larger ones take longer and change nothing
 _STARTS = 8

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.lattice import is_planar, kuratowski, planar_bound
 from flockana.lattice.builders import fcc_star
 from flockana.sources.olfati_saber_2006 import check
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, of_state
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, by_count, erratum, of_state
 
 _D, _R = 7.0, 8.4
 Site = tuple[int, int, int]

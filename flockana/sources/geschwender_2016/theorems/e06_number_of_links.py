@@ -1,7 +1,7 @@
 """Erratum E6: 3n − 6 bounds the links of three agents or more only, and is not sharp."""
 
 from flockana.lattice import harborth, hexagonal_spiral, links
-from flockana.theorems.toolkit import Claim, Tolerances, by_count, counted, erratum
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, by_count, counted, erratum
 
 _MOST = 60
 _D, _R = 7.0, 8.4

@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.measures.metrics import connectivity, giant_share
 from flockana.measures.nets import links, printed_edge_share
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, by_count, erratum
 
 _PROOF = "net-measures"
 _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and the range is 1.5

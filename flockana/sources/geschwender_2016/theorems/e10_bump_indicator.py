@@ -1,6 +1,6 @@
 """Erratum E10: at h = 1 the bump function is an indicator, and no longer continuous."""
 
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact
 
 
 @erratum("E10")
@@ -10,7 +10,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     import sympy as sp
 
     from flockana.symbolic import bump
-    from flockana.symbolic.functions import taper
+    from flockana.symbolic.scalar_functions import taper
 
     z, h = sp.Symbol("z", positive=True), sp.Symbol("h", positive=True)
     indicator = bump(z, h=sp.Integer(1))

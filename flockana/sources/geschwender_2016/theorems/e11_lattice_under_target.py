@@ -7,18 +7,26 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import CONTACT, natural_ratio, perturbed, pulled_law, threshold
 from flockana.equilibria.final_state import TerminalState, terminal_state
 from flockana.equilibria.gradient_flow import gradient_flow
+from flockana.equilibria.lattice_collapse import CONTACT, natural_ratio, perturbed, pulled_law, threshold
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import coincident_pairs
-from flockana.theorems.asymptotics import limit_strain
-from flockana.theorems.attraction import final_basin
+from flockana.theorems.attraction_basin import final_basin
 from flockana.theorems.claims import judged, run_theorem, undecided
+from flockana.theorems.limit_claims import limit_strain
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
+from flockana.theorems.theorem_toolkit import (
+    Certificate,
+    Enclosure,
+    FloatArray,
+    Observed,
+    condition,
+    law_is,
+    limit_claim,
+)
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _SAFE, _FACTOR = 1.2, 1.3  # where the search for one ring starts, of `natural_ratio`, and its steps

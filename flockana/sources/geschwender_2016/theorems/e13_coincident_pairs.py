@@ -10,7 +10,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.collisions import distinct_pairs, pairs_at_one_instant
 from flockana.theorems.hypotheses import alpha_gain
 from flockana.theorems.search_objectives import pairs_apart
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Observed, Tolerances, Trajectory, law_is, run_theorem, unmet
 
 _UNTIL = 0.03  # by then both pairs have coincided
 

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
-from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, equal, erratum, of_state
+from flockana.theorems.theorem_toolkit import EPS, Claim, FloatArray, Tolerances, equal, erratum, of_state
 
 _SHIFT = 10.0  # of d
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import run_claim
 from flockana.theorems.energy import cancelling, never_rises, stays_outside
-from flockana.theorems.gamma_agent import target_rests
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, lengths, run_theorem
+from flockana.theorems.gamma_agent_checks import target_rests
+from flockana.theorems.theorem_toolkit import Checked, Observed, Tolerances, Trajectory, law_is, lengths, run_theorem
 
 
 def pair_energy(run: Trajectory) -> FloatArray:

@@ -1,10 +1,10 @@
 """Printed summaries of Theorems 1 and 3 on a run: convergence to an α-lattice (false, erratum E3)."""
 
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.hypotheses import alpha_gain
+from flockana.theorems.limit_claims import lattice_limit
 from flockana.theorems.search_objectives import strained
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
 
 
 @run_theorem(

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_finite_scalar, ensure_positive
+from flockana.base.value_checks import ensure_finite_scalar, ensure_positive
 from flockana.environment import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws import Algorithm1, Algorithm2, DiscreteLaw, Law
-from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import in_source_units
+from flockana.scenarios.report_claims import in_source_units
+from flockana.scenarios.scenario_builders import Scenario, Status, inconclusive, refuted, vacuous, verified
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.scenarios.reports import CENTRE, DT, REPORTS, STATIC
 

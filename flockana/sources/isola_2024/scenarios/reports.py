@@ -8,13 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from flockana.base.vectors import lengths
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import Gains
 from flockana.measures.metrics import coincident_pairs, connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.scenarios.entry import Report
-from flockana.scenarios.findings import finding, fragmented, report, rerun, same_accuracy
+from flockana.scenarios.report_claims import finding, fragmented, report, rerun, same_accuracy
+from flockana.scenarios.scenario_builders import Report
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.theorems import Claim, Tolerances
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.theorems.toolkit import Claim, Tolerances, by_count, erratum
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, by_count, erratum
 
 _PROOF = "net-measures"
 

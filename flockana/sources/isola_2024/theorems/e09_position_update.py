@@ -8,7 +8,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.sources.isola_2024.laws import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
-from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, exact, of_map
+from flockana.theorems.theorem_toolkit import EPS, Claim, Tolerances, erratum, exact, of_map
 
 _Q, _P, _Q_R, _DT = 3.0, -2.0, 11.0, 0.125  # binary fractions: the step below is exact in floating point
 _PROOF = "constant-acceleration"

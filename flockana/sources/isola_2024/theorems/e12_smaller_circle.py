@@ -13,7 +13,16 @@ from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio, whole_period
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed, run_theorem
+from flockana.theorems.theorem_toolkit import (
+    EPS,
+    Enclosure,
+    Observed,
+    Trajectory,
+    condition,
+    judged,
+    observed,
+    run_theorem,
+)
 
 
 def measured_ratio(seen: Observed) -> Enclosure:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.environment.targets import CircleTarget, RescaledVelocity
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
@@ -14,7 +14,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
 from flockana.stability.centre_transfer import CentreOfMass, predicted_gain
-from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, equal, erratum, judged, observed, stacked
+from flockana.theorems.theorem_toolkit import Claim, Enclosure, Tolerances, equal, erratum, judged, observed, stacked
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's
 _FREQUENCY = 0.025 / 5.0 / _DT
@@ -47,7 +47,7 @@ def _condition() -> Any:
     """Return the difference between the numerator of d|G|²/dω² and its stated form, for all parameters."""
     import sympy as sp
 
-    from flockana.symbolic.parameters import GAINS
+    from flockana.symbolic.parameter_symbols import GAINS
     from flockana.symbolic.translational_dynamics import falling_condition, gain_slope
 
     factor, w = sp.Symbol("k", real=True), sp.Symbol("w", nonnegative=True)

@@ -5,13 +5,13 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.equilibria.collapse import perturbed, pulled_law
 from flockana.equilibria.final_state import TerminalState, terminal_state
+from flockana.equilibria.lattice_collapse import perturbed, pulled_law
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.sources.geschwender_2016 import resting_place
-from flockana.theorems.attraction import attraction
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, stacked
+from flockana.theorems.attraction_basin import attraction
+from flockana.theorems.theorem_toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, stacked
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's
 _RATIO = 0.7  # c1γ/c1α: its own 70 : 100

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_positive, freeze_vector, normalise
 from flockana.environment.obstacles import Sphere
 from flockana.environment.polygon import SimplePolygon
 from flockana.sources.jond_2025.environment.zone_obstacles import Box, ball_clearance_along

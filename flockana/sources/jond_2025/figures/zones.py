@@ -3,11 +3,11 @@
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.measures.profiles import pair_distance_profile
+from flockana.measures.distance_profiles import pair_distance_profile
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, effort, measured, speeds
-from flockana.report.stills import stills
-from flockana.scenarios.findings import component_counts, has_metric
+from flockana.report.flock_stills import stills
+from flockana.scenarios.report_claims import component_counts, has_metric
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 
 _DANGER = "distance to obstacle, wall, alien (length)"

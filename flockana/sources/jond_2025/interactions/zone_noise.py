@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
-from flockana.base.checks import ensure_nonnegative, ensure_seed, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
+from flockana.base.value_checks import ensure_nonnegative, ensure_seed, normalise
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class ZoneNoise:
     """Stochastic elements that Jond's conclusions propose: random perturbations of weights and velocities.
 
     Every number is a function of (seed, step, agent, whom it is about, behaviour) and of nothing else
-    (`flockana.kernels.noise`): runs repeat to the bit, whatever was computed before or beside them.
+    (`flockana.kernels.random_noise`): runs repeat to the bit, whatever was computed before or beside them.
 
     Parameters
     ----------

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, PerAgent, ensure_nonnegative, normalise, per_agent
 from flockana.base.errors import ArgumentError
 from flockana.base.short_repr import ShortRepr
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, PerAgent, ensure_nonnegative, normalise, per_agent
 
 Table = float | tuple[tuple[float, ...], ...]
 _PAIRS = ("separation", "cohesion", "alignment")

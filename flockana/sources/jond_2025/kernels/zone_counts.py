@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.components import labelled, unite
+from flockana.kernels.connected_components import labelled, unite
 from flockana.kernels.neighbours import FloatArray, IndexArray, pair_list
 
 _SLACK = 1.0 + 1e-12  # the search is strict, and the zones are closed

@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from flockana.jit import kernel, register_jitable
 from flockana.kernels.agent_sums import square_between
-from flockana.kernels.noise import noise
-from flockana.sources.jond_2025.kernels.candidates import gather, sort_into_cells
+from flockana.kernels.random_noise import noise
+from flockana.sources.jond_2025.kernels.neighbour_candidates import gather, sort_into_cells
 from flockana.sources.jond_2025.kernels.zone_obstacles import obstacle_terms, to_boundary
 
 FloatArray = npt.NDArray[np.float64]

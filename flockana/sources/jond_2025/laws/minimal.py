@@ -10,24 +10,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray, PerAgent, normalise
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError
+from flockana.base.natural_scales import Scales
 from flockana.base.override_checks import overrides_consistently
-from flockana.base.scales import Scales
 from flockana.base.units import Powers, scaled_fields, times
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray, PerAgent, normalise
+from flockana.base.vector_norms import lengths
 from flockana.laws.discrete import DiscreteLaw, IndexArray, States
-from flockana.laws.features import Feature
 from flockana.laws.law import Arrays, Block, Law
+from flockana.laws.law_features import Feature
 from flockana.laws.terms.term import Derivatives
+from flockana.measures.distance_profiles import pair_distance_profile
 from flockana.measures.measure import Series
 from flockana.measures.nets import components
 from flockana.measures.perception import Edges, ensure_edges
-from flockana.measures.profiles import pair_distance_profile
 from flockana.sources.jond_2025.interactions.zones import Table, per_pair
 from flockana.sources.jond_2025.kernels import minimal as kernel
-from flockana.sources.jond_2025.laws.edges import EdgeData, weighed_edges
+from flockana.sources.jond_2025.laws.edge_weights import EdgeData, weighed_edges
 
 _EQUAL = 1e-14  # relative: products of three numbers that are equal by algebra differ by less
 
@@ -86,9 +86,12 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        normalise(self, checks.ensure_flag, "normalised")
+        normalise(self, value_checks.ensure_flag, "normalised")
         normalise(
-            self, checks.per_agent, "radius", *(name for name in ("beta", "spacing") if getattr(self, name) is not None)
+            self,
+            value_checks.per_agent,
+            "radius",
+            *(name for name in ("beta", "spacing") if getattr(self, name) is not None),
         )
         normalise(self, per_pair, "mu", "sigma")
         if self.edges is not None:
@@ -199,7 +202,7 @@ class MinimalFlocking(Law):
         >>> MinimalFlocking((3.0, 1.0)).perceived([[0.0], [2.0]])
         ((1, 0),)
         """
-        q = checks.ensure_points("q", q)
+        q = value_checks.ensure_points("q", q)
         self.check_agents(len(q))
         data = self.edge_data(q)
         return tuple(zip(data.tail.tolist(), data.head.tolist(), strict=True))
@@ -363,8 +366,8 @@ class DiscreteMinimalFlocking(DiscreteLaw):
     steps_at_once = 4096
 
     def __post_init__(self) -> None:
-        checks.ensure_kind("law", self.law, MinimalFlocking, "MinimalFlocking(...)")
-        normalise(self, checks.ensure_positive, "dt")
+        value_checks.ensure_kind("law", self.law, MinimalFlocking, "MinimalFlocking(...)")
+        normalise(self, value_checks.ensure_positive, "dt")
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         u = self.law.flow(t, q, p)[0]

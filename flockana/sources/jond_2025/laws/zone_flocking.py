@@ -12,11 +12,11 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from flockana.base import checks
-from flockana.base.checks import FloatArray, normalise
+from flockana.base import value_checks
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, normalise
 from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.law import Arrays
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
@@ -183,13 +183,13 @@ class ZoneFlocking(DiscreteLaw):
     def __post_init__(self) -> None:
         parts = (("radii", ZoneRadii), ("weights", ZoneWeights), ("world", ZoneWorld), ("noise", ZoneNoise))
         for name, kind in parts:
-            checks.ensure_kind(name, getattr(self, name), kind, f"a {kind.__name__}")
-        normalise(self, checks.ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
-        normalise(self, checks.ensure_nonnegative, "growth")
+            value_checks.ensure_kind(name, getattr(self, name), kind, f"a {kind.__name__}")
+        normalise(self, value_checks.ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
+        normalise(self, value_checks.ensure_nonnegative, "growth")
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():
-            checks.ensure_choice(name, getattr(self, name), names)
+            value_checks.ensure_choice(name, getattr(self, name), names)
         self._check_box()
 
     def _check_box(self) -> None:
@@ -255,7 +255,7 @@ class ZoneFlocking(DiscreteLaw):
         ArgumentError
             On bad arrays, or a law for other agents than these.
         """
-        q, p = checks.ensure_state(q, p)
+        q, p = value_checks.ensure_state(q, p)
         self.check_dimension(q.shape[1])
         state = self.start(q, p) if memory is None else memory
         components = compiled.behaviours(*self._state(q, p, state), self._rules(*q.shape))
@@ -307,7 +307,7 @@ class ZoneFlocking(DiscreteLaw):
         >>> ZoneFlocking(zone_length="speed").altitudes([[0.0, 0.0], [2.0, 0.0], [0.0, 4.0]]).tolist()
         [1.5, 3.25, 5.0]
         """
-        speeds = np.linalg.norm(checks.ensure_points("p", p), axis=1)
+        speeds = np.linalg.norm(value_checks.ensure_points("p", p), axis=1)
         r, c, a, _ = self.radii.arrays(len(speeds))
         speed_altitudes: FloatArray = r + (a - r) * np.minimum(1.0, speeds / self.v_max)
         length_by_zone = {"conflict": c, "attraction": a, "speed": speed_altitudes}

@@ -12,8 +12,8 @@ import numpy as np
 
 from flockana.measures.metrics import coordination
 from flockana.measures.perception import both_ways, random_out_tree
-from flockana.scenarios.entry import Builder, Scenario, entry, inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, in_source_units, report
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, finding, in_source_units, report
+from flockana.scenarios.scenario_builders import Builder, Scenario, entry, inconclusive, refuted, vacuous, verified
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.jond_2025.theorems import j11_minimal_model_runs as j11
 

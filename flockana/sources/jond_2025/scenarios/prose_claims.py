@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from flockana.base.checks import ensure_count
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import lengths
-from flockana.scenarios.entry import Builder, Scenario, Start, inconclusive, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_counts, finding, report, rerun
+from flockana.base.value_checks import ensure_count
+from flockana.base.vector_norms import lengths
 from flockana.scenarios.lazy_start import lazy_state
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, component_counts, finding, report, rerun
+from flockana.scenarios.scenario_builders import Builder, Scenario, Start, inconclusive, verified
 from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.interactions.zone_noise import ZoneNoise
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights

@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.polygon import SimplePolygon
 from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
-from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, refuted, verified
-from flockana.scenarios.findings import component_counts, finding, in_source_units, report
 from flockana.scenarios.lazy_start import lazy_state
+from flockana.scenarios.report_claims import component_counts, finding, in_source_units, report
+from flockana.scenarios.scenario_builders import Builder, Report, Start, Status, entry, inconclusive, refuted, verified
 from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights

@@ -6,10 +6,10 @@ weights where the behaviour is a mean, so that a pair shows the equality of the 
 
 import sympy as sp
 
-from flockana.base.checks import ensure_dimension
+from flockana.base.value_checks import ensure_dimension
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import vector
-from flockana.symbolic.parameters import exact
+from flockana.symbolic.generic_pair import vector
+from flockana.symbolic.parameter_symbols import exact
 
 C, GAIN, STEP = sp.symbols("c w delta", positive=True)
 SPEED, BOUND = sp.symbols("v^d m", positive=True)

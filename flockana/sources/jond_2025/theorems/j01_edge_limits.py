@@ -7,9 +7,9 @@ from flockana.measures.perception import Edges, edge_vectors, random_out_tree
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase, tree_case
 from flockana.sources.jond_2025.theorems.tree_limits import kept, settles
-from flockana.theorems.observed import End, Observed, observed
+from flockana.theorems.observed_run import End, Observed, observed
 from flockana.theorems.random_start_shares import CONFIDENCE, interval
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, limit_claim
+from flockana.theorems.theorem_toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, limit_claim
 
 _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, undecided
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact, undecided
 
 
 def _two_agents_abscissa(ratio: float) -> float:

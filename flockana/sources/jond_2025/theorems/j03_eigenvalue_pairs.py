@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.measures.perception import both_ways
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, exact, spectral
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, exact, spectral
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
 _TREE_SHAPES = (((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4)))

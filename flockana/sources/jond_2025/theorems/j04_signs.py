@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana.measures.perception import edge_vectors, incidence, receivers
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, equal, erratum, of_state
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 _PROOF = "bearing-distance-printed"

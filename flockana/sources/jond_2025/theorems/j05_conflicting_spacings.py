@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.measures.perception import both_ways, incidence
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, erratum, judged, lengths, observed, stacked
+from flockana.theorems.theorem_toolkit import Claim, Enclosure, Tolerances, erratum, judged, lengths, observed, stacked
 
 _STARTS, _END = 20, 60.0
 _RUNAWAY, _THRUST = np.array([0.0, 5.0 / 3.0, 5.0 / 3.0]), 2.0 / 3.0  # distances of ends and middle; all |u|

@@ -6,7 +6,7 @@ from flockana.measures.perception import both_ways
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.sources.jond_2025.theorems import theorem_1_corrected as zone_1_corrected
 from flockana.theorems.claims import counted, erratum
-from flockana.theorems.observed import observed, with_resolution
+from flockana.theorems.observed_run import observed, with_resolution
 from flockana.theorems.theorem import Claim, Tolerances, Verdict
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

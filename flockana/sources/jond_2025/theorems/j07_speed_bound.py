@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import runs_from_random_starts
-from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, lengths, mostly, of_map, spectral
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, always, erratum, lengths, mostly, of_map, spectral
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps
 

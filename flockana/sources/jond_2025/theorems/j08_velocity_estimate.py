@@ -5,7 +5,7 @@ import numpy as np
 from flockana.measures.nets import components, links
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import SEEDS, runs_from_random_starts, zone_start
-from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, mostly, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, always, erratum, mostly, of_state
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding
 

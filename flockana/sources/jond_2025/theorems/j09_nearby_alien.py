@@ -6,7 +6,7 @@ from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import DURATION, runs_from_random_starts
-from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, observed, of_map
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, always, erratum, observed, of_map
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps of one agent
 _UNBOUNDED = 1e6  # an input bound that never acts

@@ -6,7 +6,7 @@ from flockana.measures.metrics import coordination, min_distance
 from flockana.sources.jond_2025.interactions.zones import ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems import random_starts
-from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, erratum, mostly, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, Trajectory, always, erratum, mostly, of_state
 
 _STARTS = 2000
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, mostly, observed
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, always, erratum, mostly, observed
 
 N, SIDE, DT = 60, 30.0, 0.1
 DURATION = {2: 20.0, 3: 10.0}

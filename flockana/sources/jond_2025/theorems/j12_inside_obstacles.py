@@ -7,7 +7,7 @@ from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, observed, of_map, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, observed, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _RADII = ZoneRadii(1.5, c=3.0, a=5.0)

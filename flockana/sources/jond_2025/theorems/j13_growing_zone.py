@@ -6,7 +6,7 @@ from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, of_map, of_state
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _R, _C, _A, _V_MAX, _SIDE = 1.5, 3.0, 5.0, 4.0, 50.0

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import separated_start
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, mostly, observed, of_map
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, lengths, mostly, observed, of_map
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: speeds that differ by less are the same; of a few hundred steps
 _RADII = ZoneRadii(1.5, c=3.0, a=5.0)

@@ -6,7 +6,7 @@ from flockana.measures.metrics import min_distance
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import runs_from_random_starts, separated_start
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, of_map
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, always, erratum, of_map
 
 _SAME, _ROUNDING = 1e-6, 1e-11  # relative: distances that differ by less are the same; of a thousand steps
 _C = 3.0

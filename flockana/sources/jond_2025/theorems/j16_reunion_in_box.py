@@ -6,7 +6,7 @@ from flockana.sources.jond_2025.environment.zone_obstacles import Box
 from flockana.sources.jond_2025.environment.zone_world import ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.theorems.toolkit import Certificate, Claim, FloatArray, Tolerances, erratum, limit_claim, of_map
+from flockana.theorems.theorem_toolkit import Certificate, Claim, FloatArray, Tolerances, erratum, limit_claim, of_map
 
 _ROUNDING = 1e-11  # relative: of a few thousand steps straight on
 _A, _C, _SIDE, _SPEED = 5.0, 3.0, 50.0, 3.0

@@ -6,7 +6,7 @@ import numpy.typing as npt
 from flockana.sources.jond_2025.environment.zone_world import Alien, ZoneWorld
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii, ZoneWeights
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_map
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, of_map
 
 _DETECTION, _PURSUIT, _SPEED, _AT = 9.0, 1.5, 3.0, 20.0
 _SHORT, _STEPS = 6.0, 200

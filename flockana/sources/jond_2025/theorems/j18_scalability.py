@@ -7,7 +7,7 @@ from flockana.measures.nets import components, links
 from flockana.sources.jond_2025.interactions.zones import ZoneRadii
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 from flockana.sources.jond_2025.theorems.random_starts import crowd_start
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, mostly, observed, of_map
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, mostly, observed, of_map
 
 _LAW = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0))
 _SEEDS = {10: 20, 100: 20, 500: 6}  # by number of agents; of 6 none may fail, so that half of all are sure to hold

@@ -3,7 +3,7 @@
 from itertools import product
 from typing import Any
 
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact
 
 _NODES = 5
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.measures.nets import components, links
 from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
-from flockana.theorems.toolkit import FloatArray, Trajectory, observed
+from flockana.theorems.theorem_toolkit import FloatArray, Trajectory, observed
 
 SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 

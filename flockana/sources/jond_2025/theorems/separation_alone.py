@@ -7,7 +7,16 @@ import numpy as np
 
 from flockana.measures.perception import both_ways
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, observed, stacked
+from flockana.theorems.theorem_toolkit import (
+    Claim,
+    Enclosure,
+    FloatArray,
+    Tolerances,
+    erratum,
+    judged,
+    observed,
+    stacked,
+)
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
 _PERIODS, _PER_PERIOD = 20, 40  # how many, and samples of each

@@ -7,7 +7,15 @@ from flockana.sources.jond_2025.theorems.tree_energy import edge_claim, energy_c
 from flockana.sources.jond_2025.theorems.tree_limits import settles, velocity_claim
 from flockana.sources.jond_2025.theorems.tree_spectrum import Spectrum, tree_spectrum
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, Observed, condition, evidence, limit_claim, run_theorem, spectral
+from flockana.theorems.theorem_toolkit import (
+    Certificate,
+    Observed,
+    condition,
+    evidence,
+    limit_claim,
+    run_theorem,
+    spectral,
+)
 
 
 def _errors(case: TreeCase, seen: Observed) -> np.ndarray:

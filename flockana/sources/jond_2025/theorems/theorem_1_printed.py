@@ -7,7 +7,7 @@ import numpy as np
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase, minimal_law, tree_hypotheses
 from flockana.sources.jond_2025.theorems.tree_limits import kept, state, velocity_claim
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, Enclosure, Observed, judged, limit_claim, run_theorem
+from flockana.theorems.theorem_toolkit import Certificate, Enclosure, Observed, judged, limit_claim, run_theorem
 
 
 def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:

@@ -10,8 +10,8 @@ import numpy as np
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.sources.jond_2025.laws.minimal import MinimalFlocking
 from flockana.stability import linearise
-from flockana.theorems.between_samples import least_distance
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Hypothesis, Observed, condition, stacked
+from flockana.theorems.bounds_between_samples import least_distance
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray, Hypothesis, Observed, condition, stacked
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase
 from flockana.theorems.claims import judged, undecided, vacuous
 from flockana.theorems.hypotheses import condition, positive_room
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, stacked
+from flockana.theorems.theorem_toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, stacked
 
 _PROOF = "bearing-distance"
 

@@ -23,9 +23,9 @@ import numpy as np
 from flockana.measures.perception import edge_vectors
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase
 from flockana.theorems.limit_certificates import Certificate, decays_to_zero
-from flockana.theorems.observed import End
-from flockana.theorems.rounding import frame_error
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths
+from flockana.theorems.observed_run import End
+from flockana.theorems.rounding_bounds import frame_error
+from flockana.theorems.theorem_toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths
 
 _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.sources.jond_2025.theorems.tree_case import TreeCase, characteristic_residual
-from flockana.theorems.toolkit import EPS, FloatArray
+from flockana.theorems.theorem_toolkit import EPS, FloatArray
 
 POLYNOMIAL = 1e-6  # largest relative difference of two characteristic polynomials that counts as none
 _CLEAR = 1e3  # times its rounding, from which on a number is not 0

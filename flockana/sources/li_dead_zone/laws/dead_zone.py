@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_kind, ensure_state, normalise
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_kind, ensure_state, normalise
 from flockana.interactions.gains import ensure_gain
 from flockana.laws.discrete import IndexArray
+from flockana.laws.jump_laws import Margins, Pieces, SwitchedLaw
 from flockana.laws.law import Arrays, Block
 from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
 from flockana.laws.usual_laws import Candidate

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_index, ensure_kind, normalise
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
+from flockana.base.natural_scales import Scales
 from flockana.base.units import Powers
+from flockana.base.value_checks import FloatArray, ensure_index, ensure_kind, normalise
 from flockana.interactions.gains import ensure_gain
 from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.value_checks import FloatArray, ensure_finite_scalar
 from flockana.environment import LinearTarget
-from flockana.scenarios.entry import Scenario, refuted, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.scenarios.scenario_builders import Scenario, refuted, verified
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 from flockana.sources.li_dead_zone.scenarios.published_run import DT, describe_choices

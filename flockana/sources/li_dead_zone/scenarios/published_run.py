@@ -5,18 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import ensure_positive
-from flockana.scenarios.entry import Scenario, Status, inconclusive, refuted, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, finding, report
+from flockana.base.value_checks import ensure_positive
 from flockana.scenarios.one_start import LawEntry
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, finding, report
+from flockana.scenarios.scenario_builders import Scenario, Status, inconclusive, refuted, verified
 from flockana.solvers.semi_implicit_euler import SemiImplicitEuler
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import dead_zone_law, final_components, velocities_match
 from flockana.sources.li_dead_zone.theorems.range_limits import thinned
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.observed_run import Observed
+from flockana.theorems.rounding_bounds import EPS
 
 _PRINTED = "Li, Yuan and Liu, section V: n = 50, r = 15, δ = 4.5, k_δ = 1.3, no more."
 DT = 0.01

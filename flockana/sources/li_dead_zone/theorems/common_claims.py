@@ -13,7 +13,17 @@ from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.net_components import Components, components_of
 from flockana.theorems.collisions import least_distance
 from flockana.theorems.limit_certificates import Certificate, decays_to_zero
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
+from flockana.theorems.theorem_toolkit import (
+    EPS,
+    Claim,
+    Enclosure,
+    Hypothesis,
+    Needs,
+    Observed,
+    Trajectory,
+    condition,
+    judged,
+)
 
 PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent

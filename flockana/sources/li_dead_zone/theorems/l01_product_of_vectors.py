@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, of_state
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Tolerances, erratum, lengths, of_state
 
 _SAME = 1e-9  # relative: two forces that differ by less are the same
 _ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings

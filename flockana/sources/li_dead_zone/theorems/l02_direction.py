@@ -4,7 +4,7 @@ from math import sqrt
 
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, of_state
 
 _ROUNDING = 1e-12  # relative, of a force of two agents
 

@@ -1,7 +1,7 @@
 """Erratum L3: φ_z, called a bounded potential, is a force that is unbounded as 1/ρ² where agents meet."""
 
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact
 
 
 @erratum("L3")

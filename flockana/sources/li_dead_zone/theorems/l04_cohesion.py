@@ -7,7 +7,7 @@ from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF, final_components
 from flockana.sources.li_dead_zone.theorems.shared_runs import advance, parting_pair
 from flockana.theorems.random_start_shares import INTERVAL_ERROR, interval
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, limit_claim, observed, of_map
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, limit_claim, observed, of_map
 
 _SEEDS = 10  # of each box
 

@@ -6,7 +6,7 @@ from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
 from flockana.theorems.energy import balance
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, judged, observed
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact, judged, observed
 
 
 @erratum(

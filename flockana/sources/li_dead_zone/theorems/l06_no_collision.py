@@ -8,7 +8,7 @@ from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF, distance_bound
 from flockana.theorems.collisions import least_distance
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, judged, observed, stacked
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, judged, observed, stacked
 
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 _ATTAINED = 1e-3  # relative: so near the bound is attained

@@ -8,7 +8,16 @@ from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.common_claims import final_components, settling
 from flockana.sources.li_dead_zone.theorems.local_basin import hold
 from flockana.sources.li_dead_zone.theorems.shared_runs import advance, parting_pair
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, limit_claim, observed, of_map
+from flockana.theorems.theorem_toolkit import (
+    Claim,
+    FloatArray,
+    Tolerances,
+    by_count,
+    erratum,
+    limit_claim,
+    observed,
+    of_map,
+)
 
 _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts they differ by 7 %
 

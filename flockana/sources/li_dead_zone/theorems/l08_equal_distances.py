@@ -2,7 +2,7 @@
 
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.theorems.common_claims import PROOF
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, spectral
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact, spectral
 
 _ROUNDING = 1e-11  # m: of the root of a force
 

@@ -13,7 +13,7 @@ from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.net_components import components_of
 from flockana.theorems.claims import by_count, equal, erratum, of_map
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, limit_claim, observed
+from flockana.theorems.theorem_toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, limit_claim, observed
 
 _CLOSE = 0.02  # of a leader's speed: within it an agent's velocity is its leader's
 _APART = 30.0  # between two groups

@@ -9,7 +9,7 @@ from flockana.sources.li_dead_zone.theorems.common_claims import final_component
 from flockana.sources.li_dead_zone.theorems.net_components import Component
 from flockana.sources.li_dead_zone.theorems.shared_runs import parting_pair
 from flockana.theorems.claims import erratum, exact, undecided
-from flockana.theorems.toolkit import EPS, Certificate, Claim, FloatArray, Tolerances, limit_claim, observed
+from flockana.theorems.theorem_toolkit import EPS, Certificate, Claim, FloatArray, Tolerances, limit_claim, observed
 
 _TIMES = 2.0  # as much energy as can put the pair out of range
 

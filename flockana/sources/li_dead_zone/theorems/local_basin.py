@@ -1,8 +1,8 @@
 """Basin of the strict minimum near a dead-zone flock: a certificate of its limit.
 
-The argument is that of `flockana.theorems.basin`, with U = Σψ̄, whose Hessian has a finite Lipschitz constant only where
-no pair comes to a kink of its force: the ends of the ramps, of the dead zone, and the range. So the windows in which it
-is taken end before the first kink; a flock with printed jumps, whose contacts sit on them, is never held.
+The argument is that of `flockana.theorems.energy_basins`, with U = Σψ̄, whose Hessian has a finite Lipschitz constant
+only where no pair comes to a kink of its force: the ends of the ramps, of the dead zone, and the range. So the windows
+in which it is taken end before the first kink; a flock with printed jumps, whose contacts sit on them, is never held.
 
 A map of semi-implicit Euler steps has an energy of its own. Where dt²Λ + 2 dt Γ < 4, with Λ and Γ the largest
 eigenvalues of ∇²U and k₂ L̂, all modes z of the linearised map but the rigid ones have |z| < 1: they are the roots of
@@ -20,8 +20,8 @@ from flockana.equilibria.final_state import DENSE_LIMIT, rigid_motions
 from flockana.measures.nets import link_lengths, links
 from flockana.sources.li_dead_zone.interactions import DeadZoneInteraction
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems import basin as basins
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray
+from flockana.theorems import energy_basins as basins
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray
 
 _PIECES = 8  # into which the lengths that a pair may take are divided: each is enclosed by itself
 _CLEAR = 0.999  # of the way to the nearest kink: so wide the widest window is

@@ -27,8 +27,8 @@ import numpy.typing as npt
 from flockana.measures.nets import components, links
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems.local_basin import hold
-from flockana.theorems.basin import Basin
-from flockana.theorems.toolkit import EPS, Certificate, FloatArray
+from flockana.theorems.energy_basins import Basin
+from flockana.theorems.theorem_toolkit import EPS, Certificate, FloatArray
 
 _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole one
 

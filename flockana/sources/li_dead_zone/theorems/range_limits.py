@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flockana.kernels.range_crossings import follow_pairs, follow_steps
-from flockana.theorems.toolkit import EPS, Observed, Trajectory
+from flockana.theorems.theorem_toolkit import EPS, Observed, Trajectory
 
 _NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 
 

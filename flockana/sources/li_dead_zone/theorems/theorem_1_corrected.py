@@ -6,7 +6,16 @@ from flockana.sources.li_dead_zone.theorems import common_claims as case
 from flockana.sources.li_dead_zone.theorems.net_components import Components
 from flockana.theorems.claims import by_count, vacuous
 from flockana.theorems.energy import balance
-from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, limit_claim, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import (
+    Checked,
+    Claim,
+    Hypothesis,
+    Observed,
+    Tolerances,
+    limit_claim,
+    run_theorem,
+    unmet,
+)
 
 
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:

@@ -5,9 +5,9 @@ from flockana.sources.li_dead_zone.laws.dead_zone import DeadZoneFlocking
 from flockana.sources.li_dead_zone.theorems import common_claims as case
 from flockana.sources.li_dead_zone.theorems.net_components import Components
 from flockana.sources.li_dead_zone.theorems.range_limits import first_entry
-from flockana.theorems.rounding import frame_error
+from flockana.theorems.rounding_bounds import frame_error
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Certificate, Enclosure, Observed, counted, limit_claim, run_theorem
+from flockana.theorems.theorem_toolkit import EPS, Certificate, Enclosure, Observed, counted, limit_claim, run_theorem
 
 
 def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:

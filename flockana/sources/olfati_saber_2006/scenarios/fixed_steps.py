@@ -5,8 +5,8 @@ import numpy as np
 from flockana.environment import LinearTarget
 from flockana.laws import Algorithm2
 from flockana.measures.metrics import velocity_mismatch
-from flockana.scenarios.entry import Builder, Start, entry, refuted, verified
-from flockana.scenarios.findings import Claim, Tolerances, Trajectory, connected, finding, report, rerun
+from flockana.scenarios.report_claims import Claim, Tolerances, Trajectory, connected, finding, report, rerun
+from flockana.scenarios.scenario_builders import Builder, Start, entry, refuted, verified
 from flockana.solvers.taylor_step import TaylorStep
 from flockana.sources.olfati_saber_2006.scenarios.free_space import random_start
 

@@ -7,8 +7,8 @@ import numpy as np
 from flockana.environment import LinearTarget
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.metrics import velocity_mismatch
-from flockana.scenarios.entry import Builder, Report, entry, verified
-from flockana.scenarios.findings import ROUNDING, Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.scenarios.report_claims import ROUNDING, Claim, Tolerances, Trajectory, component_count, finding, report
+from flockana.scenarios.scenario_builders import Builder, Report, entry, verified
 from flockana.sources.olfati_saber_2006.scenarios.free_space import random_start
 
 _N, _SEEDS = 40, 200  # a tenth of a second each

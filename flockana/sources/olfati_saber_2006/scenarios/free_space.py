@@ -14,7 +14,9 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws import Algorithm1, Algorithm2
 from flockana.measures.metrics import coincident_pairs, deviation_energy
 from flockana.measures.nets import components, link_lengths, links
-from flockana.scenarios.entry import (
+from flockana.scenarios.lazy_start import lazy_array
+from flockana.scenarios.report_claims import ROUNDING, connected, finding, fragmented, limit_report, report
+from flockana.scenarios.scenario_builders import (
     OURS,
     Builder,
     Report,
@@ -27,11 +29,9 @@ from flockana.scenarios.entry import (
     vacuous,
     verified,
 )
-from flockana.scenarios.findings import ROUNDING, connected, finding, fragmented, limit_report, report
-from flockana.scenarios.lazy_start import lazy_array
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.attraction import attraction
-from flockana.theorems.gamma_agent import consistent
+from flockana.theorems.attraction_basin import attraction
+from flockana.theorems.gamma_agent_checks import consistent
 from flockana.theorems.limit_certificates import Certificate
 
 _OURS = (

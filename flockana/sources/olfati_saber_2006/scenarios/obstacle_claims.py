@@ -5,12 +5,12 @@ from math import inf
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
+from flockana.base.value_checks import FloatArray
+from flockana.base.vector_norms import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
-from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report, report
+from flockana.scenarios.report_claims import ROUNDING, component_counts, finding, limit_report, report
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limit_certificates import Certificate
 

@@ -10,10 +10,10 @@ import numpy as np
 from flockana.environment import Capsule, LinearTarget, Obstacle, Sphere, StaticTarget, Target
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws import Algorithm3
-from flockana.scenarios.entry import Builder, Report, Start, Status, entry, inconclusive, vacuous, verified
-from flockana.scenarios.findings import in_source_units
 from flockana.scenarios.lazy_start import lazy_state
 from flockana.scenarios.option_checks import SOURCE
+from flockana.scenarios.report_claims import in_source_units
+from flockana.scenarios.scenario_builders import Builder, Report, Start, Status, entry, inconclusive, vacuous, verified
 from flockana.sources.olfati_saber_2006.scenarios.obstacle_claims import (
     constrained,
     gets_past,

@@ -5,13 +5,22 @@ from math import floor
 
 import numpy as np
 
-from flockana.theorems import between_samples
+from flockana.theorems import bounds_between_samples
 from flockana.theorems.enclosure import Real
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import has_lattice
 from flockana.theorems.search_objectives import bridge
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged, run_theorem
+from flockana.theorems.theorem_toolkit import (
+    EPS,
+    Enclosure,
+    FloatArray,
+    Observed,
+    condition,
+    counted,
+    judged,
+    run_theorem,
+)
+from flockana.theorems.tube_claims import enclosed_by
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
@@ -76,7 +85,10 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
 
 def _connected(part: _Window) -> Claim:
     """Return the claim that the net is connected throughout, based on certain links."""
-    interval_nets, sample_nets = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
+    interval_nets, sample_nets = (
+        bounds_between_samples.nets_between(part.seen),
+        bounds_between_samples.nets_at(part.seen),
+    )
     counts = sample_nets.components_least, sample_nets.components, float(interval_nets.components.max(initial=0.0))
     return _at_most("flock", part, counts, 1, "components")
 
@@ -84,7 +96,10 @@ def _connected(part: _Window) -> Claim:
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that a component keeps more than a share of the agents, based on certain links."""
     n = part.seen.n
-    interval_nets, sample_nets = between_samples.nets_between(part.seen), between_samples.nets_at(part.seen)
+    interval_nets, sample_nets = (
+        bounds_between_samples.nets_between(part.seen),
+        bounds_between_samples.nets_at(part.seen),
+    )
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
     counts = n - sample_nets.giant_most, n - sample_nets.giant, float(n - interval_nets.giant.min(initial=n))
     return _at_most("giant", part, counts, n - fewest, "agents outside the giant component")
@@ -96,17 +111,27 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
     difference = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
-    one_link, at, during = 2.0 * (r / d - 1.0) ** 2, between_samples.nets_at(seen), between_samples.nets_between(seen)
+    one_link, at, during = (
+        2.0 * (r / d - 1.0) ** 2,
+        bounds_between_samples.nets_at(seen),
+        bounds_between_samples.nets_between(seen),
+    )
     root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), difference).clip(0.0)
     deviation = root.square().widened(one_link * at.open_links / (2.0 * at.links + 1.0)).clip(0.0)
     # of links that stay: √Ẽ grows by no more than the largest of their deviations does
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
-    interval_bound = (np.maximum(root.hi[:-1], root.hi[1:]) + between_samples.stretch_between(seen) / d) ** 2 + jumps
+    interval_bound = (
+        np.maximum(root.hi[:-1], root.hi[1:]) + bounds_between_samples.stretch_between(seen) / d
+    ) ** 2 + jumps
     range_bound = Enclosure(0.0, np.minimum(interval_bound, 1e300), interval_bound)
     return [
         _always("deviation", part, deviation, range_bound, tolerances.deviation),
         _always(
-            "mismatch", part, seen.mismatch / units, between_samples.mismatch_over(seen) / units, tolerances.mismatch
+            "mismatch",
+            part,
+            seen.mismatch / units,
+            bounds_between_samples.mismatch_over(seen) / units,
+            tolerances.mismatch,
         ),
     ]
 
@@ -115,9 +140,9 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     seen = part.seen
     time_offset = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
-    growth_bound = float(between_samples.fastest_between(seen)[0]) * time_offset if part.first else 0.0
+    growth_bound = float(bounds_between_samples.fastest_between(seen)[0]) * time_offset if part.first else 0.0
     bound = tolerances.cohesion * seen.radius[part.first].widened(growth_bound)
-    return _always("cohesive", part, seen.radius, between_samples.radius_over(seen), bound)
+    return _always("cohesive", part, seen.radius, bounds_between_samples.radius_over(seen), bound)
 
 
 def _checked(seen: Observed, tolerances: Tolerances, *, strict: bool) -> Checked:

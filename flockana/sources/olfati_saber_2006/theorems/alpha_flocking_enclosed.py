@@ -12,8 +12,8 @@ from flint import arb, ctx
 from flockana.certified.balls import exact, norm, square
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Pair, Tube
-from flockana.theorems.from_tube import certain_links, decided, groups
-from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition
+from flockana.theorems.theorem_toolkit import Checked, Claim, Hypothesis, Tolerances, condition
+from flockana.theorems.tube_claims import certain_links, decided, groups
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike

@@ -14,13 +14,22 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.theorems import collisions
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.between_samples import nets_at, radius_over
+from flockana.theorems.bounds_between_samples import nets_at, radius_over
 from flockana.theorems.hypotheses import hypothesis_from_fact, smooth_pair, weight_nonnegative
 from flockana.theorems.limit_certificates import decays_to_zero
+from flockana.theorems.limit_claims import velocities_match
 from flockana.theorems.meeting_energy import above_least, least_is_known, meeting
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, positive, run_theorem, vacuous
+from flockana.theorems.theorem_toolkit import (
+    Enclosure,
+    Observed,
+    condition,
+    judged,
+    law_is,
+    positive,
+    run_theorem,
+    vacuous,
+)
 
 PROOF, LIMITS = "any-potential", "any-potential-limits"
 _ROUNDING = 1e-12  # of a potential

@@ -5,10 +5,10 @@ from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.collisions import below_multiple, energy_at_start, no_collision
 from flockana.theorems.energy import nothing_adds_energy
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is, positive
 from flockana.theorems.meeting_energy import least_is_known, meeting
-from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.tube_claims import enclosed_by
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 

@@ -3,15 +3,15 @@
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.sources.olfati_saber_2006.theorems import any_potential
-from flockana.theorems.asymptotics import lattice_limit, velocities_match
-from flockana.theorems.attraction import final_basin
+from flockana.theorems.attraction_basin import final_basin
 from flockana.theorems.collisions import below_the_barrier, energy_at_start, no_collision
 from flockana.theorems.energy import proved
-from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.limit_certificates import without_assumed
+from flockana.theorems.limit_claims import lattice_limit, velocities_match
 from flockana.theorems.search_objectives import strained
-from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.tube_claims import enclosed_by
 
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:

@@ -5,13 +5,13 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.sources.olfati_saber_2006.theorems import any_potential
 from flockana.theorems import collisions
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.attraction import final_basin
-from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.gamma_agent import consistent
+from flockana.theorems.attraction_basin import final_basin
+from flockana.theorems.gamma_agent_checks import consistent
+from flockana.theorems.limit_claims import velocities_match
 from flockana.theorems.search_objectives import pairs_apart
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, run_theorem, vacuous
+from flockana.theorems.theorem_toolkit import Observed, condition, law_is, limit_claim, positive, run_theorem, vacuous
+from flockana.theorems.tube_claims import enclosed_by
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)
 _PROOFS = ("cohesion", "collisions")  # of (i) and of (iv), for the paper's own pair law

@@ -19,7 +19,7 @@ from flockana.measures.nets import LinkArray, link_lengths
 from flockana.theorems.claims import run_theorem
 from flockana.theorems.hypotheses import has_lattice
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Theorem, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, FloatArray, Observed, by_count, condition, counted, of_state, vacuous
+from flockana.theorems.theorem_toolkit import EPS, FloatArray, Observed, by_count, condition, counted, of_state, vacuous
 
 _OURS = ("ii-sharp", "extension", "extension-lengths", "extension-links", "extension-quantitative")
 CLAIMS = ("i", "i-graph", "ii", "ii-sharp", "iii", *_OURS[1:])

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
-from flockana.certified.energies import powers_during, total_energy, work
-from flockana.certified.flow import Flow, flow_of
-from flockana.certified.series import Piece
+from flockana.certified.energies_in_balls import powers_during, total_energy, work
+from flockana.certified.flow_in_balls import Flow, flow_of
+from flockana.certified.pair_laws_in_series import Piece
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, up
 from flockana.theorems.energy import proved
-from flockana.theorems.from_tube import certain, decided
 from flockana.theorems.hypotheses import common_gains
-from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
+from flockana.theorems.theorem_toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
+from flockana.theorems.tube_claims import certain, decided
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike

@@ -5,13 +5,13 @@ from math import comb
 import numpy as np
 
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.between_samples import polygons
+from flockana.theorems.bounds_between_samples import polygons
 from flockana.theorems.energy import balance, never_rises, proved, stays_outside
-from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.gamma_agent import declared_rate_is_true, target_rests
+from flockana.theorems.gamma_agent_checks import declared_rate_is_true, target_rests
 from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.theorem import Checked, Hypothesis, Tolerances
-from flockana.theorems.toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths, run_theorem
+from flockana.theorems.theorem_toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths, run_theorem
+from flockana.theorems.tube_claims import enclosed_by
 
 _EIGHT = np.array([[comb(4, i) * comb(4, j) / comb(8, i + j) for j in range(5)] for i in range(5)])[::-1]
 _DIAGONALS = [np.add.outer(np.arange(4, -1, -1), np.arange(5)) == k for k in range(9)]

@@ -3,12 +3,12 @@
 import numpy as np
 
 from flockana.certified.balls import exact
-from flockana.certified.second_order import laplacian_of, moving_eigenvalues
+from flockana.certified.consensus_polynomials import laplacian_of, moving_eigenvalues
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
 from flockana.theorems.claims import judged, run_theorem, vacuous
 from flockana.theorems.net_roots import has_root, unheard_groups
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
+from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
 _PROOF = "average-consensus"
 Rows = tuple[tuple[float, ...], ...]

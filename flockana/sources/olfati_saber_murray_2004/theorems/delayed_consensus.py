@@ -15,8 +15,8 @@ from flockana.stability.consensus import consensus_root, consensus_system
 from flockana.stability.delay import DelaySystem, delay_margin
 from flockana.stability.delay_roots import rightmost_roots, root_error
 from flockana.stability.law_studies import delay_system
-from flockana.theorems.from_tube import decided
-from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, erratum, of_state, spectral
+from flockana.theorems.theorem_toolkit import EPS, Claim, FloatArray, Tolerances, erratum, of_state, spectral
+from flockana.theorems.tube_claims import decided
 
 _PROOF = "delayed-consensus"
 _AROUND = Fraction(1, 100)  # of the margin: how far to either side roots are looked at

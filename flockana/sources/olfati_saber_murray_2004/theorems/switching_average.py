@@ -1,6 +1,6 @@
 """Olfati-Saber and Murray: average consensus on switching balanced nets."""
 
-from flockana.laws.in_turn import VelocityInTurn
+from flockana.laws.scheduled_laws import VelocityInTurn
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
 from flockana.sources.olfati_saber_murray_2004.theorems.average_consensus import (
     average,
@@ -9,7 +9,7 @@ from flockana.sources.olfati_saber_murray_2004.theorems.average_consensus import
     is_strong,
     slowest_rate,
 )
-from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, condition, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Hypothesis, Observed, Tolerances, condition, run_theorem, unmet
 
 
 def _nets_in_turn(seen: Observed) -> Hypothesis:

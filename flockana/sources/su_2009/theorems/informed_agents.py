@@ -9,7 +9,16 @@ from flockana.theorems.cohesion import stays_within
 from flockana.theorems.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
 from flockana.theorems.energy import never_rises
 from flockana.theorems.search_objectives import pairs_apart
-from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, law_is, positive, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import (
+    Checked,
+    Hypothesis,
+    Observed,
+    Tolerances,
+    law_is,
+    positive,
+    run_theorem,
+    unmet,
+)
 
 PROOF = "informed-agents"
 CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "no-collision")

@@ -12,8 +12,17 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.nets import components, links
 from flockana.theorems.limit_certificates import Certificate, decays_to_zero
-from flockana.theorems.rounding import EPS
-from flockana.theorems.toolkit import Claim, FloatArray, Hypothesis, Needs, Observed, Trajectory, condition, lengths
+from flockana.theorems.rounding_bounds import EPS
+from flockana.theorems.theorem_toolkit import (
+    Claim,
+    FloatArray,
+    Hypothesis,
+    Needs,
+    Observed,
+    Trajectory,
+    condition,
+    lengths,
+)
 
 WINDOWS = 4  # of equal length, of the last half of a run: in each of them an agent must be linked to the informed
 

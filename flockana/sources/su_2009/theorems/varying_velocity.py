@@ -5,22 +5,31 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.value_checks import FloatArray
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.feedforward import TargetFeedforward
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.pairs import PairTerm
 from flockana.sources.su_2009.theorems.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
-from flockana.theorems.attraction import attraction
+from flockana.theorems.attraction_basin import attraction
 from flockana.theorems.claims import run_theorem
 from flockana.theorems.cohesion import stays_within
 from flockana.theorems.collisions import below_multiple, no_collision
 from flockana.theorems.energy import pairs_dissipate
-from flockana.theorems.gamma_agent import consistent
+from flockana.theorems.gamma_agent_checks import consistent
 from flockana.theorems.meeting_energy import least_is_known, meeting
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, Enclosure, Observed, Trajectory, condition, judged, law_is, positive
+from flockana.theorems.theorem_toolkit import (
+    Certificate,
+    Enclosure,
+    Observed,
+    Trajectory,
+    condition,
+    judged,
+    law_is,
+    positive,
+)
 
 PROOF = "informed-agents"
 CLAIMS = ("centre", "velocities", "distance", "no-collision")

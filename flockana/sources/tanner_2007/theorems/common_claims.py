@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.between_samples import least_distance
+from flockana.theorems.bounds_between_samples import least_distance
 from flockana.theorems.limit_certificates import decays_to_zero
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
+from flockana.theorems.limit_claims import velocities_match
+from flockana.theorems.theorem_toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
 
 MATCHED = "matched-velocities"
 

@@ -6,7 +6,7 @@ from flockana.measures.nets import components
 from flockana.sources.tanner_2007.laws import FixedNetFlocking
 from flockana.sources.tanner_2007.theorems.common_claims import MATCHED, comes_to_rest, no_collision
 from flockana.theorems.energy import balance
-from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
 
 
 @run_theorem(

@@ -7,7 +7,7 @@ from flockana.sources.tanner_2007.laws import ProximityFlocking
 from flockana.sources.tanner_2007.theorems.common_claims import comes_to_rest, no_collision, out_of_range
 from flockana.theorems.energy import balance
 from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.toolkit import EPS, Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem_toolkit import EPS, Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
 def _connected(seen: Observed) -> Hypothesis:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, exact
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, equal, erratum, exact
 
 
 def _own_block() -> Any:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from flockana.measures.nets import LinkArray, components
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
-from flockana.theorems.toolkit import EPS, Certificate, FloatArray
+from flockana.theorems.theorem_toolkit import EPS, Certificate, FloatArray
 
 _DIRECTIONS = 360  # along which two groups may be seen to part
 _TERMS = 4.0  # roundings of a difference, a length and a quotient

@@ -5,13 +5,21 @@ from typing import Any
 
 import numpy as np
 
-from flockana.measures.windows import joint_windows
+from flockana.measures.connectivity_windows import joint_windows
 from flockana.sources.vicsek_1995.laws import HeadingAveraging
 from flockana.sources.vicsek_1995.theorems import heading_averages
 from flockana.theorems.claim import does_not_hold
 from flockana.theorems.claims import by_count, run_theorem
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
-from flockana.theorems.toolkit import Certificate, FloatArray, Observed, Trajectory, condition, law_is, limit_claim
+from flockana.theorems.theorem_toolkit import (
+    Certificate,
+    FloatArray,
+    Observed,
+    Trajectory,
+    condition,
+    law_is,
+    limit_claim,
+)
 
 _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart

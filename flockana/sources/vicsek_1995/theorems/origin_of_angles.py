@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
+from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact
 
 _AWAY = Fraction(1, 100)  # of a turn: how far two agents head to either side of the direction of angle 0
 _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turned

@@ -7,7 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana import CuckerSmale, RationalWeight
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 PSI = {True: 3.0, False: 6.0}  # λψ(0) for K = 3: the sum of one term, divided by n = 2, counts both ends
 

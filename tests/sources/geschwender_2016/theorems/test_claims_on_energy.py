@@ -5,7 +5,7 @@ import pytest
 
 from flockana import Algorithm1, Trajectory
 from flockana.sources.geschwender_2016.theorems.claims_on_energy import rises, run_claim
-from flockana.theorems.toolkit import Enclosure, Hypothesis, Observed, observed
+from flockana.theorems.theorem_toolkit import Enclosure, Hypothesis, Observed, observed
 
 
 @pytest.fixture(scope="module")

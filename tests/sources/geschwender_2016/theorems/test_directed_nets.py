@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm1, DirectedNet, Tolerances
 from flockana.sources.geschwender_2016.theorems import directed_nets
-from flockana.theorems.observed import Observed, observed
+from flockana.theorems.observed_run import Observed, observed
 
 LAW = Algorithm1()
 

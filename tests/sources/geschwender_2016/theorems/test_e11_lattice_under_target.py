@@ -5,12 +5,12 @@ import pytest
 
 from flockana import Algorithm2, StaticTarget, Tolerances, Trajectory, simulate, theorem, verify
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import natural_ratio, threshold
+from flockana.equilibria.lattice_collapse import natural_ratio, threshold
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.sources.geschwender_2016.theorems import e11_lattice_under_target as module
 from flockana.sources.geschwender_2016.theorems.e11_lattice_under_target import collapse_threshold
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)

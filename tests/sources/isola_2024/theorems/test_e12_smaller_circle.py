@@ -13,9 +13,9 @@ from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
 from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio
-from flockana.symbolic.parameters import GainSymbols
+from flockana.symbolic.parameter_symbols import GainSymbols
 from flockana.symbolic.translational_dynamics import frequency_gain
-from flockana.theorems.observed import Observed, observed
+from flockana.theorems.observed_run import Observed, observed
 from tests.theorems.made_up import statuses
 
 

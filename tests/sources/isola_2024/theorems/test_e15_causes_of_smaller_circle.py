@@ -10,7 +10,7 @@ from flockana import Gains, scenario, verify
 from flockana.stability.centre_transfer import CentreOfMass, predicted_gain
 from flockana.stability.tracking import response_ratio
 from flockana.symbolic import GainSymbols
-from flockana.symbolic.parameters import GAINS
+from flockana.symbolic.parameter_symbols import GAINS
 from flockana.symbolic.translational_dynamics import OMEGA, SQUARE, falling_condition, frequency_gain, gain_slope
 
 # what an independent transcription of the project's system gave, to two digits, at ¼, ½, 1, 2 and 4 times the speed

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from flockana import Alien, Box, SimplePolygon, ZoneNoise, ZoneRadii, ZoneWeights, ZoneWorld, simulate
-from flockana.sources.jond_2025.kernels.candidates import sort_into_cells
+from flockana.sources.jond_2025.kernels.neighbour_candidates import sort_into_cells
 from flockana.sources.jond_2025.kernels.zone_counts import fragments, populations
 from flockana.sources.jond_2025.kernels.zones import saturation
 from flockana.sources.jond_2025.laws.zone_flocking import BEHAVIOURS, ZoneFlocking
-from tests.kernels.test_noise import uniform
+from tests.kernels.test_random_noise import uniform
 
 R, C, A, S = 1.5, 3.0, 5.0, 6.0
 RADII = ZoneRadii(R, c=C, a=A, s=S)

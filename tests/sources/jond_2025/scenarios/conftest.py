@@ -2,7 +2,7 @@
 
 import pytest
 
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 
 @pytest.fixture

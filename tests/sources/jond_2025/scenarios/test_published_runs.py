@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flockana import components, links, scenario, simulate
-from flockana.scenarios.findings import component_counts
+from flockana.scenarios.report_claims import component_counts
 from flockana.sources.jond_2025.laws.zone_flocking import CHOICES
 from flockana.sources.jond_2025.scenarios.published_runs import passed
 

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from flockana import Tolerances, theorem
 from flockana.sources.jond_2025.theorems import separation_alone as zone_separation
-from flockana.theorems.observed import observed
+from flockana.theorems.observed_run import observed
 
 
 @pytest.fixture(scope="module")

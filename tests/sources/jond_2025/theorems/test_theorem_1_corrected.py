@@ -9,7 +9,7 @@ from flockana.sources.jond_2025.theorems import theorem_1_corrected as zone_1_co
 from flockana.sources.jond_2025.theorems.tree_case import characteristic_residual, tree_case
 from flockana.sources.jond_2025.theorems.tree_limits import edge_shares, state
 from flockana.sources.jond_2025.theorems.tree_spectrum import Spectrum
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import statuses
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

@@ -8,7 +8,7 @@ import pytest
 
 from flockana import MinimalFlocking, Tolerances, simulate, theorem
 from flockana.measures.perception import both_ways
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 
 PAIR, MU, RHO = ((0, 1),), 4.0, 2.0
 LAW = MinimalFlocking(edges=PAIR, spacing=RHO, mu=MU)

@@ -5,7 +5,7 @@ import pytest
 
 from flockana import Algorithm1, AlphaInteraction, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.switches import turns
+from flockana.dynamics.switch_location import turns
 from flockana.measures.path_bounds import closest_approach
 from tests.refused import refused
 

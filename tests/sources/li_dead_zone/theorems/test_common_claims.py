@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
 from flockana.sources.li_dead_zone.theorems import common_claims as case
-from flockana.theorems.toolkit import Enclosure, Observed
+from flockana.theorems.theorem_toolkit import Enclosure, Observed
 from tests.theorems.made_up import made_up as made_up_run
 
 EPS, LAW = np.finfo(float).eps, DeadZoneFlocking()

@@ -11,7 +11,7 @@ from flockana import DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler, c
 from flockana.sources.li_dead_zone.theorems.local_basin import hold
 from flockana.sources.li_dead_zone.theorems.net_components import components_of
 from flockana.sources.li_dead_zone.theorems.range_limits import first_entry
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import said
 
 SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm3, Sphere, StaticTarget, Tolerances, Trajectory, scenario, simulate, verify
-from flockana.scenarios.findings import component_counts
+from flockana.scenarios.report_claims import component_counts
 from flockana.sources.olfati_saber_2006.scenarios.obstacle_claims import blocked, rests
 from flockana.sources.olfati_saber_2006.scenarios.obstacles import GAINS, SCENARIOS, free_start
 

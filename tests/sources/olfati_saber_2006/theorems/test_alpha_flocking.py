@@ -9,8 +9,8 @@ import flockana as fl
 from flockana import Algorithm1, Tolerances, simulate, verify
 from flockana.lattice import hexagonal_patch
 from flockana.measures.metrics import cohesion_radius, net_measures
-from flockana.theorems.between_samples import nets_between, radius_over
-from flockana.theorems.observed import Observed
+from flockana.theorems.bounds_between_samples import nets_between, radius_over
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hexagon, judged, made_up, statuses
 
 LAW = Algorithm1()

@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, pair_law, verify
 from flockana.sources.olfati_saber_2006.theorems import any_potential
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hypothesis, made_up, statuses
 
 MORSE = "k*((1 - exp(-a*(s - d)))**2 - 1)*(1 - s**2/r**2)**2"

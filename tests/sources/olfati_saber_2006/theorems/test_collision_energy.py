@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, AlphaInteraction, Composition, Gains, compose, pair_law
-from flockana.theorems.rounding import energy_error
+from flockana.theorems.rounding_bounds import energy_error
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 WELL = pair_law(

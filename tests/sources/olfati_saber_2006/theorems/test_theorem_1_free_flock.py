@@ -7,8 +7,8 @@ from flockana import Algorithm1, AlphaInteraction, Gains, Tolerances, simulate, 
 from flockana.lattice import hexagonal_spiral
 from flockana.sources.geschwender_2016.theorems.e03_strained_limits import rhombus_with_double_agent
 from flockana.sources.olfati_saber_2006.theorems.any_potential import disconnected_energy
-from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.toolkit import Observed
+from flockana.theorems.limit_claims import lattice_limit
+from flockana.theorems.theorem_toolkit import Observed
 from tests.theorems.made_up import hexagon, hypothesis, statuses
 
 LAW = Algorithm1()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm2, Gains, LinearTarget, RescaledVelocity, StaticTarget, Tolerances, simulate, verify
-from flockana.base.seals import sealed
+from flockana.base.integrity_seals import sealed
 from flockana.theorems.collisions import pairs_at_one_instant
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hexagon, hypothesis, judged, made_up, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))

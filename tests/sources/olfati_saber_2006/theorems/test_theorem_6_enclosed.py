@@ -7,8 +7,8 @@ import pytest
 from flint import arb
 
 from flockana import Algorithm3, AlphaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose, simulate, verify
-from flockana.certified.energies import powers_during, total_energy, work
-from flockana.certified.flow import Flow, flow_of
+from flockana.certified.energies_in_balls import powers_during, total_energy, work
+from flockana.certified.flow_in_balls import Flow, flow_of
 from flockana.interactions import BetaInteraction
 from tests.theorems.made_up import statuses
 

@@ -7,7 +7,7 @@ import pytest
 
 from flockana import Algorithm3, Gains, LinearTarget, RescaledVelocity, Sphere, StaticTarget, Wall, simulate, verify
 from flockana.sources.olfati_saber_2006.theorems.theorem_6_obstacles import condition_76
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hypothesis, judged, made_up
 
 OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))

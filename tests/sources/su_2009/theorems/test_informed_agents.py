@@ -11,7 +11,7 @@ from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Trajectory
 from flockana.environment.targets import CircleTarget, LinearTarget
 from flockana.sources.su_2009.theorems import leader_frame
 from flockana.sources.su_2009.theorems.varying_velocity import convergence_rate
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hexagon, hypothesis, statuses
 
 Q, P = hexagon(shake=0.3, speed=0.5)

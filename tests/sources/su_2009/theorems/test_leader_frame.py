@@ -5,7 +5,7 @@ import pytest
 
 from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, LinearTarget, StaticTarget, compose
 from flockana.sources.su_2009.theorems.leader_frame import as_the_leader_sees, comes_to_rest, gains_of, some_informed
-from flockana.theorems.toolkit import Certificate, Observed
+from flockana.theorems.theorem_toolkit import Certificate, Observed
 from tests.theorems.made_up import made_up
 
 T = np.linspace(0.0, 40.0, 401)

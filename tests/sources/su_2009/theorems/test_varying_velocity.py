@@ -8,7 +8,7 @@ import pytest
 from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, StaticTarget, compose, pair_law
 from flockana.sources.su_2009.theorems.leader_frame import as_the_leader_sees
 from flockana.sources.su_2009.theorems.varying_velocity import centre_of, convergence_rate
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed_run import Observed
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 EPS = np.finfo(float).eps

@@ -5,8 +5,8 @@ import pytest
 
 from flockana import Algorithm1, FixedNetFlocking, LogPotential, simulate, verify
 from flockana.sources.tanner_2007.theorems.common_claims import _energy_error
-from flockana.theorems.between_samples import least_distance, spread_over
-from flockana.theorems.observed import Observed
+from flockana.theorems.bounds_between_samples import least_distance, spread_over
+from flockana.theorems.observed_run import Observed
 
 
 def test_the_error_of_few_samples_holds_what_many_find():

@@ -4,7 +4,7 @@ from flockana.sources.toy_2026.laws import ToySwarm
 
 from flockana import plots
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.svg_figures import svg
 
 
 def pictures(trajectory):
