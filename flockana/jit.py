@@ -55,7 +55,6 @@ class Kernel:
         functools.update_wrapper(self, function)
         self.__name__, self.__qualname__ = function.__name__, function.__qualname__
         self.function, self.kept, self.options, self._thaws = function, kept, options, False
-        self.rounds = 0  # that were run in the interpreter (`flockana.kernels.little_work`)
         self._compiled: Callable[..., Any] | None = None
         self._dispatcher: Any = None
 
@@ -82,11 +81,6 @@ class Kernel:
     def py_func(self) -> Callable[..., Any]:
         """Original Python function, before compilation."""
         return self.function
-
-    @property
-    def is_compiled(self) -> bool:
-        """Whether it has been compiled, or loaded, for some types."""
-        return self._compiled is not None
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the compiled function; read-only arrays are passed as writable views."""

@@ -35,10 +35,10 @@ PROGRAM = """
 import sys
 import numpy as np
 import many
-from flockana.kernels.bound_templates import bound
+from flockana.kernels.pair_kernels import lift_scalar
 order = range(6) if sys.argv[1] == "up" else range(5, -1, -1)
-z, over = np.full(1, 100.0), lambda function: bound("flockana.kernels.over_array", function=function).over_array
-assert {k: over(getattr(many, f"offset_{k}"))(z, ())[0] for k in order} == {k: 100.0 + k for k in range(6)}
+z = np.full(1, 100.0)
+assert {k: lift_scalar(getattr(many, f"offset_{k}"))(z)[0] for k in order} == {k: 100.0 + k for k in range(6)}
 """
 
 

@@ -15,7 +15,6 @@ from flockana.base.value_checks import FloatArray, ensure_finite_scalar, ensure_
 from flockana.interactions.distance_functions import DistanceFunction, InnerValues
 from flockana.jit import thawed
 from flockana.kernels.cell_grid import LARGE
-from flockana.kernels.little_work import for_little
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.pair_kernels import PairKernels
 from flockana.kernels.scalars import sigma_norm
@@ -44,7 +43,7 @@ def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> Inne
     """Return `DistanceFunction.inner` of compiled functions with their parameters."""
     line = np.append(0.0, np.sqrt(s2))[:, None]
     ends = np.arange(1, line.size, dtype=np.int64)
-    w, a, weight_slope = for_little(kernels.terms, 8 * ends.size)(line, np.zeros_like(ends), ends, par)
+    w, a, weight_slope = kernels.terms(line, np.zeros_like(ends), ends, par)
     slope = kernels.adjacency_slope
     return w, a, weight_slope, np.full_like(w, np.nan) if slope is None else slope(s2, par)
 
@@ -279,8 +278,7 @@ class PairInteraction(DistanceFunction):
             delta = q[j] - q[i]
             if not self.coincidence:
                 _ensure_apart(i, j, delta)
-            terms = for_little(self.kernels.terms, 8 * i.size)(q, i, j, self.par)
-            matrices.append((i.copy(), j.copy(), block_of(i, j, delta, terms)))
+            matrices.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
         if not matrices:
             return csr_array((n * m, n * m))
         i, j, blocks = (np.concatenate(item) for item in zip(*matrices, strict=True))

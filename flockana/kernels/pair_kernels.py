@@ -13,7 +13,6 @@ import numpy as np
 
 from flockana.jit import Kernel, thawed
 from flockana.kernels.bound_templates import bound
-from flockana.kernels.little_work import for_little
 from flockana.kernels.pair_helpers import APART, as_tuple
 
 _ROOM = "flockana.kernels."
@@ -94,6 +93,6 @@ def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
         if not row:  # bound, and numba loaded, at the first call
             row.append(bound(_ROOM + "over_array", function=function).over_array)
         numbers = tuple(thawed(each) if isinstance(each, np.ndarray) else float(each) for each in parameters)
-        return for_little(row[0], 4 * z.size)(z, numbers)
+        return row[0](z, numbers)
 
     return over_array

@@ -25,7 +25,6 @@ from flockana.base.value_checks import FloatArray, ensure_count, ensure_links, e
 from flockana.base.vector_norms import scaled_near_one
 from flockana.jit import thawed
 from flockana.kernels.link_segments import UNSURE, crossing_signs, meet, nearest_links
-from flockana.kernels.little_work import for_little
 from flockana.measures.nets import LinkArray
 
 LISTED = 100_000  # crossings that are listed at most where all are asked for; beyond, a count says "at least"
@@ -69,7 +68,7 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     exact, x, planes = _Exact(q, links), _padded(_squarable(q)), 3 if q.shape[1] == 3 else 1
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b in _close_links(x, links, 0.0):
-        signs = for_little(crossing_signs, 4 * a.size)(x, thawed(links), a, b, planes)
+        signs = crossing_signs(x, thawed(links), a, b, planes)
         for k in np.flatnonzero(signs == UNSURE):
             signs[k] = exact.cross(int(a[k]), int(b[k]))
         blocks.append(np.column_stack([a, b])[signs == 1].astype(np.int32))
@@ -220,6 +219,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     scaled_positions, (scaled_reach,), unit = scaled_near_one(q, reach)
     x, best_pair = _padded(scaled_positions), None
     for a, b in _close_links(x, links, scaled_reach):
-        scaled_reach, k = for_little(nearest_links, 8 * a.size)(x, thawed(links), a, b, q.shape[1] < 3, scaled_reach)
+        scaled_reach, k = nearest_links(x, thawed(links), a, b, q.shape[1] < 3, scaled_reach)
         best_pair = best_pair if k < 0 else (int(a[k]), int(b[k]))
     return Separation(scaled_reach * unit, best_pair)
