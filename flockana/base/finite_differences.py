@@ -32,8 +32,8 @@ def differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, uni
     """
     width, best_estimate, previous_estimate = _WIDEST, Differences(np.zeros((0, 0)), np.inf), None
     while width >= _FINEST and best_estimate.spread > _AGREE:
-        matrix, curvature_part = central_differences(function, x, width * unit)
-        magnitude = float(np.abs(matrix).max(initial=0.0)) or float(curvature_part) or 1.0
+        matrix, slope_change = central_differences(function, x, width * unit)
+        magnitude = float(np.abs(matrix).max(initial=0.0)) or float(slope_change) or 1.0
         if previous_estimate is not None:
             spread = float(np.abs(matrix - previous_estimate).max(initial=0.0)) / magnitude
             best_estimate = min(best_estimate, Differences(previous_estimate, spread), key=lambda one: one.spread)
@@ -55,7 +55,7 @@ def central_differences(
         nudge = np.zeros(x.size)
         nudge[k] = h
         steps = [j * nudge.reshape(x.shape) for j in range(1, len(weights) + 1)]
-        finest_change, backward_values = ([function(x + s * step).ravel() for step in steps] for s in (1.0, -1.0))
-        columns.append(sum(w * (a - b) for w, a, b in zip(weights, finest_change, backward_values, strict=True)) / h)
-        bent = max(bent, float(np.abs(finest_change[0] - 2.0 * base_value + backward_values[0]).max(initial=0.0)) / h)
+        forward_values, backward_values = ([function(x + s * step).ravel() for step in steps] for s in (1.0, -1.0))
+        columns.append(sum(w * (a - b) for w, a, b in zip(weights, forward_values, backward_values, strict=True)) / h)
+        bent = max(bent, float(np.abs(forward_values[0] - 2.0 * base_value + backward_values[0]).max(initial=0.0)) / h)
     return np.column_stack(columns) if columns else np.zeros((base_value.size, 0)), bent

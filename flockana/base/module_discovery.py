@@ -24,9 +24,9 @@ def modules(package: str) -> Iterator[ModuleType]:
 
 def source_modules(kind: str) -> Iterator[ModuleType]:
     """Import the modules of one kind of every source: ``SOURCE/KIND.py``, or all files of ``SOURCE/KIND/``."""
-    for source_name in pkgutil.iter_modules(import_module(SOURCES).__path__, f"{SOURCES}."):
-        name = f"{source_name.name}.{kind}"
-        spec = find_spec(name) if source_name.ispkg else None
+    for module_info in pkgutil.iter_modules(import_module(SOURCES).__path__, f"{SOURCES}."):
+        name = f"{module_info.name}.{kind}"
+        spec = find_spec(name) if module_info.ispkg else None
         if spec is not None and spec.origin is not None:  # a module
             yield import_module(name)
         if spec is not None and spec.submodule_search_locations is not None:

@@ -36,11 +36,11 @@ def progress_bar(
             shown = text + rate
             bar.update(task, completed=done, description=shown)
 
-        previous_label = _PART.set(lambda text: bar.update(task, description=", ".join(filter(None, (shown, text)))))
+        token = _PART.set(lambda text: bar.update(task, description=", ".join(filter(None, (shown, text)))))
         try:
             yield advance
         finally:
-            _PART.reset(previous_label)
+            _PART.reset(token)
 
 
 def show_part(text: str) -> None:

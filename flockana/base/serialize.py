@@ -101,8 +101,8 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return a JSON object; raise on duplicate keys."""
     data = dict(pairs)
     if len(data) < len(pairs):
-        repeated_names, _ = Counter(key for key, _ in pairs).most_common(1)[0]
-        raise ValueError(f"the key {format_value(repeated_names)} is given twice")
+        repeated_name, _ = Counter(key for key, _ in pairs).most_common(1)[0]
+        raise ValueError(f"the key {format_value(repeated_name)} is given twice")
     return data
 
 

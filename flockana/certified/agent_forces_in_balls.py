@@ -111,11 +111,11 @@ class SphereTerm:
         """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
-        transverse_velocity = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
+        transverse_square = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
         adjacency = self.beta.pair(square(clearance), piece)[1]
         if isinstance(adjacency, arb):
             adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-        return -self.damping * adjacency * (clearance / distance * transverse_velocity + square(radial))
+        return -self.damping * adjacency * (clearance / distance * transverse_square + square(radial))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Return the time derivative of the sphere's force: 0, as the sphere is at rest."""
@@ -126,8 +126,8 @@ class SphereTerm:
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)
-        push, drag, free_part = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
-        return [-push * k - drag * (free_part * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
+        push, drag, free_share = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
+        return [-push * k - drag * (free_share * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
         """Return the derivatives of the force by position and velocity, two tables."""
@@ -137,7 +137,7 @@ class SphereTerm:
         s2, mu, free = square(clearance), self.radius / distance, clearance / distance
         (weight, adjacency), (bend, fade) = self.beta.pair(s2, piece), self.beta.slopes(s2, piece)
         stiff, drag = self.stiffness * weight, self.damping * adjacency
-        slope_change, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
+        steeper, fading = 2 * self.stiffness * bend * s2, 2 * self.damping * fade * clearance
         across = [w - radial * k for k, w in zip(a, v, strict=True)]
         slip = [-free * w - radial * k for k, w in zip(a, across, strict=True)]
         size = range(len(x))
@@ -146,7 +146,7 @@ class SphereTerm:
             along, aside = a[k] * a[h], (1 if k == h else 0) - a[k] * a[h]
             turn = -mu / distance * (across[k] * a[h] + radial * aside + a[k] * across[h])
             by_v[k][h] = -drag * (free * aside + along)
-            by_x[k][h] = -stiff * (free * aside + along) - slope_change * along + fading * slip[k] * a[h] + drag * turn
+            by_x[k][h] = -stiff * (free * aside + along) - steeper * along + fading * slip[k] * a[h] + drag * turn
         return by_x, by_v
 
 

@@ -124,8 +124,8 @@ class Basin(ShortRepr):
         with ctx.workdps(DIGITS):
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
-            rotated_state = rotated_to(self.proof.rest, x, shape)
-            distance = norm(minus(x, rotated_state))
+            rotated_rest = rotated_to(self.proof.rest, x, shape)
+            distance = norm(minus(x, rotated_rest))
             excess = u.energy(x) - u.energy(self.proof.rest) + norm2(v) / 2
             return distance.upper(), excess.upper()
 

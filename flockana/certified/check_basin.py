@@ -58,11 +58,11 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         ensure(round_down_float(data["distance"], apart), "the distance is not that of the closest pair")
         yield "no two agents come nearer than the distance stated"
         for bond, pairs in zip(data["bonds"], bonds, strict=True):
-            rest_lengths = hull(*(lengths[pair] for pair in pairs))
+            rest_length = hull(*(lengths[pair] for pair in pairs))
             fault = "a bond has other than one bound for each shell"
             ensure(len(bond["along"]) == len(bond["across"]) == shells, fault)
             for k, floor in enumerate(zip(bond["along"], bond["across"], strict=True)):
-                holds = net.floor_holds(rest_lengths, reach * (k + 1) / shells, *map(Fraction, floor))
+                holds = net.floor_holds(rest_length, reach * (k + 1) / shells, *map(Fraction, floor))
                 ensure(holds, f"pairs {pairs}, shell {k}: no bound")
         yield f"the curvatures along and across of {len(bonds)} kinds of pairs are bounds in each of {shells} shells"
         curvatures = [Fraction(k) for k in data["curvatures"]]
@@ -75,8 +75,8 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
             matrix = net.radial(x, gaps, floors)
             ensure(positive(matrix.tolist(), ball(stated)), f"shell {k}: the curvature is not proved")
             ensure(stated % unit(stated, STATED) == 0, f"shell {k}: the curvature has too many digits")
-            next_value = positive(matrix.tolist(), ball(stated + unit(stated, STATED)))
-            ensure(not next_value, f"shell {k}: more than the curvature stated is true")
+            has_more = positive(matrix.tolist(), ball(stated + unit(stated, STATED)))
+            ensure(not has_more, f"shell {k}: more than the curvature stated is true")
         yield "the curvature of U along displacements is at least what is stated, shell by shell"
         yield from _check_bounds(data, net, x, lengths, curvatures)
 
@@ -248,9 +248,9 @@ class Net:
     ) -> arb_mat:
         """Return a matrix below the Hessian, from bounds of its pairs; rigid motions have large eigenvalues."""
         blocks = {}
-        for pair, (axial_part, transverse_floor) in floors.items():
+        for pair, (axial_floor, transverse_floor) in floors.items():
             gap = gaps[pair]
-            blocks[pair] = block(gap, ball(transverse_floor), ball(axial_part - transverse_floor) / norm2(gap))
+            blocks[pair] = block(gap, ball(transverse_floor), ball(axial_floor - transverse_floor) / norm2(gap))
         total = arb_mat(self.assembled(blocks))
         for motion in self.rotation_tangents(x) + self.translations():
             column = arb_mat([[y] for y in motion])
@@ -286,15 +286,15 @@ class Net:
             farthest, spare = max(abs(low), abs(high)), (stiff - alpha).lower()
             zeroth_term = spare * ball(nearest if spare >= 0 else farthest) ** 2
             first_term = 2 * x * (stiff * rest + alpha * distance) + 2 * (pull * square(rest) - beta * square(distance))
-            doubled_slope = (stiff - pull) * square(rest) - (alpha - beta) * square(distance)
+            second_term = (stiff - pull) * square(rest) - (alpha - beta) * square(distance)
             maximum = (ball(eta**2 - nearest**2) / (2 * distance * rest)).upper()
-            worst = first_term.lower() + doubled_slope.lower().min(arb(0)) * maximum
+            worst = first_term.lower() + second_term.lower().min(arb(0)) * maximum
             if zeroth_term + worst.min(arb(0)) * maximum >= 0:
                 continue
             if depth == _DEEPEST:
                 return False
-            half_width = (low + high) / 2
-            cells += [(low, half_width, depth + 1), (half_width, high, depth + 1)]
+            midpoint = (low + high) / 2
+            cells += [(low, midpoint, depth + 1), (midpoint, high, depth + 1)]
         return True
 
     def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:

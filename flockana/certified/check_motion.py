@@ -136,17 +136,17 @@ class Motion:
             for k, row in enumerate(self.pull(list(q[i]))):
                 rows[size + i * m + k][i * m : i * m + m] = [-value for value in row]
         for i, sphere in self.near():
-            for first_row, table in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
+            for first_column, table in zip((i * m, size + i * m), sphere.slope(q[i], p[i]), strict=True):
                 for k, c in product(range(m), repeat=2):
-                    rows[size + i * m + k][first_row + c] += table[k][c]
+                    rows[size + i * m + k][first_column + c] += table[k][c]
         for i, j, gap in self.gaps(box):
             s2 = norm2(gap)
             z, root = sigma_of_square(s2, par.eps), (1 + ball(par.eps) * s2).sqrt()
             stress, weight = phi_alpha(z, par) / root, adjacency(z, par)
-            slope_change = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
+            stress_slope = (phi_alpha_slope(z, par) - ball(par.eps) * stress) / square(root)
             fading = bump_slope(z / r_alpha(par), par.h) / r_alpha(par) / root
             for k, c in product(range(m), repeat=2):
-                block = (g["c1_alpha"] * slope_change * gap[k] + g["c2_alpha"] * fading * (p[j][k] - p[i][k])) * gap[c]
+                block = (g["c1_alpha"] * stress_slope * gap[k] + g["c2_alpha"] * fading * (p[j][k] - p[i][k])) * gap[c]
                 block += g["c1_alpha"] * stress if k == c else 0
                 for r, o, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
                     rows[size + r * m + k][o * m + c] += sign * block
@@ -252,13 +252,13 @@ class Sphere:
         action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
         fading = bump_slope(z / d_beta(self.par), self.par.h) / d_beta(self.par) * c / stretch.sqrt()
         size = self.push * action * c / stretch.sqrt()
-        slope_change = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
+        steeper = self.push * (phi_beta_slope(z, self.par) * square(c) + action / stretch.sqrt()) / stretch
         by_x, by_v = ([[arb(0)] * len(x) for _ in x] for _ in range(2))
         for k, h in product(range(len(x)), repeat=2):
             a, w, b, u = e[k], v[k], e[h], v[h]
             slip, aside = w - share * (w - along * a), int(k == h) - a * b
             turn = share / distance * (b * (w - a * along) + aside * along + a * (u - b * along))
-            by_x[k][h] = -slope_change * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn)
+            by_x[k][h] = -steeper * a * b - size * aside / distance - self.drag * (fading * b * slip + rho * turn)
             by_v[k][h] = -self.drag * rho * ((1 - share) * int(k == h) + share * a * b)
         return by_x, by_v
 

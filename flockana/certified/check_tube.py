@@ -53,7 +53,7 @@ CLAIMS = (  # what a certificate states of all of a run, its name, and the step 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the form of a tube certificate: the expected kind of each entry, by key; Algorithm 3 alone has spheres."""
     law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "declared")}
-    if is_bounded := data["law"]["algorithm"] == "Algorithm3":
+    if has_spheres := data["law"]["algorithm"] == "Algorithm3":
         law |= dict.fromkeys(("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta"), NUMBER)
         law |= {"spheres": [{"centre": [NUMBER], "radius": NUMBER}]}
     return {
@@ -64,7 +64,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
         "paths": [[[BINARY]]],
         "errors": [NUMBER],
         **dict.fromkeys(("weight", "distance", "cohesion_radius", "energy", "turn"), NUMBER),
-        "clearance": NUMBER if is_bounded and data["law"]["spheres"] else None,
+        "clearance": NUMBER if has_spheres and data["law"]["spheres"] else None,
         "below_c_star": TRUTH,
         "basin": None if data["basin"] is None else ANY,  # a certificate of its own
     }
@@ -91,8 +91,8 @@ class Run(Motion):
         bounded = law["algorithm"] == "Algorithm3"
         gain = {name: number(law[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
         start, velocity, declared = ([number(x) for x in law[name]] for name in ("start", "velocity", "declared"))
-        has_target = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *declared)
-        ensure(law["algorithm"] != "Algorithm1" or all(x == 0 for x in has_target), "Algorithm 1 has no γ-agent")
+        led_values = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *declared)
+        ensure(law["algorithm"] != "Algorithm1" or all(x == 0 for x in led_values), "Algorithm 1 has no γ-agent")
         ensure(len(start) == len(velocity) == len(declared) == m, "the γ-agent has another dimension")
         ensure(not (bounded and any(x != 0 for x in velocity)), "its γ-agent moves")
         spheres = tuple(Sphere.of(law, one) for one in law["spheres"]) if bounded else ()
@@ -116,10 +116,10 @@ class Run(Motion):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
             fits = len(path) == size and all(len(row) == len(path[0]) in range(4, 65) for row in path)
             ensure(fits, "a path of another size")
-            error, bound, window_end = self.jumped(state, path, error), number(stated), f"t = {float(t):.6g}"
+            error, bound, time_text = self.jumped(state, path, error), number(stated), f"t = {float(t):.6g}"
             enclosure, box = self.grown(ball(t), h, path, error, bound)
-            ensure(bool(enclosure < bound), f"{window_end}: the error may exceed what is stated")
-            ensure(bool(bound < 2 * enclosure + arb(2) ** -90), f"{window_end}: the error stated is not the one proved")
+            ensure(bool(enclosure < bound), f"{time_text}: the error may exceed what is stated")
+            ensure(bool(bound < 2 * enclosure + arb(2) ** -90), f"{time_text}: the error stated is not the one proved")
             state, error = self.at(path, h), enclosure
             boxes.append(box)
         yield f"the run is within the errors stated of the path, through {len(times) - 1} steps"
@@ -175,8 +175,8 @@ class Run(Motion):
         """Return the error bound after a step, and a box that holds all states within `bound` of the step's path."""
         span = arb(0).union(h)
         reach = self.at(path, span)
-        half_width, scaled_bound = bound / self.weight, self.n * self.m
-        box = [x + arb(0, (half_width if k < scaled_bound else bound).upper()) for k, x in enumerate(reach)]
+        half_width, dimension = bound / self.weight, self.n * self.m
+        box = [x + arb(0, (half_width if k < dimension else bound).upper()) for k, x in enumerate(reach)]
         rate = self.logarithmic_norm(self.slope(box))
         defect = self.defect(t, h, path)
         return (rate.max(arb(0)) * h).exp() * (error + h * defect), box
@@ -193,17 +193,17 @@ class Run(Motion):
             begin, state_range = self.at(path, arb(0)), [row[0] for row in whole]
             with series_length(1):
                 force_jet = self.force(t, [arb_series([x]) for x in begin], pieces)
-            jet_derivative = (self.slope(state_range) * arb_mat([[row[1]] for row in whole])).entries()
+            force_rates = (self.slope(state_range) * arb_mat([[row[1]] for row in whole])).entries()
             for k in range(size):
-                jerk = 6 * whole[k][3] - jet_derivative[size + k] - self.gain["c1_gamma"] * self.velocity[k % self.m]
+                jerk = 6 * whole[k][3] - force_rates[size + k] - self.gain["c1_gamma"] * self.velocity[k % self.m]
                 total.append(abs(2 * path[k][2] - force_jet[k][0]) + h * abs(jerk))
             return self.length(total)
         with series_length(order):
-            first_term = self.force(t, [arb_series(row) for row in self.shifted(path, arb(0))], pieces)
-            last_term = self.force(t + span, [arb_series(row) for row in whole], pieces)
+            start_force = self.force(t, [arb_series(row) for row in self.shifted(path, arb(0))], pieces)
+            end_force = self.force(t + span, [arb_series(row) for row in whole], pieces)
             for k in range(size):
-                terms = [abs((j + 2) * (j + 1) * path[k][j + 2] - first_term[k][j]) * h**j for j in range(order - 1)]
-                total.append(sum(terms, abs(last_term[k][order - 1]) * h ** (order - 1)))
+                terms = [abs((j + 2) * (j + 1) * path[k][j + 2] - start_force[k][j]) * h**j for j in range(order - 1)]
+                total.append(sum(terms, abs(end_force[k][order - 1]) * h ** (order - 1)))
         return self.length(total)
 
     def logarithmic_norm(self, slope: arb_mat) -> arb:

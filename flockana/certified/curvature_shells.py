@@ -192,7 +192,7 @@ class BondTable:
         x = points(reach)
         lengths = [float(bond.rest) for bond in bonds]
         curves = [self._curves(distance + x) for distance in lengths]
-        along_part, transverse_part, fixed_rows = self._parts(bonds)
+        along_part, transverse_part, fixed_part = self._parts(bonds)
         shape = (SHELLS, len(bonds))
         along, across, curvatures = np.empty(shape), np.empty(shape), np.empty(SHELLS)
         for i in range(SHELLS):
@@ -203,7 +203,7 @@ class BondTable:
             for slack in _SLACKS:
                 a = [float(stiff.min()) - slack * float(np.abs(stiff).max()) for _, stiff, _ in near]
                 b = [proposed_across(y, r, x[is_inside], k, t, eta) for y, (r, k, t) in zip(a, near, strict=True)]
-                matrix = fixed_rows + np.tensordot(a, along_part, 1) + np.tensordot(b, transverse_part, 1)
+                matrix = fixed_part + np.tensordot(a, along_part, 1) + np.tensordot(b, transverse_part, 1)
                 lowest = np.min(np.linalg.eigvalsh(matrix), initial=np.inf)
                 if lowest > curvatures[i]:
                     curvatures[i], along[i], across[i] = lowest, a, b
@@ -267,11 +267,11 @@ class Shells:
     @property
     def surplus(self) -> fmpq:
         """Surplus min (t G' − G)/t², a lower bound of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
-        step, total, cell_minima = self.radius / SHELLS, fmpq(0), []
+        step, total, surpluses = self.radius / SHELLS, fmpq(0), []
         for i, k in enumerate(self.curvatures):
             total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
-            cell_minima.append(total / (step * (i + 1)) ** 2)
-        return min(cell_minima)
+            surpluses.append(total / (step * (i + 1)) ** 2)
+        return min(surpluses)
 
 
 def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:

@@ -156,7 +156,7 @@ class _March:
         """Yield each proved step with its final set; yield a message where a proof fails."""
         flow, t, current_set, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
         while t < span[1]:
-            end, step, crossing_switch = self._step(t, current_set, min(target_step, span[1] - t), span[1])
+            end, step, is_crossing = self._step(t, current_set, min(target_step, span[1] - t), span[1])
             if step is None:
                 yield t, f"no step of any length could be enclosed at t = {t:.6g}, where {_where(flow, current_set)}"
                 return
@@ -164,7 +164,7 @@ class _March:
                 place_text = _where(flow, current_set)
                 yield t, f"the set is wider than {2.0 * self.widest:g} d at t = {end:.6g}, where {place_text}"
                 return
-            if not crossing_switch:
+            if not is_crossing:
                 growth = _factor(step.blur / _BLUR, variation_order(self.order))
                 target_step = (end - t) * max(min(_factor(self._excess(step), self.order), growth, _GROW), 0.3)
             t, current_set = end, step.after
@@ -174,22 +174,22 @@ class _March:
         """Return the end of the next step, the step if a proof succeeds, and whether a switch is crossed."""
         flow, shortest, end = self.flow, _SHORTEST / self.flow.pace, t
         step: Step | None = None
-        distance, crossing_switch = _proposed(flow, current, most)
+        duration, is_crossing = _proposed(flow, current, most)
         for _ in range(_TRIES):
-            if not crossing_switch and distance < shortest:
-                distance, crossing_switch = shortest, True
-            end = min(t + distance, last)
+            if not is_crossing and duration < shortest:
+                duration, is_crossing = shortest, True
+            end = min(t + duration, last)
             if end <= t:
                 break
             h = arb(end) - arb(t)
-            if crossing_switch:
+            if is_crossing:
                 step = crossing_step(flow, arb(t), h, current)
             else:
                 step = taylor_step(flow, arb(t), h, current, self.order)
-            if step is not None and (crossing_switch or (step.blur < _BLUR**0.5 and self._excess(step) < _FAR)):
+            if step is not None and (is_crossing or (step.blur < _BLUR**0.5 and self._excess(step) < _FAR)):
                 break
-            distance *= _SHRINK
-        return end, step, crossing_switch
+            duration *= _SHRINK
+        return end, step, is_crossing
 
     def _width(self, step: Step) -> float:
         """Return the largest half-width of the set after a step."""

@@ -53,9 +53,9 @@ def work(tube: Tube) -> arb:
             if Piece.SWITCH in pieces:
                 total += h * sum(flow.powers(state_range, pieces), arb(0))
                 continue
-            first_item = _rate(flow, arb(start), tube.boxes[k], pieces)
+            first_rate = _rate(flow, arb(start), tube.boxes[k], pieces)
             last_rate = _rate(flow, arb(start) + hull(arb(0), h), state_range, pieces)
-            total += sum((c * h ** (j + 1) / (j + 1) for j, c in enumerate(first_item[:_ORDER])), arb(0))
+            total += sum((c * h ** (j + 1) / (j + 1) for j, c in enumerate(first_rate[:_ORDER])), arb(0))
             total += last_rate[_ORDER] * h ** (_ORDER + 1) / (_ORDER + 1)
         return total
 

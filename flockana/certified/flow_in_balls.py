@@ -87,11 +87,11 @@ class Flow:
             (stress, adjacency), (weight_slope, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
             weight_slope, fade = self.stiffness * weight_slope, self.damping * fade
-            rate_terms = [2 * (weight_slope * x + fade * w) for x, w in zip(displacement, relative, strict=True)]
+            gradient = [2 * (weight_slope * x + fade * w) for x, w in zip(displacement, relative, strict=True)]
             for k in range(m):
                 _couple(by_p, m, i, j, k, k, drag)
                 for h in range(m):
-                    _couple(by_q, m, i, j, k, h, rate_terms[k] * displacement[h] + (stress if k == h else 0))
+                    _couple(by_q, m, i, j, k, h, gradient[k] * displacement[h] + (stress if k == h else 0))
         for number, i, piece in self._agents(pieces):
             blocks = self.terms[number].slopes(t, q[i], p[i], piece)
             for table, block in zip((by_q, by_p), blocks, strict=True):

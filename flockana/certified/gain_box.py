@@ -128,7 +128,7 @@ def _proved(law: Algorithm2, q: FloatArray, spread: float) -> float:
 
 def _turns(y: FloatArray) -> FloatArray:
     """Return orthonormal rotations about the γ-agent, as columns of shape (n m, k)."""
-    turns = np.array([(y @ rotation.T).ravel() for rotation in generators(y.shape[1])]).reshape(-1, y.size)
+    turns = np.array([(y @ generator.T).ravel() for generator in generators(y.shape[1])]).reshape(-1, y.size)
     basis, singular_values, _ = np.linalg.svd(turns.T, full_matrices=False)
     return np.asarray(basis[:, singular_values > _ON_A_LINE * singular_values.max(initial=0.0)])
 
@@ -153,21 +153,21 @@ def _enclose(structure: Structure, y: FloatArray, kappa: list[arb]) -> list[arb]
         forces = [f + own_force for f, own_force in zip(structure.gradient(x[:size]), outer, strict=True)]
         forces[:m] = [sum(outer[a::m], arb(0)) for a in range(m)]  # of all agents, to which pairs add nothing
         mean_values = [sum((x[m * i + a] for i in range(n)), arb(0)) for a in range(m)]
-        gauge_rows = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
-        return [*forces, *mean_values, *gauge_rows]
+        gauges = [sum((turns[i, j] * (at[i] - float(y.ravel()[i])) for i in range(size)), arb(0)) for j in range(k)]
+        return [*forces, *mean_values, *gauges]
 
     def slope(x: Any) -> arb_mat:
         full_matrix = [[arb(0)] * (size + m + k) for _ in range(size + m + k)]
         for i, row in enumerate(structure.hessian(x[:size]).tolist()):
-            a, target_columns = i % m, {i % m, i}  # the first rows are those of all agents
+            a, target_rows = i % m, {i % m, i}  # the first rows are those of all agents
             if i >= m:
                 full_matrix[i][:size] = row
-            for r in target_columns:
+            for r in target_rows:
                 full_matrix[r][i] += weights[i]
                 full_matrix[r][size + a] += weights[i]
             full_matrix[size + a][i] = arb(1)
             for j in range(k):
-                for r in target_columns:
+                for r in target_rows:
                     full_matrix[r][size + m + j] += float(turns[i, j])
                 full_matrix[size + m + j][i] = arb(float(turns[i, j]))
                 full_matrix[size + m + j][size + a] += float(turns[i, j])
@@ -225,13 +225,13 @@ def _is_stiff(structure: Structure, z: list[arb], least: arb) -> bool:
         ]
     )
     turns = [[x - t[k % m] for k, x in enumerate(t)][m:] for t in structure.rotation_tangents(z)]
-    tie_bound, rounding_loss = arb(max(float(abs(entry).upper()) for entry in form.entries())), arb(0)
+    tie_weight, rounding_loss = arb(max(float(abs(entry).upper()) for entry in form.entries())), arb(0)
     for rotation in turns:
         size = arb(sum((x.mid() ** 2 for x in rotation), arb(0)).mid())
         if not size > 0:
             continue
         midpoint_column = column([x.mid() for x in rotation])
-        form = form + tie_bound / size * midpoint_column * midpoint_column.transpose()
-        rounding_loss += tie_bound / size * sum((x.rad() ** 2 for x in rotation), arb(0))
+        form = form + tie_weight / size * midpoint_column * midpoint_column.transpose()
+        rounding_loss += tie_weight / size * sum((x.rad() ** 2 for x in rotation), arb(0))
     bound = least_eigenvalue(form)
     return bound is not None and bool(bound > rounding_loss)

@@ -121,10 +121,10 @@ def _enclosed(
         if not all(x.is_finite() for x in last):
             return None
         power, power_range = h**order, hull(arb(0), h**order)
-        image = [x + power_range * remainder for x, remainder in zip(reach, last, strict=True)]
+        image = [x + power_range * entry for x, entry in zip(reach, last, strict=True)]
         if all(a.contains_interior(b) for a, b in zip(box, image, strict=True)):
-            return image, [power * remainder for remainder in last]
-        growth = [a + 2 * arb((power_range * remainder).abs_upper()) for a, remainder in zip(growth, last, strict=True)]
+            return image, [power * entry for entry in last]
+        growth = [a + 2 * arb((power_range * entry).abs_upper()) for a, entry in zip(growth, last, strict=True)]
     return None
 
 

@@ -88,11 +88,11 @@ def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> f
     """Return the largest exact rate α that the inequalities allow; 0 if there is none above 0."""
     curvature, lowest_value, maximum = bounds.curvature, bounds.least, bounds.most
     mixed_curvature = theta * bounds.surplus + (1 - theta) * curvature
-    eps_term = eps * (theta * curvature / 2 + mixed_curvature - kappa * maximum / 2) / (curvature / 2 + eps * tau / 2)
+    places = eps * (theta * curvature / 2 + mixed_curvature - kappa * maximum / 2) / (curvature / 2 + eps * tau / 2)
     speeds = ((1 - eps / (2 * kappa)) * lowest_value - eps) / (fmpq(1, 2) + eps / (2 * tau))
     if not 0 <= theta <= 1 or eps * eps >= curvature:
         return fmpq(0)  # where ε > 2κ, `speeds` is below 0
-    return max(fmpq(0), min(eps * theta, eps_term, speeds))
+    return max(fmpq(0), min(eps * theta, places, speeds))
 
 
 def decay(bounds: Bounds) -> Decay:
@@ -114,11 +114,11 @@ def decay(bounds: Bounds) -> Decay:
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the best θ, κ and τ for given ε and α; κ and τ are not positive if α is too large."""
-    curvature, surplus, cell_minima, maximum = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
+    curvature, surplus, lowest, maximum = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     margin = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
-    tau = 2.0 * margin / ((cell_minima * maximum) ** 0.5 + alpha)
-    return theta, tau * (cell_minima / maximum) ** 0.5, tau
+    tau = 2.0 * margin / ((lowest * maximum) ** 0.5 + alpha)
+    return theta, tau * (lowest / maximum) ** 0.5, tau
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:

@@ -79,23 +79,23 @@ def _pass(
     widest = np.repeat([law.scales.length, law.scales.speed], half_dimension) * _THIN
     state = [arb(float(x)) for x in np.concatenate([item.ravel() for item in start])]
     rows = np.full((len(wanted), 2, 2, n, m), np.nan)
-    finished_steps, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
+    finished_rows, k, cost = 0, 0, max(ctx.prec / _FIRST_BITS, 1.0) ** 1.2
     while True:
         midpoint, radii = (np.array([float(ball_part(x)) for x in state]) for ball_part in (arb.mid, arb.rad))
         if not (radii <= widest).all():
             break
-        if k == wanted[finished_steps]:
-            rows[finished_steps] = np.stack([midpoint, radii + _ROUND * np.abs(midpoint)]).reshape(2, 2, n, m)
-            finished_steps += 1
-            if finished_steps == len(wanted):
+        if k == wanted[finished_rows]:
+            rows[finished_rows] = np.stack([midpoint, radii + _ROUND * np.abs(midpoint)]).reshape(2, 2, n, m)
+            finished_rows += 1
+            if finished_rows == len(wanted):
                 break
-        state, near_pairs = _step(flow, law, t + k * h, h, state)
-        left -= cost * (near_pairs + evaluations)
+        state, near_count = _step(flow, law, t + k * h, h, state)
+        left -= cost * (near_count + evaluations)
         if left <= 0.0:
             break
         k += 1
     parts = (rows[:, 0, 0], rows[:, 0, 1], rows[:, 1, 0], rows[:, 1, 1])
-    return BallOrbit(*parts, finished_steps, 1.0 - max(left, 0.0) / begin, ctx.prec), left
+    return BallOrbit(*parts, finished_rows, 1.0 - max(left, 0.0) / begin, ctx.prec), left
 
 
 def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
@@ -103,13 +103,13 @@ def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[l
     half, slopes, count, solver = flow.n * flow.m, list[list[arb]](), 0, law.solver
     for row, s in zip(solver.a, (sum(row) for row in solver.a), strict=True):
         moved_state = _moved(state, h, row, slopes)
-        pieces, near_pairs = _pieces(flow, moved_state, law.law.alpha.r)
+        pieces, near_count = _pieces(flow, moved_state, law.law.alpha.r)
         slopes.append([*moved_state[half:], *flow.input(t + h * arb(s), moved_state, pieces)])
-        count += near_pairs
+        count += near_count
     next_state = _moved(state, h, solver.b, slopes)
     if solver.position_factor:
-        input_part = arb(solver.position_factor) * h * h
-        next_state[:half] = [x + input_part * a for x, a in zip(next_state[:half], slopes[0][half:], strict=True)]
+        input_scale = arb(solver.position_factor) * h * h
+        next_state[:half] = [x + input_scale * a for x, a in zip(next_state[:half], slopes[0][half:], strict=True)]
     return next_state, count
 
 
@@ -126,12 +126,12 @@ def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
     position_radius = max(float(y.rad()) for y in positions)
     reach = r * (1.0 + 1e-9) + 2.0 * sqrt(flow.m) * (position_radius + 4.0 * _ROUND * float(np.abs(x).max()))
     distances = np.linalg.norm(x[:, None] - x, axis=2)
-    q, near_pairs, pieces = flow.split(state)[0], 0, []
+    q, near_count, pieces = flow.split(state)[0], 0, []
     for i, j in combinations(range(flow.n), 2):
         is_far = distances[i, j] > reach
-        near_pairs += not is_far
+        near_count += not is_far
         pieces.append(Piece.OUT if is_far else flow.pair.piece(norm2(minus(q[i], q[j]))))
-    return (*pieces, *(term.piece(y) for term in flow.terms for y in q)), near_pairs
+    return (*pieces, *(term.piece(y) for term in flow.terms for y in q)), near_count
 
 
 def _binary(x: Any) -> fmpq:

@@ -119,9 +119,9 @@ class Structure:
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
         """Return a basis of tangents Ωx of the orbit of x under rotations: 0, 1 or 3 vectors."""
-        m, agent_range = self.m, range(len(x))
+        m, indices = self.m, range(len(x))
         return [
-            [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in agent_range]
+            [x[k - b + a] if k % m == b else -x[k - a + b] if k % m == a else arb(0) for k in indices]
             for a, b in combinations(range(m), 2)
         ]
 

@@ -170,12 +170,12 @@ class Tube:
         with ctx.workprec(BITS):  # the start by itself: a tube may break before its first step
             start = [minus(y, x) for x, y in combinations(self.state(0)[0], 2)]
             rows = [[norm(gap) for gap in gaps] for gaps in (start, *(step.relative for step in self.taken))]
-        item = [
+        approaches = [
             Approach(down(distance.lower()), pair, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for pair, distance in zip(self.pairs, row, strict=True)
         ]
-        return min(item, key=lambda one: one.lower, default=Approach(inf, (0, 0), self.t[0]))
+        return min(approaches, key=lambda one: one.lower, default=Approach(inf, (0, 0), self.t[0]))
 
     def clearances_during(self, k: int) -> list[list[arb]]:
         """Return balls that hold the agents' clearances from each obstacle, from step k to the next.

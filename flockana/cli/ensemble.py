@@ -64,8 +64,8 @@ def ensemble_command(
     ensure_file(plot)
     if plot is not None and len(axes) > 2:
         raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
-    checked_theorem = [read_theorem(name) for name in theorem or ()] or None
-    request: dict[str, Any] = {"theorems": checked_theorem, "parameters": parameters, "jobs": jobs, "store": store}
+    checked_theorems = [read_theorem(name) for name in theorem or ()] or None
+    request: dict[str, Any] = {"theorems": checked_theorems, "parameters": parameters, "jobs": jobs, "store": store}
     try:
         case = read_own(scenario) if is_own(scenario) else scenario
         runs = ensemble(case, range(first, first + seeds), **request, retry=retry, progress=True)
@@ -131,8 +131,8 @@ def _most_varying(table: xarray.Dataset) -> list[str]:
     share = table.share.sel(of="verified").fillna(0.0)
     other_dimensions = [name for name in share.dims if name != "claim"]
     change = (share.max(other_dimensions) - share.min(other_dimensions)).values
-    varying_dimensions = np.argsort(-change, kind="stable")[:_MOST]
-    return [str(table.claim.values[k]) for k in sorted(varying_dimensions.tolist())]
+    varying_claims = np.argsort(-change, kind="stable")[:_MOST]
+    return [str(table.claim.values[k]) for k in sorted(varying_claims.tolist())]
 
 
 def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
@@ -150,8 +150,8 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
     if is_failed.any():
         messages = list(dict.fromkeys(runs.message.values[is_failed].tolist()))
         console.print(f"{is_failed.sum()} did not complete:", style="bold red", markup=False)
-        more_text = [f"… and {len(messages) - _MESSAGES} more kinds"] if len(messages) > _MESSAGES else []
-        for text in messages[:_MESSAGES] + more_text:
+        more_texts = [f"… and {len(messages) - _MESSAGES} more kinds"] if len(messages) > _MESSAGES else []
+        for text in messages[:_MESSAGES] + more_texts:
             console.print(f"  {text}", markup=False)
 
 
@@ -173,13 +173,13 @@ def share_table(table: xarray.Dataset) -> Table:
 
     columns = (column(heading, right=True) for heading in ("runs", "verified, %", "refuted, %", "vac.", "inc."))
     grid = headed_table(column("claim", wraps=True), *columns, collapse_padding=True)
-    point = previous_cell = ""
-    for place_text, label, *cells in share_cells(table):
+    point = last_theorem = ""
+    for point_text, label, *cells in share_cells(table):
         theorem, _, claim = label.partition(":")
-        if place_text != point:
-            grid.add_row(Text(place_text, style="bold"))
-        if (place_text, theorem) != (point, previous_cell):
+        if point_text != point:
+            grid.add_row(Text(point_text, style="bold"))
+        if (point_text, theorem) != (point, last_theorem):
             grid.add_row(Text(theorem))
-        point, previous_cell = place_text, theorem
+        point, last_theorem = point_text, theorem
         grid.add_row(f"  {claim}", *cells)
     return grid

@@ -47,8 +47,8 @@ def equilibrium_command(
     ensure_file(save_to, (".json",))
     ensure_file(plot)
     try:
-        run_options: Any = {"start": start, "seed": seed, "algorithm": algorithm, "d": d, "r": r, "time": time}
-        law, q, _ = read_motion(source, **run_options, potential=True)
+        read_options: Any = {"start": start, "seed": seed, "algorithm": algorithm, "d": d, "r": r, "time": time}
+        law, q, _ = read_motion(source, **read_options, potential=True)
         announce_time(len(q))
         equilibrium = find_equilibrium(law, q)
     except SolverError as error:

@@ -34,7 +34,7 @@ def explore_command(
 
     ensure_positive("--seconds", seconds)
     folder = tempfile.TemporaryDirectory(prefix="flockana-")
-    first_index = _first(name, folder.name)
+    first_case = _first(name, folder.name)
     try:
         from flockana.explore.page_server import Server, kept_token, serve
     except ModuleNotFoundError as error:
@@ -46,7 +46,7 @@ def explore_command(
             webbrowser.open(address)
 
     with folder:
-        asyncio.run(serve(Server(kept_token(), first_index, seconds), port, opened))
+        asyncio.run(serve(Server(kept_token(), first_case, seconds), port, opened))
     return OK
 
 

@@ -166,8 +166,8 @@ def _show(search: Falsification) -> None:
     else:
         text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"
     console.print(text + ("; interrupted" if search.ended == "interrupted" else ""), markup=False)
-    other_claims = ", ".join(name for name in search.broken if name != search.claim)
-    lines = [f"broken on the way: {other_claims}; search them by --claim"] if other_claims else []
+    claims_text = ", ".join(name for name in search.broken if name != search.claim)
+    lines = [f"broken on the way: {claims_text}; search them by --claim"] if claims_text else []
     lines += [f"{name} = {value:.6g}" for name, value in search.parameters.items()]
     if search.found and search.verdict is not None:
         lines.append(search.verdict.claim(search.claim).detail)

@@ -68,11 +68,11 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
 
     `as_given` tells whether only the modes at given positions are sought; None where there is no such choice.
     """
-    search_limit, mode_limit = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
+    search_limit, unit_seconds = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
     if n > search_limit:
         choice = f", or {_GIVEN} with --as-given (slowest modes at these positions)" if as_given is False else ""
         raise ArgumentError(f"n = {n}: expected at most {search_limit} agents{choice}")
-    seconds = mode_limit * n / 1000.0
+    seconds = unit_seconds * n / 1000.0
     if seconds >= _SHORT:
         typer.echo(f"n = {n}: about {seconds:.0f} s on a machine of 2024", err=True)
 

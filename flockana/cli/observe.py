@@ -217,7 +217,7 @@ def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> 
 def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, Any], notes: list[str]) -> None:
     from flockana.report.tables import fact_table
 
-    facts = tuple((name, f"{first_index} to {last_value}") for name, first_index, last_value in rows)
+    facts = tuple((name, f"{first} to {last_value}") for name, first, last_value in rows)
     console = show(repr(rec).strip("<>").partition("; read as ")[0], fact_table(facts))
     for text in rec.read_as:
         console.print(f"read: {text}", markup=False)
@@ -228,8 +228,8 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
             console.print(str(results[key]), markup=False)
     verdicts = results["verdicts"]
     if verdicts:
-        first_index = verdicts[0].hypotheses[0]
-        console.print(f"{first_index.name}: {first_index.status}. {first_index.detail}", markup=False)
+        first = verdicts[0].hypotheses[0]
+        console.print(f"{first.name}: {first.status}. {first.detail}", markup=False)
         console.print(fact_table((v.theorem, f"{v.status} ({v.rigour}): {v.summary}") for v in verdicts))
 
 
@@ -247,6 +247,6 @@ def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]
         plain_values["comparison"] = results["comparison"].to_dict()
     if "fitted" in results:
         fitted = results["fitted"]
-        window_ranges = {name: [x if isfinite(x) else None for x in pair] for name, pair in fitted.intervals.items()}
-        plain_values["fit"] = {"values": dict(fitted.values), "intervals": window_ranges, "doubts": list(fitted.doubts)}
+        intervals = {name: [x if isfinite(x) else None for x in pair] for name, pair in fitted.intervals.items()}
+        plain_values["fit"] = {"values": dict(fitted.values), "intervals": intervals, "doubts": list(fitted.doubts)}
     return plain_values | {"verdicts": [verdict.to_dict() for verdict in results["verdicts"]]}

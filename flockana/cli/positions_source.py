@@ -93,9 +93,9 @@ def _sample(path: Path, time: float | None) -> tuple[FloatArray, FloatArray, Any
     from flockana.dynamics.trajectory import Trajectory
 
     run = Trajectory.load(path)
-    first_index, last_time = float(run.t[0]), float(run.t[-1])
-    if time is not None and not first_index <= time <= last_time:
-        raise ArgumentError(f"--time {time:g}: expected a time of the run, {first_index:g} to {last_time:g}")
+    first_time, last_time = float(run.t[0]), float(run.t[-1])
+    if time is not None and not first_time <= time <= last_time:
+        raise ArgumentError(f"--time {time:g}: expected a time of the run, {first_time:g} to {last_time:g}")
     k = -1 if time is None else int(np.argmin(np.abs(run.t - time)))
     return run.q[k], run.p[k], run.law, float(run.t[k])
 
@@ -111,10 +111,10 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
     """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice."""
     name, _, size_text = text.partition(":")
     form, function = BUILDERS[name], name.replace("-", "_")
-    values = size_text.split("x")
-    if len(values) != len(form.split("x")) or not all(k.isascii() and k.isdigit() for k in values):
+    sizes = size_text.split("x")
+    if len(sizes) != len(form.split("x")) or not all(k.isascii() and k.isdigit() for k in sizes):
         raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")
-    counts = [int(k[:20]) for k in values]  # enough to tell that it is too large
+    counts = [int(k[:20]) for k in sizes]  # enough to tell that it is too large
     if (3 * counts[0] ** 2 if form == "RINGS" else prod(counts)) > _MOST:
         raise ArgumentError(f"{text!r}: expected a size of at most {_MOST} agents")
     return getattr(lattice, function)(*counts, d), lattice.max_ratio(function)

@@ -121,8 +121,8 @@ def rest_of(law: Any, q: Any) -> Any:
     if is_own_map(law):
         return q
     acting_law = law if law.continuous is None else instant_law(law.continuous)
-    has_energy_law = acting_law.terms and acting_law.conservative
-    return find_equilibrium(acting_law, q) if has_energy_law else resting_state(acting_law, q)
+    has_energy = acting_law.terms and acting_law.conservative
+    return find_equilibrium(acting_law, q) if has_energy else resting_state(acting_law, q)
 
 
 def _show_loop(
@@ -255,19 +255,19 @@ def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
 
     law: Any = linear.law
     space = "3d" if linear.q.shape[1] == 3 else None
-    follow_text = _follows(law)
+    is_following = _follows(law)
     target = None if law.target is None else law.target.position(linear.t)
     modes = linear.modes if linear.q.size <= DENSE else slow
     inner = [mode for mode in modes if not mode.name.startswith("translation")] or list(modes)
     halves = figure.subfigures(1, 2)
-    left = halves[0].subfigures(2, 1) if follow_text else [halves[0]]
+    left = halves[0].subfigures(2, 1) if is_following else [halves[0]]
     poles = (
         linear.eigenvalues
         if linear.q.size <= DENSE
         else [v for m in slow for v in (m.eigenvalue, np.conj(m.eigenvalue))]
     )
     plots.pole_map(poles, ax=left[0].subplots())
-    if follow_text:
+    if is_following:
         centre = CentreOfMass(law.gains)
         omega = centre.natural_frequency * np.geomspace(0.03, 30.0, 200)
         plots.bode(

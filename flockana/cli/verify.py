@@ -139,10 +139,10 @@ def _planned(
     from flockana.report.verify_catalogue import plan
 
     tasks = plan(name, seed=seed, figures=figures)
-    survey_list = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
+    seed_surveys = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
     linear = (LINEARISED,) if name in (None, *DECAYS, *MARGINS) else ()
     sections = (Section(item, seed) for item in (*([MANY_LAWS] if name is None else []), *linear) if figures)
-    return (*tasks, *sections, *survey_list), survey_list
+    return (*tasks, *sections, *seed_surveys), seed_surveys
 
 
 def _write(folder: Path, results: Sequence[Done], pages: Sequence[Page], **run: Any) -> Path:

@@ -54,9 +54,9 @@ def course_map(folder: Path) -> list[Lecture]:
         title = re.search(r"^# # (.+)$", files[number].read_text(encoding="utf-8"), re.MULTILINE)
         if title is None:
             raise ArgumentError(f"{files[number].name} has no title: expected a line '# # ...'")
-        after, further_links = tuple(entry["after"]), tuple(entry["further"])
+        after, further_texts = tuple(entry["after"]), tuple(entry["further"])
         depth, theorems = tuple(entry.get("depth", ())), entry.get("theorems", {})
-        lectures.append(Lecture(number, title[1], after, entry["minutes"], references, further_links, depth, theorems))
+        lectures.append(Lecture(number, title[1], after, entry["minutes"], references, further_texts, depth, theorems))
     return lectures
 
 

@@ -232,10 +232,10 @@ def equilibria(*, axes: Any) -> Any:
 def held_at_a_jump(*, axes: Any) -> Any:
     """Draw a force that jumps, with Filippov's values at the jump, and a damped motion in the phase plane."""
     (force, plane), (repulsion, pull, k2) = axes, (1.0, 0.4, 0.12)
-    for ends, value, name, label_below in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
+    for ends, value, name, label_offset in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
         force.plot(ends, (value, value), color=BLUE, linestyle="-")
         force.plot(0.0, value, "o", color=BLUE, markerfacecolor="white", markersize=5, zorder=3)
-        _note(force, name, (ends[0] + 0.25, value), (0, label_below), fontsize=8)
+        _note(force, name, (ends[0] + 0.25, value), (0, label_offset), fontsize=8)
     force.plot((0.0, 0.0), (-pull, repulsion), color=VERMILLION, linestyle="--", label="Filippov: any of these")
     force.plot(0.0, 0.0, "o", color=VERMILLION, label="held: the force 0")
     y, rate, path = 0.0, 0.9, []
@@ -258,8 +258,8 @@ def crossing_links(*, ax: Any = None) -> Any:
         ax.plot(*q[list(pair)].T, color=colour, linestyle=dash, linewidth=2.0)
     for a, b in ((0, 2), (2, 1), (1, 3), (3, 0)):
         ax.plot(*q[[a, b]].T, color=MUTED, linestyle=":", linewidth=1.0)
-        distance = f"{np.hypot(*(q[a] - q[b])):.2f}"
-        ax.text(*q[[a, b]].mean(axis=0), distance, fontsize=8, ha="center", backgroundcolor="white")
+        label = f"{np.hypot(*(q[a] - q[b])):.2f}"
+        ax.text(*q[[a, b]].mean(axis=0), label, fontsize=8, ha="center", backgroundcolor="white")
     ax.scatter(*q.T, s=40, color=INK, zorder=3)
     ax.set(xlim=(-0.8, 0.8), ylim=(-0.75, 0.65))
     return ax

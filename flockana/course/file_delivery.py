@@ -20,8 +20,8 @@ def notebook_bytes(book: Any) -> bytes:
 
 def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
     """Write files into a folder, or none if one exists there with other content."""
-    folder_prefix = ensure_path(folder, action="write to", remedy=_REMEDY)
-    paths = {folder_prefix / name: content for name, content in files.items()}
+    folder_path = ensure_path(folder, action="write to", remedy=_REMEDY)
+    paths = {folder_path / name: content for name, content in files.items()}
     missing = [path for path, content in paths.items() if not _is_there(path, content)]
     try:
         for path in missing:
@@ -29,7 +29,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
             write_atomic(path, paths[path], remedy=_REMEDY)
     except OSError as error:
         reason = getattr(error.__cause__, "strerror", None) or error.strerror or error
-        raise FileError(f"cannot write all of the course to {folder_prefix}: {reason}; {_REMEDY}") from error
+        raise FileError(f"cannot write all of the course to {folder_path}: {reason}; {_REMEDY}") from error
     return list(paths)
 
 

@@ -53,9 +53,9 @@ def grade(
     """
     if digits is not None and within is not None:
         raise ArgumentError(f"digits = {digits} and within = {within}: expected one of the two; leave the other out")
-    given_answer = answered(answer, form or form_of(right))
-    if given_answer.status != "handed in":
-        return given_answer
+    form_grade = answered(answer, form or form_of(right))
+    if form_grade.status != "handed in":
+        return form_grade
     if isinstance(right, list | tuple | set | np.ndarray) and len(answer) != len(right):
         return Grade("not yet", f"a list of {len(right)} is asked for; got {len(answer)}")
     try:

@@ -37,11 +37,11 @@ class Prediction:
 
     def _guess(self) -> str:
         form = form_of(self.right)
-        given_answer = answered(self.guess, form)
-        if given_answer.status == "handed in":
+        form_grade = answered(self.guess, form)
+        if form_grade.status == "handed in":
             return f"you said {self.guess}"
-        if given_answer.status == "not yet":
-            return f"✗ {given_answer.hint}; got {self.guess!r}"
+        if form_grade.status == "not yet":
+            return f"✗ {form_grade.hint}; got {self.guess!r}"
         return f"… no guess yet: put a {form} in the place of the dots, and run the cell again"
 
     def _answer(self) -> str:

@@ -62,12 +62,12 @@ class Engine(Integrator):
             if self._reach and self.pairs.counts[MADE] >= self._sorted + _LISTS:
                 self._sort()
         with self._pace as steps, several_threads(self._threads) as several:
-            judged_pairs = checks.judged(self.order, several=several)
+            judged = checks.judged(self.order, several=several)
             lists, samples = (self.pairs, checks.near), (self.due, *self._samples)
             block = Block(*(rows[: min(steps, self._unsorted) + 1] for rows in self.block))
             system = self._form.in_threads(self._system) if several else self._system  # both give the same bits
             stages = system, self._method, block, self._room, self._h
-            advanced = Advanced(*advance(*stages, lists, self.stops, samples, judged_pairs))
+            advanced = Advanced(*advance(*stages, lists, self.stops, samples, judged))
         self._unsorted -= advanced.steps
         self._h, self._sampled = advanced.h, advanced.samples if advanced.steps else 0
         self.evaluations += advanced.evaluations

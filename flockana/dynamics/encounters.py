@@ -86,9 +86,9 @@ class Encounters:
         """Return the share of a step that may be accepted, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         step_ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
-        around, empty_share = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
+        around, view_pairs = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
         is_crowd, near = False, no_pairs(n, m)
-        while (share := float(self.compiled(crowd=is_crowd)(0.0, step_ends, around, *empty_share, near))) <= TOO_MANY:
+        while (share := float(self.compiled(crowd=is_crowd)(0.0, step_ends, around, *view_pairs, near))) <= TOO_MANY:
             is_crowd, near = share == TOO_MANY, with_room(near) or near
         return share
 
@@ -116,9 +116,9 @@ class Encounters:
     @cached_property
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
         """Compiled obstacle check, with its numbers and the start index of each obstacle kind."""
-        kinds, unread_number = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
-        body_parameters = [body_numbers(self.shell, 0.0, 0.0, unread_number, *kind.arrays) for kind in kinds]
-        starts = np.cumsum([0, *(number.size for number in body_parameters)]).astype(np.int64)
+        kinds, unread_numbers = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
+        body_parameters = [body_numbers(self.shell, 0.0, 0.0, unread_numbers, *kind.arrays) for kind in kinds]
+        starts = np.cumsum([0, *(values.size for values in body_parameters)]).astype(np.int64)
         return guard_of(tuple(kind.kernels.guard for kind in kinds)), np.concatenate([[], *body_parameters]), starts
 
 
@@ -160,9 +160,9 @@ class StepChecks:
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole)."""
-        judged_pairs = self.judged(order, compiled=False)
-        step_ratio, is_singular = checked(block, 0, judged_pairs, self._view, kept, self.near)
-        return self.examine(block, order, kept) if is_singular and self.make_room() else (step_ratio, is_singular)
+        judged = self.judged(order, compiled=False)
+        shorter_step, is_singular = checked(block, 0, judged, self._view, kept, self.near)
+        return self.examine(block, order, kept) if is_singular and self.make_room() else (shorter_step, is_singular)
 
     def make_room(self) -> bool:
         """Return whether the pair list overflowed; enlarge the list, or check pairs block by block from now on."""

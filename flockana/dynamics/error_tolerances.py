@@ -69,16 +69,16 @@ def error_floor(scales: Scales | None, start: Start, duration: float, rtol: floa
         extent, largest_travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
         scales = Scales(extent or largest_travel or float(np.abs(p0).max()) * duration or 1.0, duration)
     if isinstance(atol, tuple):
-        length_scale, speed = atol
+        length_floor, speed = atol
     else:
-        length_scale = FLOOR * rtol * scales.length if atol is None else atol
-        speed = length_scale / scales.length * scales.speed
-    energy = min(length_scale / scales.length, speed / scales.speed) * len(q0) * scales.energy
+        length_floor = FLOOR * rtol * scales.length if atol is None else atol
+        speed = length_floor / scales.length * scales.speed
+    energy = min(length_floor / scales.length, speed / scales.speed) * len(q0) * scales.energy
     reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * duration)
     rounding_width = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
-    length_scale, speed = max(length_scale, rounding_width * scales.length), max(speed, rounding_width * scales.speed)
+    length_floor, speed = max(length_floor, rounding_width * scales.length), max(speed, rounding_width * scales.speed)
     energy = max(energy, rounding_width * len(q0) * scales.energy)
-    return ErrorFloors(length_scale, speed, max(energy, rtol * abs(start.energy)) if start.energetic else energy)
+    return ErrorFloors(length_floor, speed, max(energy, rtol * abs(start.energy)) if start.energetic else energy)
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:

@@ -73,8 +73,8 @@ class Interpreter(Integrator):
         """Open a new solver from the first row towards a time, with the given first step if possible."""
         t, y, f = float(self.block.t[0]), *(item[0, : self._solved].copy() for item in self.block[1:3])
         self._course: Callable[[float], FloatArray] | None = None
-        dimension, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
-        floors = np.repeat(control.floor, dimension)[: self._solved]
+        part_sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
+        floors = np.repeat(control.floor, part_sizes)[: self._solved]
         limits = Limits(until, control.rtol, floors, control.longest, first)
         self._solver: Any = self.plan.solver.open(self._rhs, t, y, f, limits)
 
@@ -91,14 +91,14 @@ class Interpreter(Integrator):
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
                     t = float(self.block.t[row])
                     self.block.energy[row] = self.law.hamiltonian(t, *self.frame.state(t, self.block.y[row]))
-            step_ratio, is_singular = self.checks.examine(self.block, self.order, self.pairs)
+            shorter_step, is_singular = self.checks.examine(self.block, self.order, self.pairs)
             if is_singular:
                 self.failure = at_a_pole(float(self.block.t[0]))
                 return 0
-            if not step_ratio:
+            if not shorter_step:
                 return 1
             self.notes["redone"] += 1
-            self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + step_ratio, step_ratio)
+            self._open(self.stops[0] if self.plan.solver.dt else float(self.block.t[0]) + shorter_step, shorter_step)
         return 0
 
     def step(self) -> bool:

@@ -99,10 +99,10 @@ class MapStepper(Stepper):
         All where encounters are looked at, and where the map has left the finite numbers: which step was the first?
         """
         step_numbers = np.arange(1, len(times) + 1)
-        has_pole_pairs = step_numbers if self.encounters is not None else np.union1d(own, step_numbers[-1:])
-        states = self.law.visit(times, self.q, self.p, copied(self.memory), has_pole_pairs)
-        if has_pole_pairs.size == step_numbers.size or finite(*states[:2]):
-            return has_pole_pairs, states
+        few_numbers = step_numbers if self.encounters is not None else np.union1d(own, step_numbers[-1:])
+        states = self.law.visit(times, self.q, self.p, copied(self.memory), few_numbers)
+        if few_numbers.size == step_numbers.size or finite(*states[:2]):
+            return few_numbers, states
         return step_numbers, self.law.visit(times, self.q, self.p, self.memory, step_numbers)
 
     def samples(self, count: int) -> Iterator[Samples]:

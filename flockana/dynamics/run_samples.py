@@ -47,8 +47,8 @@ class Samples(NamedTuple):
     def each(self) -> Iterator[Sample]:
         """Yield the samples one by one."""
         for k, t in enumerate(self.t.tolist()):
-            extra_series = {name: values[k] for name, values in self.extra.items()}
-            yield Sample(t, self.q[k], self.p[k], self.u[k], extra_series, self.wanted)
+            extra_values = {name: values[k] for name, values in self.extra.items()}
+            yield Sample(t, self.q[k], self.p[k], self.u[k], extra_values, self.wanted)
 
 
 class Start(NamedTuple):
@@ -70,9 +70,9 @@ class Start(NamedTuple):
     @property
     def sample(self) -> Samples:
         """The initial state as a single sample."""
-        extra_series = {**self.memory, **({"work": np.array(0.0)} if self.energetic else {})}
-        item = {name: np.asarray(values)[None] for name, values in extra_series.items()}
-        return Samples(np.array([self.t]), self.q[None], self.p[None], self.u[None], item)
+        extra_values = {**self.memory, **({"work": np.array(0.0)} if self.energetic else {})}
+        extra = {name: np.asarray(values)[None] for name, values in extra_values.items()}
+        return Samples(np.array([self.t]), self.q[None], self.p[None], self.u[None], extra)
 
 
 @dataclass

@@ -111,8 +111,8 @@ def _ensure_whole(source: Path) -> None:
         if _MARK not in end:
             return  # another program wrote it, or flockana before there was such a line
         file.seek(0)
-        first_record = max(0, byte_count - _LENGTH)
-        total = sha256(file.read(min(_BLOCK, first_record - k)) for k in range(0, first_record, _BLOCK))
+        data_length = max(0, byte_count - _LENGTH)
+        total = sha256(file.read(min(_BLOCK, data_length - k)) for k in range(0, data_length, _BLOCK))
     if end[-_LENGTH:] != _LINE % total.encode():
         raise FileError(
             f"cannot read {source} as netCDF-4: it was cut short or altered, by the digest at its end; "

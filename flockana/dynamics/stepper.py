@@ -122,8 +122,8 @@ class Integrator(Stepper):
             return ""
         mean, self._counted_from = (at - start_time) / (steps - previous_count), (at, steps)
         law_time = np.inf if self.law.scales is None else self.law.scales.time
-        time_limit = _LONG if self.in_python and mean < _SLUGGISH * law_time else _ENDLESS
-        if ahead.size and ahead[-1] - at > time_limit * mean:
+        step_limit = _LONG if self.in_python and mean < _SLUGGISH * law_time else _ENDLESS
+        if ahead.size and ahead[-1] - at > step_limit * mean:
             return (
                 f"it would take {(ahead[-1] - at) / mean:.1e} more steps to t = {ahead[-1]:g}: the last {_MANY} are "
                 f"{mean:.2g} long on average; expected a shorter span or slower gains"

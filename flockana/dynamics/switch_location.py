@@ -52,9 +52,9 @@ class SwitchingInterpreter(Interpreter):
             q, p = self.frame.state(switch, y)
             self._crossed = self.law.crossed(self.pieces, self.law.margins(self.pieces, q))
             self.notes["switches"] += 1
-            sliding_mode = self.law.sliding(self.pieces, self._crossed, switch, q, p)
-            if sliding_mode is not None:
-                self.notes["sliding"], self.failure = sliding_mode, f"sliding at t = {switch:.6g}: {sliding_mode}"
+            sliding_text = self.law.sliding(self.pieces, self._crossed, switch, q, p)
+            if sliding_text is not None:
+                self.notes["sliding"], self.failure = sliding_text, f"sliding at t = {switch:.6g}: {sliding_text}"
         return 1
 
     def samples(self, count: int) -> Iterator[Samples]:

@@ -169,12 +169,12 @@ def ensemble(
                         count_done += len(new_records)
                         advance(count_done, text)
             except KeyboardInterrupt:
-                description = (
+                store_text = (
                     "a store would keep them"
                     if store is None
                     else f"they are stored in {store}, and the same call goes on"
                 )
-                raise KeyboardInterrupt(f"{len(records)} of {len(all_jobs)} runs done; {description}") from None
+                raise KeyboardInterrupt(f"{len(records)} of {len(all_jobs)} runs done; {store_text}") from None
     return to_dataset(request, grid, [records[keys[job]] for job in all_jobs])
 
 

@@ -38,6 +38,6 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
         return f"{table}<details><summary>variables</summary>{variables}</details>" if rows else variables
 
     def _title(self) -> str:
-        failed_runs = int((self.run != 0).sum())
-        missing_names = f", {failed_runs} did not complete" if failed_runs else ""
-        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{missing_names}"
+        failed_count = int((self.run != 0).sum())
+        lost_text = f", {failed_count} did not complete" if failed_count else ""
+        return f"{self.attrs.get('scenario', 'ensemble')}: {self.run.size} runs{lost_text}"

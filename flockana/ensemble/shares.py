@@ -76,8 +76,8 @@ def share_cells(table: "xarray.Dataset") -> Iterator[tuple[str, str, str, str, s
             if int(counts.runs):
                 vacuous, inconclusive = (str(int(counts[of]) or "") for of in ("vacuous", "inconclusive"))
                 verified, refuted = (_interval(counts.sel(of=of)) for of in ("verified", "refuted"))
-                place_text = ", ".join(f"{name} = {value}" for name, value in point.items())
-                yield place_text, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
+                point_text = ", ".join(f"{name} = {value}" for name, value in point.items())
+                yield point_text, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
 
 
 def _interval(entry: "xarray.Dataset") -> str:

@@ -69,11 +69,11 @@ def _end_with(parent: BaseProcess) -> None:
 def single_threaded_children() -> Iterator[None]:
     """Limit processes started inside to one thread of linear algebra each."""
     with pause_compiling():
-        previous_cell = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
+        previous_env = {name: os.environ[name] for name in _ONE_THREAD if name in os.environ}
         os.environ |= dict.fromkeys(_ONE_THREAD, "1")
         try:
             yield
         finally:
             for name in _ONE_THREAD:
                 os.environ.pop(name, None)
-            os.environ |= previous_cell
+            os.environ |= previous_env

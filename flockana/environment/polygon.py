@@ -131,14 +131,14 @@ def _onto_polygon(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
         if sx * ey - sy * ex < 0.0:
             is_inside = False
         length2 = sx * sx + sy * sy
-        axial_part = (sx * ex + sy * ey) / length2
-        share = min(1.0, max(0.0, axial_part))
+        edge_share = (sx * ex + sy * ey) / length2
+        share = min(1.0, max(0.0, edge_share))
         gx, gy = share * sx - ex, share * sy - ey
         s2 = gx * gx + gy * gy
         if s2 < least_square:
             least_square = s2
             gap[0], gap[1] = gx, gy
-            speed = (sx * p[0] + sy * p[1]) / length2 if 0.0 < axial_part < 1.0 else 0.0
+            speed = (sx * p[0] + sy * p[1]) / length2 if 0.0 < edge_share < 1.0 else 0.0
             rate[0], rate[1] = speed * sx, speed * sy
     return -sqrt(least_square) if is_inside else sqrt(least_square)
 

@@ -140,8 +140,8 @@ class Landscape:
         """Return whether the stiffness changes by less than half of `least` within `reach`."""
         if reach > _REACH * self.length:
             return False
-        angle_bound = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
-        return angle_bound + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
+        turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
+        return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
         """Return the configuration scaled up, scaled down, and shifted if translations matter."""
@@ -170,8 +170,8 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
 def descent_direction(landscape: Landscape) -> FloatArray:
     """Return the unit direction (n, m) of steepest second-order descent."""
     # The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
-    is_near_zero = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
-    basis = landscape.vectors[:, is_near_zero]
+    is_lowest = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
+    basis = landscape.vectors[:, is_lowest]
     random_direction = np.random.default_rng(0).standard_normal(landscape.q.size)
     direction = basis @ (basis.T @ random_direction)
     return np.ascontiguousarray((direction / np.linalg.norm(direction)).reshape(landscape.q.shape))

@@ -42,13 +42,13 @@ class Descent(NamedTuple):
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """Return a minimum reached downhill from q; anneal if pairs collapsed on the way."""
     steps, message = 100 * max_iter, "Converged"
-    best_value = relax(potential, q, steps, tol=_ROUGH)
-    for heat in _HEATS if pairs_collapsed(potential, q, best_value) else ():
-        annealed_state = relax(potential, anneal(potential, best_value, heat), steps, tol=_ROUGH)
-        if potential.energy(annealed_state) < potential.energy(best_value):
-            best_value, message = annealed_state, "Converged, annealed"
-    best_value, converged = newton(potential, relax(potential, best_value, steps), max_iter)
-    return Descent(best_value, converged, message if converged else "Newton's method did not converge")
+    best_state = relax(potential, q, steps, tol=_ROUGH)
+    for heat in _HEATS if pairs_collapsed(potential, q, best_state) else ():
+        annealed_state = relax(potential, anneal(potential, best_state, heat), steps, tol=_ROUGH)
+        if potential.energy(annealed_state) < potential.energy(best_state):
+            best_state, message = annealed_state, "Converged, annealed"
+    best_state, converged = newton(potential, relax(potential, best_state, steps), max_iter)
+    return Descent(best_state, converged, message if converged else "Newton's method did not converge")
 
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
@@ -69,19 +69,19 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
             v, step, mixing_factor, downhill_steps = np.zeros_like(q), 0.5 * step, 0.1, 0
         v = v + step * force
         step_length = step * _largest(v)
-        next_state = q + step * min(1.0, stride / step_length) * v
-        if inside_obstacle(potential.law, next_state):
+        next_q = q + step * min(1.0, stride / step_length) * v
+        if inside_obstacle(potential.law, next_q):
             v, step = np.zeros_like(q), 0.5 * step
         else:
-            q = next_state
+            q = next_q
     return q
 
 
 def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
     """Return whether neighbours moved against each other by more than their distance."""
     i, j = links(start, potential.pair.range).T
-    direction = end - start
-    return bool(np.any(np.linalg.norm(direction[j] - direction[i], axis=1) > _PARTED * potential.pair.length))
+    motion = end - start
+    return bool(np.any(np.linalg.norm(motion[j] - motion[i], axis=1) > _PARTED * potential.pair.length))
 
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
@@ -94,11 +94,11 @@ def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
         noise = rng.standard_normal(q.shape)
         v = share_kept * v + step * potential.force(q)
         v += sqrt(heat * (1.0 - share_kept**2)) * (noise if potential.pinned else moving_frame(noise))
-        next_state = q + step * v
-        if inside_obstacle(potential.law, next_state):
+        next_q = q + step * v
+        if inside_obstacle(potential.law, next_q):
             v = -v
         else:
-            q = next_state
+            q = next_q
     return q
 
 
@@ -117,13 +117,13 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
         step = Elimination(hessian, q, least=threshold).solve(force.ravel()).reshape(q.shape)
         for _ in range(_TRIES):
             step = step * min(1.0, trust / _largest(step))
-            next_state, after = q + step, potential.force(q + step)
-            if not inside_obstacle(potential.law, next_state) and _better(force, after, step, hessian, _NEAR * scale):
+            next_q, after = q + step, potential.force(q + step)
+            if not inside_obstacle(potential.law, next_q) and _better(force, after, step, hessian, _NEAR * scale):
                 break
             trust = 0.25 * _largest(step)
         else:
             break
-        q, force, trust = next_state, after, max(trust, 2.0 * _largest(step))
+        q, force, trust = next_q, after, max(trust, 2.0 * _largest(step))
     return q, _largest(force) <= _NEAR * scale
 
 

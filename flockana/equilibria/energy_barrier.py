@@ -55,8 +55,8 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
     constraint_rows = np.zeros((n, m, m))
     constraint_rows[0], constraint_rows[1] = np.eye(m), -np.eye(m)
-    tie_rows = np.hstack([translations, constraint_rows.reshape(n * m, m)])
-    lowest_value, barrier_energy, state, solves = inf, inf, np.full((n, m), np.nan), 0
+    tie_basis = np.hstack([translations, constraint_rows.reshape(n * m, m)])
+    lowest_value, meeting_energy, state, solves = inf, inf, np.full((n, m), np.nan), 0
     for q in _starts(alpha, n, m, starts, seed):
         low, converged, _ = free_program.solve(q, basis=translations)
         if converged:
@@ -64,12 +64,12 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     for q in _starts(alpha, n - 1, m, starts, seed):
         lattice_with_double = _most_linked_first(q, alpha)
         lattice_with_double = np.vstack([lattice_with_double[:1], lattice_with_double])
-        low, converged, _ = tied_program.solve(lattice_with_double, basis=tie_rows)
+        low, converged, _ = tied_program.solve(lattice_with_double, basis=tie_basis)
         if converged:
             solves += 1
-            if (value := alpha.potential_energy(low)) < barrier_energy:
-                barrier_energy, state = value, low
-    return Barrier(n, m, barrier_energy, lowest_value, state, solves)
+            if (value := alpha.potential_energy(low)) < meeting_energy:
+                meeting_energy, state = value, low
+    return Barrier(n, m, meeting_energy, lowest_value, state, solves)
 
 
 def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> list[FloatArray]:
@@ -115,8 +115,8 @@ def largest_clique(ratio: float, m: int) -> int | None:
 def turan_pairs(n: int, clique: int) -> int:
     """Return the most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941)."""
     group_size, more = divmod(n, clique)
-    inner_pairs = more * (group_size + 1) * group_size // 2 + (clique - more) * group_size * (group_size - 1) // 2
-    return n * (n - 1) // 2 - inner_pairs
+    inner_count = more * (group_size + 1) * group_size // 2 + (clique - more) * group_size * (group_size - 1) // 2
+    return n * (n - 1) // 2 - inner_count
 
 
 def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
@@ -154,5 +154,5 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
 def coincident_lattice(alpha: AlphaInteraction, n: int, m: int = 2) -> FloatArray:
     """Return a compact lattice of n − 1 agents with its most linked agent doubled, n >= 2."""
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
-    lattice_with_double = _most_linked_first(lattice, alpha)
-    return np.vstack([lattice_with_double[:1], lattice_with_double])
+    reordered = _most_linked_first(lattice, alpha)
+    return np.vstack([reordered[:1], reordered])

@@ -53,9 +53,9 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     for _ in range(count):
         cells: set[tuple[int, ...]] = {(0,) * m}
         while len(cells) < n:
-            free_sites = sorted({free_site for site in cells for free_site in beside(site)} - cells)
+            free_sites = sorted({neighbour for site in cells for neighbour in beside(site)} - cells)
             tried_sites = [free_sites[k] for k in rng.integers(len(free_sites), size=3)]
-            cells.add(max(tried_sites, key=lambda site: sum(free_site in cells for free_site in beside(site))))
+            cells.add(max(tried_sites, key=lambda site: sum(neighbour in cells for neighbour in beside(site))))
         sites = np.array(sorted(cells), dtype=float) @ basis
         starts.append(d * (sites + noise * rng.standard_normal((n, m))))
     return starts
@@ -139,7 +139,7 @@ def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:
             ordered[-1].append(k)
         else:
             ordered.append([k])
-    return [equilibria[k] for equal_energies in ordered for k in sorted(equal_energies)]
+    return [equilibria[k] for group in ordered for k in sorted(group)]
 
 
 def _same(first: Equilibrium, second: Equilibrium) -> bool:

@@ -176,8 +176,8 @@ def find_equilibrium(
     law.check_start(q, np.zeros_like(q))
     solve_method = {"descent": descend, "ipopt": _minimise, "root": _root}[method]
     final_state, converged, message = solve_method(potential, q, max_iter)
-    if coincident_pairs := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
-        message += f"; {coincident_pairs} pair{'s' * (coincident_pairs > 1)} of agents began at one place"
+    if coincident_count := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
+        message += f"; {coincident_count} pair{'s' * (coincident_count > 1)} of agents began at one place"
     return finish(potential, final_state, converged, message, strict=strict)
 
 
@@ -185,8 +185,8 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
     """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
     q = polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
     pull = potential.law.term(Navigation)
-    idle_gains = pull is not None and pull.gains.c1_gamma == 0.0
-    if potential.target is not None and not (potential.pinned or idle_gains):  # as Algorithm 2 holds the centre
+    is_unpulled = pull is not None and pull.gains.c1_gamma == 0.0
+    if potential.target is not None and not (potential.pinned or is_unpulled):  # as Algorithm 2 holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)
     is_blocked = inside_obstacle(potential.law, q)
@@ -255,9 +255,9 @@ def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[Float
             continue
         if escape_count == _ESCAPES or q.size > _SMALL:
             return q, True, status
-        if (falling_state := falling(potential, polished_state := polish(potential, q))) is None:
+        if (direction := falling(potential, polished_state := polish(potential, q))) is None:
             return q, True, status
-        escape_count, q = escape_count + 1, polished_state + _NUDGE * potential.pair.length * falling_state
+        escape_count, q = escape_count + 1, polished_state + _NUDGE * potential.pair.length * direction
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 

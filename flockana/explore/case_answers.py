@@ -110,12 +110,12 @@ def poles(run: Trajectory) -> dict[str, Any]:
         linear = linearise(law, q, t=t, allow_residual=True)
         note = f"Linearised at the end of the run as if at rest; it is no equilibrium (residual {linear.residual:.2g})"
         if linear.residual <= _RESTING and not law.obstacles:
-            other_poles = (
+            equilibrium = (
                 find_equilibrium(law, q, t=t, max_iter=_SOUGHT)
                 if law.terms and law.conservative
                 else resting_state(law, q, t=t)
             )
-            linear = linearise(law, other_poles, t=t)
+            linear = linearise(law, equilibrium, t=t)
             note = "At the equilibrium nearest to the end of the run"
         modes, eigenvalues = linear.modes[:_MODES], linear.eigenvalues
     except FlockanaError as error:

@@ -36,7 +36,7 @@ def numbers(law: Any) -> tuple[Number, ...]:
 
 def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
     if is_dataclass(item):
-        for name in (field.name for field in fields(item) if field.init):
+        for name in (entry.name for entry in fields(item) if entry.init):
             yield from _listed(getattr(item, name), (*path, name))
     elif isinstance(item, bool | int | float | np.number):
         yield Number(".".join(path), item if isinstance(item, bool | int) else float(item))
@@ -45,9 +45,9 @@ def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
         if numeric and 1 <= len(item) <= _COMPONENTS:
             is_place = path[-1] in _PLACES and ("target" in path or "obstacles" in path)
             yield Number(".".join(path), tuple(float(x) for x in item), is_place)
-        for k, field in enumerate(item):
-            if is_dataclass(field):
-                yield from _listed(field, (*path, str(k)))
+        for k, entry in enumerate(item):
+            if is_dataclass(entry):
+                yield from _listed(entry, (*path, str(k)))
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:

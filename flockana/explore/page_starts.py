@@ -81,8 +81,8 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     """Return a law with default parameters, and agents at random in a square."""
     ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
-    start_length, end = _tried_laws()[name].length, _tried_laws()[name].span
-    side, speed = round(_SPREAD * start_length * n ** (1 / m), 3), round(_SPEED * start_length, 3)
+    law_length, end = _tried_laws()[name].length, _tried_laws()[name].span
+    side, speed = round(_SPREAD * law_length * n ** (1 / m), 3), round(_SPEED * law_length, 3)
     law, text = _law(name, m, side)
     rng = np.random.default_rng(seed)
     q0 = side * rng.uniform(-0.5, 0.5, (n, m))
@@ -134,8 +134,8 @@ def from_file(path: str) -> Start:
         f"law, q0, p0, t_span, options = saved.law, saved.q[0].copy(), saved.p[0].copy(), {span}, {options}",
     )
     title = f"{Path(path).name}: {run.n} agents, {run.law.title}"
-    checked_theorem = theorems_of(run.law.title)
-    return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked_theorem, recorded=run)
+    checked_theorems = theorems_of(run.law.title)
+    return Start(title, run.law, run.q[0], run.p[0], span, lines, options, checked_theorems, recorded=run)
 
 
 @cache

@@ -46,8 +46,8 @@ class Worker:
             try:
                 self._send(number, "begun", {})
                 with restore_interrupts():
-                    send_answer, newer_request = partial(self._send, number), partial(self._newer_than, number)
-                    answer(data, send_answer, limit=self.limit, cancelled=newer_request)
+                    send_answer, has_newer = partial(self._send, number), partial(self._newer_than, number)
+                    answer(data, send_answer, limit=self.limit, cancelled=has_newer)
                 self.done = number
             finally:
                 self.breakable = False

@@ -204,7 +204,7 @@ class _Record:
     def columns(self, claim: str) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]]]:
         """Return margins and statuses by claim, NaN and "failed" for failed runs."""
         names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
-        absent_row = [("vacuous" if row else "failed", np.nan) for row in self.rows]
-        table = {name: [row.get(name, none) for row, none in zip(self.rows, absent_row, strict=True)] for name in names}
+        defaults = [("vacuous" if row else "failed", np.nan) for row in self.rows]
+        table = {name: [row.get(name, none) for row, none in zip(self.rows, defaults, strict=True)] for name in names}
         margins = {name: np.array([margin for _, margin in column]) for name, column in table.items()}
         return margins, {name: tuple(status for status, _ in column) for name, column in table.items()}

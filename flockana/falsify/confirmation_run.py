@@ -23,12 +23,12 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: An
         return verdict
     options = tightened_options(case.options)
     run = ensure_uninterrupted(simulate(case.law, case.q0, case.p0, case.t_span, **options))
-    replay_text = judge(run).claims if run.status == "complete" else ()
-    sure_claims = {claim.name for claim in replay_text if claim.status == "refuted"}
+    replay_claims = judge(run).claims if run.status == "complete" else ()
+    sure_names = {claim.name for claim in replay_claims if claim.status == "refuted"}
     reason = "a run at a thousandth of the tolerance takes this back"
     claims = list(verdict.claims)
     for k, claim in enumerate(claims):
-        if claim.status == "refuted" and claim.name not in sure_claims:
+        if claim.status == "refuted" and claim.name not in sure_names:
             detail = f"{claim.detail}; {reason}".lstrip("; ")
             claims[k] = replace(claim, status="inconclusive", detail=detail)
     return replace(verdict, claims=tuple(claims))

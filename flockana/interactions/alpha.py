@@ -48,9 +48,9 @@ def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBou
     maximum = np.maximum(phi[1:], phi[:-1])
     rise = 0.5 * (law.a + law.b) / law.unit**2 * (1.0 + np.clip(0.0, x[:-1], x[1:]) ** 2) ** -1.5
     fall = 0.5 * np.pi / (1.0 - law.h) / end * np.sin(np.pi * np.clip(0.5, *np.clip((place[:-1], place[1:]), 0.0, 1.0)))
-    phi_values, bump = (s / root)[1:], law.bump(z[:-1] / end)
-    force = bump * (rise * phi_values**2 + maximum / root[:-1] ** 3) + fall * maximum * phi_values**2
-    rows = zip(s[:-1], s[1:], (1.0 + 1e-12) * force, (1.0 + 1e-12) * fall * phi_values, strict=True)
+    norm_slopes, bump = (s / root)[1:], law.bump(z[:-1] / end)
+    force = bump * (rise * norm_slopes**2 + maximum / root[:-1] ** 3) + fall * maximum * norm_slopes**2
+    rows = zip(s[:-1], s[1:], (1.0 + 1e-12) * force, (1.0 + 1e-12) * fall * norm_slopes, strict=True)
     return tuple(SlopeBound(*map(float, row)) for row in rows)
 
 
@@ -184,18 +184,18 @@ class AlphaInteraction(Tabulated, PairInteraction):
         """Return kernel parameters, and Chebyshev panels of ψ_α with constants that make ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
-        taper_function = one_by_one(kernel.phi_alpha, par)
+        action = one_by_one(kernel.phi_alpha, par)
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         doublings = d_alpha * (1.0 + 2.0 ** np.arange(max(0.0, np.ceil(np.log2(r_alpha / d_alpha)))))
         marks = np.append(d_alpha, doublings)  # between them ψ grows by a few times only, from 0 and from at most c*
         edges = np.unique(np.concatenate([edges, marks[(marks > knee) & (marks < r_alpha)]]))
         knee_energy = area * phi_integral((knee - d_alpha) / area, self.a, self.b, self.c)
         if knee < d_alpha:  # d_α lies on the taper: ψ vanishes there, exactly
-            panels = integral_panels(taper_function, edges, anchor=d_alpha)
+            panels = integral_panels(action, edges, anchor=d_alpha)
             panels[np.searchsorted(edges, d_alpha), 2] -= on_panels(d_alpha, panels)
             par[kernel.OFFSET] = on_panels(knee, panels) - knee_energy
         else:
-            panels = integral_panels(taper_function, edges, anchor=edges[0], value=knee_energy)
+            panels = integral_panels(action, edges, anchor=edges[0], value=knee_energy)
         par[kernel.FAR] = on_panels(r_alpha, panels)
         return par, panels
 

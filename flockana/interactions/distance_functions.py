@@ -213,15 +213,15 @@ class DistanceFunction(ShortRepr, ABC):
         sides = [self.values(seams * side) for side in (1.0 - _BESIDE, 1.0 + _BESIDE)]
         parts: tuple[tuple[Part, int], ...] = (("force", 0), ("adjacency", 1))
         for k, seam in enumerate(seams):
-            for component, row in parts:
-                (lower_value, upper_value), (left, right) = (
+            for part, row in parts:
+                (value_below, value_above), (left, right) = (
                     (float(sides[0][at][k]), float(sides[1][at][k])) for at in (row, row + 2)
                 )
-                side_offset = 4.0 * seam * _BESIDE * (abs(left) + abs(right))  # a root has steep slopes and no jump
-                if _differ(lower_value, upper_value, usual[row]) and not abs(upper_value - lower_value) <= side_offset:
-                    yield Corner(float(seam), component, "jump", lower_value, upper_value)
+                tolerance = 4.0 * seam * _BESIDE * (abs(left) + abs(right))  # a root has steep slopes and no jump
+                if _differ(value_below, value_above, usual[row]) and not abs(value_above - value_below) <= tolerance:
+                    yield Corner(float(seam), part, "jump", value_below, value_above)
                 elif _differ(left, right, usual[row + 2]):
-                    yield Corner(float(seam), component, "kink", left, right)
+                    yield Corner(float(seam), part, "kink", left, right)
 
 
 def _differ(below: float, above: float, usual: FloatArray) -> bool:
@@ -270,11 +270,11 @@ class LawFunction:
             pair_blocks(q, reach) if self.edges is None else [np.array(self.edges, dtype=np.int32).reshape(-1, 2).T]
         )
         for i, j in blocks:
-            link_lengths = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
+            distances = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
             for corner in corners:
-                for k in np.flatnonzero(np.abs(link_lengths - corner.distance) <= tolerance * corner.distance):
+                for k in np.flatnonzero(np.abs(distances - corner.distance) <= tolerance * corner.distance):
                     if self.listeners is None or {int(i[k]), int(j[k])} & {*self.listeners}:
-                        yield PairCorner(int(i[k]), int(j[k]), float(link_lengths[k]), self.name, corner)
+                        yield PairCorner(int(i[k]), int(j[k]), float(distances[k]), self.name, corner)
 
 
 @dataclass(frozen=True)

@@ -89,11 +89,11 @@ def formula_parts(
     eps = dict(parameters).get("eps", nan) if formula.distance == pf.Z else 0.0
     if formula.distance == pf.Z and not eps > 0.0:
         raise ArgumentError(f"parameters['eps'] = {eps:g}: expected a number > 0, the ε of the σ-norm")
-    length_symbols = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
-    parameter_values = {sp.Symbol(name, positive=True): value for name, value in length_symbols.items()}
+    length_values = {"r": r, "d": d, "r_z": _norm(r, eps), "d_z": _norm(d, eps)}
+    parameter_values = {sp.Symbol(name, positive=True): value for name, value in length_values.items()}
     parameter_values |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
     parameter_values.setdefault(pf.EPS, eps)
-    cut = pf.PiecewiseFormula(formula, parameter_values, length_symbols["r_z"] if eps else r)
+    cut = pf.PiecewiseFormula(formula, parameter_values, length_values["r_z"] if eps else r)
     view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
@@ -231,10 +231,10 @@ def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
         piece_numbers = np.searchsorted(cut.marks[1:-1], z, side="right")
         return np.array([float(rows[k](x if view.eps else x * x)) for k, x in zip(piece_numbers, z, strict=True)])
 
-    panel_energies: list[float] = [0.0]
+    panel_edges: list[float] = [0.0]
     for left, right in pairwise(edges):
-        panel_energies += _resolved(values, left, right, view.strength, 0)
-    return integral_panels(values, np.array(panel_energies), anchor=inner)
+        panel_edges += _resolved(values, left, right, view.strength, 0)
+    return integral_panels(values, np.array(panel_edges), anchor=inner)
 
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:

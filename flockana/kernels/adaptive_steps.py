@@ -71,27 +71,27 @@ def march(block, k, h, ends, system, method, room, pairs):
 
     The step has the length h, if its error allows it, or, if h is 0, one that is chosen here.
     """
-    y, t, stop, fixed_order, trial_count = block.y, block.t[k], ends[0], method.exponent == 0.0, 0
-    first_text, stage_count = np.int64(1), np.int64(method.stages + 1)  # typed, as in `advance`
+    y, t, stop, is_fixed, evaluations = block.y, block.t[k], ends[0], method.exponent == 0.0, 0
+    first_stage, stage_end = np.int64(1), np.int64(method.stages + 1)  # typed, as in `advance`
     put_row(block.f[k], room.rates[0])
-    if h == 0.0 and fixed_order:
+    if h == 0.0 and is_fixed:
         h = np.inf
     elif h == 0.0:
         h = first_step(ends[1] - t, Step(t, h, y[k], y[k + 1], room.rates, room.trial), method, system, pairs)
-        trial_count = 1
+        evaluations = 1
     shortest, rejected = 10.0 * spacing(t), False
-    h = min(h, stop - t) if fixed_order else max(min(h, method.longest), shortest)
+    h = min(h, stop - t) if is_fixed else max(min(h, method.longest), shortest)
     while True:
-        if h < shortest and not fixed_order:
-            return Marched(TOO_SMALL, h, h, trial_count)
+        if h < shortest and not is_fixed:
+            return Marched(TOO_SMALL, h, h, evaluations)
         block.t[k + 1] = stop if h == stop - t else min(t + h, stop)
         step = step_of(block, k, room)
-        stages_of(step, method, first_text, stage_count, system, pairs)
-        trial_count += method.stages
+        stages_of(step, method, first_stage, stage_end, system, pairs)
+        evaluations += method.stages
         if pairs.counts[COUNT] < 0:
-            return Marched(UNLISTED, step.h, h, trial_count)
+            return Marched(UNLISTED, step.h, h, evaluations)
         next_step, passes = np.inf if block.t[k + 1] == stop else GROWTH * step.h, True
-        if not fixed_order:
+        if not is_fixed:
             next_step, passes = _controlled(step.h, error_of(step, method), method.exponent, rejected)
         if passes:
             break
@@ -99,4 +99,4 @@ def march(block, k, h, ends, system, method, room, pairs):
     end = room.rates[method.rows[method.stages]]
     put_row(end, block.f[k + 1])
     is_known = finite(step.reached) and finite(end)
-    return Marched(RUNNING if is_known else NOT_FINITE, step.h, next_step, trial_count)
+    return Marched(RUNNING if is_known else NOT_FINITE, step.h, next_step, evaluations)

@@ -31,22 +31,22 @@ def _closed_up(q, width, most):
 
     Gaps are empty ones of a row of `most` bins, which are as fine as cells once the widest gaps are closed.
     """
-    x, is_occupied, gap_positions = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
+    x, is_occupied, gap_before = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
     for k in range(q.shape[1]):
-        infinite_width = np.inf
-        while infinite_width > width:
+        bin_width = np.inf
+        while bin_width > width:
             low, high = _ends(x, k)
-            infinite_width = max(width, (high - low) / most)
-            if not infinite_width < np.inf:
+            bin_width = max(width, (high - low) / most)
+            if not bin_width < np.inf:
                 break
             is_occupied[:] = False
             for i in range(len(x)):
-                is_occupied[_place(x[i, k], low, infinite_width, most - 1.0)] = True
-            gap_positions[0] = 0.0
+                is_occupied[_place(x[i, k], low, bin_width, most - 1.0)] = True
+            gap_before[0] = 0.0
             for b in range(1, is_occupied.size):
-                gap_positions[b] = gap_positions[b - 1] + (0.0 if is_occupied[b] else infinite_width)
+                gap_before[b] = gap_before[b - 1] + (0.0 if is_occupied[b] else bin_width)
             for i in range(len(x)):
-                x[i, k] -= gap_positions[_place(x[i, k], low, infinite_width, most - 1.0)]
+                x[i, k] -= gap_before[_place(x[i, k], low, bin_width, most - 1.0)]
     return x
 
 

@@ -63,10 +63,10 @@ class PairRoom(NamedTuple):
 def pair_room(radii):
     """Return work space for a pair of agents with a given number of radii."""
     points = np.empty((2, 6, 3))
-    for item in range(2):
+    for row in range(2):
         for k in range(6):
             for c in range(3):
-                points[item, k, c] = 0.0
+                points[row, k, c] = 0.0
     return PairRoom(
         np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), points, np.empty(2), np.empty(2), np.empty((2, radii))
     )
@@ -75,14 +75,14 @@ def pair_room(radii):
 @subroutine
 def relative_curve(points, curve):
     """Write a pair's relative control points into `curve`; return their largest distance from the first."""
-    path_length = 0.0
+    max_square = 0.0
     for k in range(6):
         s2 = 0.0
         for x in range(3):
             curve[k, x] = points[1, k, x] - points[0, k, x]
             s2 += (curve[k, x] - curve[0, x]) ** 2
-        path_length = max(path_length, s2)
-    return np.sqrt(path_length)
+        max_square = max(max_square, s2)
+    return np.sqrt(max_square)
 
 
 @inlined
@@ -91,7 +91,7 @@ def _ahead(points, s, far, room):
 
     `room` is for six control points.
     """
-    closing_speed, speed2 = 0.0, 0.0
+    approach, speed2 = 0.0, 0.0
     for x in range(3):
         b = room[:, x]
         for k in range(6):
@@ -99,12 +99,12 @@ def _ahead(points, s, far, room):
         for level in range(4):
             for k in range(5 - level):
                 b[k] += s * (b[k + 1] - b[k])
-        rate_point, rate = b[0] + s * (b[1] - b[0]), 5.0 * (b[1] - b[0])
-        closing_speed -= rate_point * rate
+        position, rate = b[0] + s * (b[1] - b[0]), 5.0 * (b[1] - b[0])
+        approach -= position * rate
         speed2 += rate * rate
-    if closing_speed <= 0.0:
+    if approach <= 0.0:
         return -1.0
-    return min(closing_speed / speed2, far / np.sqrt(speed2))
+    return min(approach / speed2, far / np.sqrt(speed2))
 
 
 @inlined
@@ -140,14 +140,14 @@ def share_of_pair(room, far, share):
     if s2 >= (outer + reach_sum) ** 2:
         return share
     if reach_sum > far and s2 < outer * outer:
-        path_length = relative_curve(points, room.stack[0])
-        if path_length > SLACK * far:
-            share = min(share, far / path_length)
+        path_reach = relative_curve(points, room.stack[0])
+        if path_reach > SLACK * far:
+            share = min(share, far / path_reach)
     for k in range(last_index + 1):
-        for agent_side in range(2):
-            if agent_side == 1 and radii[1, k] == radii[0, k]:
+        for agent in range(2):
+            if agent == 1 and radii[1, k] == radii[0, k]:
                 continue
-            edge = radii[agent_side, k] + slack
+            edge = radii[agent, k] + slack
             if s2 < edge * edge or s2 >= (edge + reach_sum) ** 2:
                 continue
             if reach_sum <= far and _apart2(points, 5) < edge * edge:
@@ -188,12 +188,12 @@ def way_of_means(ends, means):
     for c in range(q0.shape[1]):
         centre[c], out, bend0 = means[0, c], means[1, c], means[2, c]
         back, bend1 = means[4, c], means[5, c]
-        line_strings = polygon(0.0, means[3, c] - centre[c], s * out, s * back, z * bend0, z * bend1)
-        _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = line_strings
+        controls = polygon(0.0, means[3, c] - centre[c], s * out, s * back, z * bend0, z * bend1)
+        _, mean[1, c], mean[2, c], mean[3, c], mean[4, c], mean[5, c] = controls
         out, back = slope_along(q0, p0, c, 0.0), slope_along(q0, p1, c, 0.0)
         bend0, bend1 = slope_along(q0, u0, c, 0.0), slope_along(q0, u1, c, 0.0)
-        line_strings = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
-        _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = line_strings
+        controls = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
+        _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = controls
     if not steepest(slope) < _STEEP:
         for k in range(6):
             for c in range(3):
@@ -221,14 +221,14 @@ def squares_beside(ends, common, begin, end):
     for i in range(begin, end):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
-            past, out, back, axial_part = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
+            past, out, back, offset = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
             bend0, bend1 = z * u0[i, c], z * u1[i, c]
             _, w1, w2, w3, w4, w5 = polygon(0.0, past, out, back, bend0, bend1)
-            d1 += (w1 - (mean[1, c] + slope[1, c] * axial_part)) ** 2
-            d2 += (w2 - (mean[2, c] + slope[2, c] * axial_part)) ** 2
-            d3 += (w3 - (mean[3, c] + slope[3, c] * axial_part)) ** 2
-            d4 += (w4 - (mean[4, c] + slope[4, c] * axial_part)) ** 2
-            d5 += (w5 - (mean[5, c] + slope[5, c] * axial_part)) ** 2
+            d1 += (w1 - (mean[1, c] + slope[1, c] * offset)) ** 2
+            d2 += (w2 - (mean[2, c] + slope[2, c] * offset)) ** 2
+            d3 += (w3 - (mean[3, c] + slope[3, c] * offset)) ** 2
+            d4 += (w4 - (mean[4, c] + slope[4, c] * offset)) ** 2
+            d5 += (w5 - (mean[5, c] + slope[5, c] * offset)) ** 2
             off2 += (out + 0.5 * back + bend0 - 0.3 * past) ** 2
             off3 += (0.3 * past - back - 0.5 * out + bend1) ** 2
         way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
@@ -245,8 +245,8 @@ def farthest_ways(ends, common):
 @inlined
 def bounds_of(way2, most2, most3):
     """Return `farthest_ways` from the largest squares."""
-    rounding_width = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
-    return np.sqrt(way2) + rounding_width, rounding_width
+    allowance = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
+    return np.sqrt(way2) + allowance, allowance
 
 
 @inlined
@@ -256,9 +256,9 @@ def band(common, farthest, edges, far):
     Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
     way and twice the longest way beside it.
     """
-    (path_length, rounding_width), steepness, (low, high) = farthest, steepest(common[1]), edges
-    high = (high + 2.0 * (rounding_width + path_length)) / (1.0 - steepness) * _WIDER
-    return low if (steepness * high + 2.0 * path_length) * _WIDER <= far else 0.0, high
+    (path_reach, allowance), steepness, (low, high) = farthest, steepest(common[1]), edges
+    high = (high + 2.0 * (allowance + path_reach)) / (1.0 - steepness) * _WIDER
+    return low if (steepness * high + 2.0 * path_reach) * _WIDER <= far else 0.0, high
 
 
 @inlined
@@ -283,9 +283,9 @@ def share_of_listed(ends, common, between, around, first, second, share):
     `common` are the mean control points and the largest allowance. Only pairs are looked at whose distance is within a
     band where the step begins.
     """
-    (h, q0, p0, u0, q1, p1, u1), radii, (mean, rounding_width) = ends, around.radii, common
+    (h, q0, p0, u0, q1, p1, u1), radii, (mean, allowance) = ends, around.radii, common
     workspace, low2, high2, count = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2, 0
-    m, outer, picked_pairs = q0.shape[1], around.edges[1] + 2.0 * rounding_width, np.empty(first.size + 1, np.uint32)
+    m, outer, picked_pairs = q0.shape[1], around.edges[1] + 2.0 * allowance, np.empty(first.size + 1, np.uint32)
     for k in range(first.size):
         i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
         for c in range(m):

@@ -45,12 +45,12 @@ def _square(x, i, place):
 @kernel
 def _farthest(x, place):
     """Return (agent, squared distance) of the agent farthest from a point."""
-    agent, largest_distance = 0, 0.0
+    agent, largest_square = 0, 0.0
     for i in range(len(x)):
         s2 = _square(x, i, place)
-        if s2 > largest_distance:
-            agent, largest_distance = i, s2
-    return agent, largest_distance
+        if s2 > largest_square:
+            agent, largest_square = i, s2
+    return agent, largest_square
 
 
 @kernel
@@ -67,8 +67,8 @@ def greatest_distances(q):
             centre[c] = column_mean(x, c)
         first_agent, outermost = _farthest(x, centre)
         second_agent, _ = _farthest(x, x[first_agent])
-        _, largest_distance = _farthest(x, x[second_agent])
-        lower_bound = sqrt(largest_distance) * (1.0 - 1e-9) - sqrt(outermost)
+        _, largest_square = _farthest(x, x[second_agent])
+        lower_bound = sqrt(largest_square) * (1.0 - 1e-9) - sqrt(outermost)
         for i in range(len(x)):
             if sqrt(_square(x, i, centre)) >= lower_bound:
                 rim[count] = i
@@ -78,6 +78,6 @@ def greatest_distances(q):
                 s2 = 0.0
                 for c in range(centre.size):
                     s2 += (x[rim[b], c] - x[rim[a], c]) ** 2
-                largest_distance = max(largest_distance, s2)
-        distances[k] = sqrt(largest_distance)
+                largest_square = max(largest_square, s2)
+        distances[k] = sqrt(largest_square)
     return distances

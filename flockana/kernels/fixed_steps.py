@@ -75,9 +75,9 @@ def fixed_steps(times, y, kicks, wanted, method, system, pairs, out):
             u[i] = total
         if method.one:
             for i in range(size):
-                before, end_part = y[size + i], y[size + i] + h * u[i]
-                y[i] = y[i] + h * end_part if method.lead == 1.0 else y[i] + h * before + (method.lead * h * h) * u[i]
-                y[size + i] = end_part
+                before, after = y[size + i], y[size + i] + h * u[i]
+                y[i] = y[i] + h * after if method.lead == 1.0 else y[i] + h * before + (method.lead * h * h) * u[i]
+                y[size + i] = after
         else:
             _combine(y, h, method.a[stages], stages, rates, trial)
             for i in range(size):

@@ -36,8 +36,8 @@ def integral_panels(
 
     It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
     """
-    half, midpoint = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
-    values = function((midpoint + half * series_nodes()).ravel()).reshape(-1, NODES)
+    half, midpoints = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
+    values = function((midpoints + half * series_nodes()).ravel()).reshape(-1, NODES)
     integrals: FloatArray = half * _times(series_of(values), _integration())
     at_left, at_right = integrals[:, ::2].sum(axis=1) - integrals[:, 1::2].sum(axis=1), integrals.sum(axis=1)
     first, last = int(np.searchsorted(edges, anchor)), edges.size - 1

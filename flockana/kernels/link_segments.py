@@ -130,16 +130,16 @@ def cross(x, i, j, g, h, planes):
 @subroutine
 def foot(p, a, b):
     """Return the distance of a point from a segment."""
-    axial_part, magnitude = 0.0, 0.0
+    axial_part, length2 = 0.0, 0.0
     for k in range(3):
         direction = b[k] - a[k]
         axial_part += (p[k] - a[k]) * direction
-        magnitude += direction * direction
-    s = min(1.0, max(0.0, axial_part / magnitude)) if magnitude > 0.0 else 0.0
+        length2 += direction * direction
+    s = min(1.0, max(0.0, axial_part / length2)) if length2 > 0.0 else 0.0
     squared_distance = 0.0
     for k in range(3):
-        deviation = p[k] - a[k] - s * (b[k] - a[k])
-        squared_distance += deviation * deviation
+        offset = p[k] - a[k] - s * (b[k] - a[k])
+        squared_distance += offset * offset
     return np.sqrt(squared_distance)
 
 
@@ -157,8 +157,8 @@ def between(a, b, c, d):
         if 0.0 < s < 1.0 and 0.0 < t < 1.0:
             gap = 0.0
             for k in range(3):
-                deviation = c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])
-                gap += deviation * deviation
+                offset = c[k] - a[k] + t * (d[k] - c[k]) - s * (b[k] - a[k])
+                gap += offset * offset
             nearest = min(nearest, np.sqrt(gap))
     return nearest
 
@@ -181,8 +181,8 @@ def nearest_links(x, links, a, b, planar, best):
         if i in (g, h) or j in (g, h):
             continue
         if planar:  # links that do not cross are nearest at an end of one of them
-            squared_distance = min(foot(x[i], x[g], x[h]), foot(x[j], x[g], x[h]))
-            link_distance = min(squared_distance, foot(x[g], x[i], x[j]), foot(x[h], x[i], x[j]))
+            foot_distance = min(foot(x[i], x[g], x[h]), foot(x[j], x[g], x[h]))
+            link_distance = min(foot_distance, foot(x[g], x[i], x[j]), foot(x[h], x[i], x[j]))
         else:
             link_distance = between(x[i], x[j], x[g], x[h])
         if link_distance < best:

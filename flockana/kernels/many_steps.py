@@ -99,12 +99,12 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
             for row in range(steps, steps + 2):
                 if row > steps or np.isnan(block.energy[row]):
                     block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
-        step_ratio, is_singular = checked(block, steps, judged, system.seen_from, pairs, near_pairs)
+        shorter_step, is_singular = checked(block, steps, judged, system.seen_from, pairs, near_pairs)
         if is_singular:
             h, status = step_result.h, SINGULAR
             break
-        if step_ratio > 0.0:
-            h, redone_steps = step_ratio, redone_steps + 1
+        if shorter_step > 0.0:
+            h, redone_steps = shorter_step, redone_steps + 1
             continue
         before = sampled
         while sampled < due_times.size and due_times[sampled] < block_time:
@@ -117,8 +117,8 @@ def advance(system, method, block, room, h, lists, stops, samples, judged):
             break
         work_series[sampled:is_known] = np.nan
         if sampled > before:
-            step, inner_samples = step_of(block, steps, room), due_times[before:sampled]
-            _sampled(step, inner_samples, method, states[before:sampled], work_series[before:sampled], system, pairs)
+            step, inner_times = step_of(block, steps, room), due_times[before:sampled]
+            _sampled(step, inner_times, method, states[before:sampled], work_series[before:sampled], system, pairs)
             evaluations += len(method.rows) - method.stages - 1 + sampled - before
             if pairs.counts[COUNT] < 0:
                 h, status, sampled = step_result.h, UNLISTED, before

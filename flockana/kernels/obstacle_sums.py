@@ -94,7 +94,7 @@ def braking(q, p, par, beta, reach, by_position, by_velocity):
     """Add the derivatives of b_ik (p̂_ik − p_i) of one obstacle to every agent's blocks."""
     # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
     n, m = q.shape
-    axis, gap, rate, axial_part, brake_slope = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    axis, gap, rate, projected, turn_rate = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     for i in range(n):
         clearance = project(q[i], p[i], par, gap, rate)
         if abs(clearance) >= reach:
@@ -104,11 +104,11 @@ def braking(q, p, par, beta, reach, by_position, by_velocity):
         velocity_difference = rate - p[i]
         for c in range(m):
             axis[c] = 1.0
-            project(q[i], axis, par, gap, axial_part)
-            turn(q[i], p[i], axis, par, brake_slope)
+            project(q[i], axis, par, gap, projected)
+            turn(q[i], p[i], axis, par, turn_rate)
             for e in range(m):
-                by_velocity[i, e, c] += b * (axial_part[e] - axis[e])
-                by_position[i, e, c] += b * brake_slope[e] - 2.0 * slope * velocity_difference[e] * gap[c]
+                by_velocity[i, e, c] += b * (projected[e] - axis[e])
+                by_position[i, e, c] += b * turn_rate[e] - 2.0 * slope * velocity_difference[e] * gap[c]
             axis[c] = 0.0
 
 
@@ -140,11 +140,11 @@ def _visit(curve, edge, far, par, here, room):
     final_share = min(1.0, s + far / speed) if speed > 0.0 else 1.0
     stop, nearest = s, np.inf
     for k in range(LOOKS):
-        sample_point = s + (final_share - s) * k / (LOOKS - 1)
-        point_at(curve, sample_point, here)
+        sample_share = s + (final_share - s) * k / (LOOKS - 1)
+        point_at(curve, sample_share, here)
         distance = _distance(here, par, room)
         if distance < nearest:
-            stop, nearest = sample_point, distance
+            stop, nearest = sample_share, distance
     return 1.0 if s + SLACK * (stop - s) >= 1.0 or stop <= s else stop
 
 
@@ -159,24 +159,24 @@ def guard(points, allowance, numbers, shell, far, most):
     point, workspace = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
     begin, end = points[:, 0], points[:, 5]
     for i in range(points.shape[0]):
-        path_length, edge = reach_of(points[i]), shell + allowance[i]
-        reach = path_length + allowance[i]
+        path_reach, edge = reach_of(points[i]), shell + allowance[i]
+        reach = path_reach + allowance[i]
         for k in range(balls.shape[0]):
             if out_of_reach(begin, i, balls, k, shell + reach):
                 continue
             for c in range(m):
                 point[c] = begin[i, c]
             par = pars[starts[k] : starts[k + 1]]
-            wall_distance = _distance(point, par, workspace) - edge
-            if wall_distance < 0.0:
-                if path_length > SLACK * far:
-                    most = min(most, far / path_length)
+            edge_distance = _distance(point, par, workspace) - edge
+            if edge_distance < 0.0:
+                if path_reach > SLACK * far:
+                    most = min(most, far / path_reach)
                 continue
-            if wall_distance >= reach:
+            if edge_distance >= reach:
                 continue
             for c in range(m):
                 point[c] = end[i, c]
-            if path_length <= far and _distance(point, par, workspace) < edge:
+            if path_reach <= far and _distance(point, par, workspace) < edge:
                 continue  # the evaluation at the end of the step meets it
             most = min(most, _visit(points[i], edge, far, par, point, workspace))
     return most
@@ -192,5 +192,5 @@ def act(t, x, v, u, numbers, panels, listed):
 @kernel
 def energy(t, x, v, numbers, panels, listed):
     """Return the energy c1 Σ ψ_β of the obstacle term."""
-    position = x + listed.frame[0]
-    return numbers[C1] * potential(position, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
+    positions = x + listed.frame[0]
+    return numbers[C1] * potential(positions, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])

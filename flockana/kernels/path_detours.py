@@ -39,12 +39,12 @@ def detours(times, first, middle, last, slack0, slack1):
             direct_polygon = polygon(q0[i, c], q2[i, c], s * p0[i, c], s * p2[i, c], z * u0[i, c], z * u2[i, c])
             left, right = _parted(direct_polygon, share)
             first_polygon = polygon(q0[i, c], q1[i, c], s0 * p0[i, c], s0 * p1[i, c], z0 * u0[i, c], z0 * u1[i, c])
-            next_sides = polygon(q1[i, c], q2[i, c], s1 * p1[i, c], s1 * p2[i, c], z1 * u1[i, c], z1 * u2[i, c])
+            next_polygon = polygon(q1[i, c], q2[i, c], s1 * p1[i, c], s1 * p2[i, c], z1 * u1[i, c], z1 * u2[i, c])
             d1 += (left[3] - first_polygon[3]) ** 2  # the first three are the same: both paths begin alike
             d2 += (left[4] - first_polygon[4]) ** 2
             d3 += (left[5] - first_polygon[5]) ** 2  # where the parts meet
-            d4 += (right[1] - next_sides[1]) ** 2
-            d5 += (right[2] - next_sides[2]) ** 2  # the last three are the same
-        first_length, second_length = np.sqrt(max(max(d1, d2), d3)), np.sqrt(max(max(d4, d5), d3))
-        farthest[i] = max(first_length + slack0[i], second_length + slack1[i])
+            d4 += (right[1] - next_polygon[1]) ** 2
+            d5 += (right[2] - next_polygon[2]) ** 2  # the last three are the same
+        first_detour, second_detour = np.sqrt(max(max(d1, d2), d3)), np.sqrt(max(max(d4, d5), d3))
+        farthest[i] = max(first_detour + slack0[i], second_detour + slack1[i])
     return farthest

@@ -20,8 +20,8 @@ def _stage_crosses(curve, edge, inward):
         stage_share, curvature_share = (0.5 if stage < 2 else 1.0), (0.0, 0.25, 0.5)[stage]
         start2 = product = way2 = 0.0
         for x in range(3):
-            chord, curvature = curve[1, x] - curve[0, x], curve[2, x] - 2.0 * curve[1, x] + curve[0, x]
-            way = 5.0 * stage_share * chord + 20.0 * curvature_share * curvature  # of h p / 5 and h² u / 20
+            side, curvature = curve[1, x] - curve[0, x], curve[2, x] - 2.0 * curve[1, x] + curve[0, x]
+            way = 5.0 * stage_share * side + 20.0 * curvature_share * curvature  # of h p / 5 and h² u / 20
             start2, product, way2 = start2 + curve[0, x] ** 2, product + curve[0, x] * way, way2 + way * way
         share = min(1.0, max(0.0, -product / way2)) if inward and way2 > 0.0 else 1.0
         apart2 = start2 + 2.0 * share * product + share * share * way2
@@ -49,7 +49,7 @@ def _crosses(room, pole, toward):
 def crossing_listed(ends, ways, poles, toward, first, second):
     """Return whether a listed pair crosses a pole in a step; `ways` are the steepest slope and longest path."""
     h, q0, p0, u0, q1, p1, u1 = ends
-    workspace, (steepness, path_length), m = pair_room(0), ways, q0.shape[1]
+    workspace, (steepness, path_reach), m = pair_room(0), ways, q0.shape[1]
     for k in range(first.size):
         i, j = np.int64(first[k]), np.int64(second[k])
         s2 = 0.0
@@ -57,7 +57,7 @@ def crossing_listed(ends, ways, poles, toward, first, second):
             s2 += (q0[j, c] - q0[i, c]) ** 2
         s = np.sqrt(s2)
         for pole in poles:
-            if toward < 1.0 or abs(s - pole) <= steepness * s + 2.0 * path_length:
+            if toward < 1.0 or abs(s - pole) <= steepness * s + 2.0 * path_reach:
                 quintic(h, q0[i], p0[i], u0[i], q1[i], p1[i], u1[i], workspace.points[0])
                 quintic(h, q0[j], p0[j], u0[j], q1[j], p1[j], u1[j], workspace.points[1])
                 if _crosses(workspace, pole, toward):

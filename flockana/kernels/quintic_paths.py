@@ -150,23 +150,23 @@ def _least_distance(stack, spans, stop, tol):
     The distance is (stop, -1) if none is below stop; the bound holds all the same, up to stop.
     The arrays are work space: (_DEPTH + 2, 6, 3) and (_DEPTH + 2, 2).
     """
-    proven_bound, best_bound, best_time = stop, stop, -1.0
+    proven_bound, best_value, best_time = stop, stop, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
             value = _norm(c[end])
-            if value < best_bound:
-                best_bound, best_time = value, left if end == 0 else right
+            if value < best_value:
+                best_value, best_time = value, left if end == 0 else right
         bound = _hull_bound(c)
-        if bound >= best_bound - tol or right - left < 2.0**-_DEPTH:
+        if bound >= best_value - tol or right - left < 2.0**-_DEPTH:
             proven_bound = min(proven_bound, bound)
             top -= 1
             continue
         _halve(stack, spans, top)
         top += 1
-    return proven_bound, best_bound, best_time
+    return proven_bound, best_value, best_time
 
 
 @subroutine
@@ -195,7 +195,7 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
     The parameter is -1 where the bound is below `stop`, by the tolerance, and no place of the curve is. `reach` bounds
     how far each agent gets from its first control point.
     """
-    lower, best_bound, best_time, a, b = stop, stop, -1.0, -1, -1
+    lower, best_value, best_time, a, b = stop, stop, -1.0, -1, -1
     stack, time_spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for k in range(first.size):
         i, j = first[k], second[k]
@@ -208,10 +208,10 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
             lower = max(0.0, proven_bound - slack)
             best_time, a, b = closest_time, i, j
         if closest_time >= 0.0:
-            best_bound = min(best_bound, value)
+            best_value = min(best_value, value)
         if lower == 0.0:
             break
-    return lower, best_bound, best_time, a, b
+    return lower, best_value, best_time, a, b
 
 
 @kernel
@@ -222,10 +222,10 @@ def closest_of_few(t, states, slack, stops, tols):
     """
     (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
     first, second_agents = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
-    lower, best_bound, best_time = np.empty(steps), np.empty(steps), np.empty(steps)
+    lower, distances, best_times = np.empty(steps), np.empty(steps), np.empty(steps)
     a, b, x = np.empty(steps, np.int64), np.empty(steps, np.int64), np.empty((n, 3))
     for k in range(steps):
-        lower[k], best_bound[k], best_time[k], a[k], b[k] = stops[k], stops[k], -1.0, -1, -1
+        lower[k], distances[k], best_times[k], a[k], b[k] = stops[k], stops[k], -1.0, -1, -1
         if stops[k] == 0.0:
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
@@ -242,8 +242,8 @@ def closest_of_few(t, states, slack, stops, tols):
                 d0, d1, d2 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
                 count += d0 * d0 + d1 * d1 + d2 * d2 < limit
         approach = closest_pair(points, reach, allowance, first[:count], second_agents[:count], stops[k], tols[k])
-        lower[k], best_bound[k], best_time[k], a[k], b[k] = approach
-    return lower, best_bound, best_time, a, b
+        lower[k], distances[k], best_times[k], a[k], b[k] = approach
+    return lower, distances, best_times, a, b
 
 
 @kernel
@@ -260,19 +260,19 @@ def touching_pairs(points, reach, first, second, tol, out):
 @subroutine
 def _largest_distance(stack, spans, enough, tol):
     """Return (upper bound, parameter) of the curve stack[0]'s largest distance from 0, within tol or up to `enough`."""
-    proven_bound, best_bound, best_time = 0.0, 0.0, -1.0
+    proven_bound, best_value, best_time = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
             value = _norm(c[end])
-            if value > best_bound:
-                best_bound, best_time = value, left if end == 0 else right
+            if value > best_value:
+                best_value, best_time = value, left if end == 0 else right
         bound = 0.0
         for k in range(6):
             bound = max(bound, _norm(c[k]))
-        if bound <= max(enough, best_bound + tol) or right - left < 2.0**-_DEPTH:
+        if bound <= max(enough, best_value + tol) or right - left < 2.0**-_DEPTH:
             proven_bound = max(proven_bound, bound)
             top -= 1
             continue
@@ -288,7 +288,7 @@ def farthest(points, allowance, floor, tol):
     Changes the control points. The centre's allowance is the mean one.
     """
     n = points.shape[0]
-    upper, agent, closest_time, common_motion = floor, -1, -1.0, 0.0
+    upper, agent, far_time, mean_slack = floor, -1, -1.0, 0.0
     stack, time_spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
     for c in range(6):
         for k in range(3):
@@ -298,16 +298,16 @@ def farthest(points, allowance, floor, tol):
             for i in range(n):
                 points[i, c, k] -= centre
     for i in range(n):
-        common_motion += allowance[i] / n
+        mean_slack += allowance[i] / n
     for i in range(n):
-        slack = allowance[i] + common_motion
+        slack = allowance[i] + mean_slack
         for c in range(6):
             for k in range(3):
                 stack[0, c, k] = points[i, c, k]
         bound, best_time = _largest_distance(stack, time_spans, max(upper, floor + tol) - slack, tol)
         if bound + slack > upper:
-            upper, agent, closest_time = bound + slack, i, best_time
-    return upper, agent, closest_time
+            upper, agent, far_time = bound + slack, i, best_time
+    return upper, agent, far_time
 
 
 @kernel

@@ -203,9 +203,9 @@ def _weighed(a, b, y, method):
 def first_step(span, step, method, system, pairs):
     """Return the length of the first step by scipy's rule; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
-    zero_rates = np.empty(y.size)
-    zero_rates[:] = 0.0
-    d0, d1 = _weighed(y, zero_rates, y, method), _weighed(rates[0], zero_rates, y, method)
+    zeros = np.empty(y.size)
+    zeros[:] = 0.0
+    d0, d1 = _weighed(y, zeros, y, method), _weighed(rates[0], zeros, y, method)
     trial_step = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
         trial[k] = y[k] + trial_step * rates[0, k]

@@ -14,9 +14,9 @@ def _of_quarter(x, m):
     y = ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW
     x2 = y * y
     x4 = x2 * x2
-    low, upper_part = (_S1 + x2 * _S2) + x4 * (_S3 + x2 * _S4), (_S5 + x2 * _S6) + x4 * (_S7 + x2 * _S8)
+    low, mid_part = (_S1 + x2 * _S2) + x4 * (_S3 + x2 * _S4), (_S5 + x2 * _S6) + x4 * (_S7 + x2 * _S8)
     x8 = x4 * x4
-    return y + (y * x2) * (low + x8 * (upper_part + x8 * (_S9 + x2 * _S10)))
+    return y + (y * x2) * (low + x8 * (mid_part + x8 * (_S9 + x2 * _S10)))
 
 
 @register_jitable

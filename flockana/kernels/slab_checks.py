@@ -48,12 +48,12 @@ def means_in_parts(ends):
     """As `flockana.kernels.encounter_checks.means_of`, part by part."""
     n, m = ends.q0.shape
     sums, means = np.empty((PARTS, 6, m)), np.zeros((6, m))
-    for component in prange(PARTS):
-        _sum_part(ends, np.int64(component), sums[component])
-    for component in range(PARTS):
+    for part in prange(PARTS):
+        _sum_part(ends, np.int64(part), sums[part])
+    for part in range(PARTS):
         for k in range(6):
             for c in range(m):
-                means[k, c] += sums[component, k, c]
+                means[k, c] += sums[part, k, c]
     for k in range(6):
         for c in range(m):
             means[k, c] /= n

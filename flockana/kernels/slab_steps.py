@@ -43,18 +43,18 @@ def combined_by_threads(y, h, weights, rates, rows, count, out):
 def covered_by_threads(pairs, q, within):
     """Check a pair list with several threads, as `flockana.kernels.verlet_list.covers`."""
     reference, m = pairs.places, q.shape[1]
-    mean_motion, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
-    for stretch_axis in range(2 if pairs.reach[0] > 0.0 else 0):
+    stretches, low, high = np.empty(m), np.empty((_PARTS, m)), np.empty((_PARTS, m))
+    for is_stretched in range(2 if pairs.reach[0] > 0.0 else 0):
         squared_value, lowest_value = 0.0, np.inf
         for c in range(m):
-            mean_motion[c] = slope_along(reference, q, c, 1.0) if stretch_axis else 1.0
-            lowest_value = min(lowest_value, mean_motion[c])
-        parallel_ways_between(q, reference, mean_motion, low, high)
+            stretches[c] = slope_along(reference, q, c, 1.0) if is_stretched else 1.0
+            lowest_value = min(lowest_value, stretches[c])
+        parallel_ways_between(q, reference, stretches, low, high)
         for c in range(m):
-            first_index, last_value = low[0, c], high[0, c]
+            low_end, high_end = low[0, c], high[0, c]
             for part in range(1, _PARTS):
-                first_index, last_value = min(first_index, low[part, c]), max(last_value, high[part, c])
-            squared_value += (last_value - first_index) ** 2
+                low_end, high_end = min(low_end, low[part, c]), max(high_end, high[part, c])
+            squared_value += (high_end - low_end) ** 2
         if np.sqrt(squared_value) <= lowest_value * pairs.reach[0] - within:
             return True
     return False

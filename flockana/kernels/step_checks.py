@@ -94,9 +94,9 @@ def checked(block, k, judged, view, kept, near):
         work_integral = block.y[k + 1, -1] - block.y[k, -1]
         share = balanced(block.energy[k], block.energy[k + 1], work_integral, rules.balance, ledger)
     is_singular, share = share < 0.0, abs(share)
-    step_ratio, shortest = share * h, ROUNDINGS * spacing(max(abs(t), abs(end_time)))
+    shorter_step, shortest = share * h, ROUNDINGS * spacing(max(abs(t), abs(end_time)))
     if rules.fixed:  # down to what no shorter step ends before: half of one rounding may round up to the whole
-        step_ratio, shortest = max(step_ratio, h / GROWTH), 0.0
-    if share == 1.0 or step_ratio <= shortest or not t < t + step_ratio < end_time:
+        shorter_step, shortest = max(shorter_step, h / GROWTH), 0.0
+    if share == 1.0 or shorter_step <= shortest or not t < t + shorter_step < end_time:
         return 0.0, is_singular
-    return step_ratio, False
+    return shorter_step, False

@@ -57,8 +57,8 @@ def _share_of(ends, whole, around, first, second, share):
     """Return the share of a step allowed by given pairs, if less than `share`; negative if a pole is crossed."""
     common_motion, path_bounds, distance_band = whole
     if POLES and not around.few:
-        side_state = steepest(common_motion[1]), path_bounds[0] + path_bounds[1]
-        if crossing_listed(ends, side_state, around.poles, around.toward, first, second):
+        limits = steepest(common_motion[1]), path_bounds[0] + path_bounds[1]
+        if crossing_listed(ends, limits, around.poles, around.toward, first, second):
             return POLE
     return (
         share_of_listed(ends, (common_motion[0], path_bounds[1]), distance_band, around, first, second, share)
@@ -71,20 +71,20 @@ def _share_of(ends, whole, around, first, second, share):
 def _look_at_part(own, ends, common, numbers, reaches, first, second, part, shares):
     """Write the share of a step that a part of the listed pairs allow."""
     begin, end = begin_of(part, first.size), begin_of(part + 1, first.size)
-    full_matrix = common, (numbers[0], numbers[1]), (numbers[2], numbers[3])
-    radii, far_force, poles, wall_direction, few = reaches
-    around = Reaches(radii, far_force, (numbers[4], numbers[5]), poles, wall_direction, few)
-    shares[part] = _share_of(ends, full_matrix, around, first[begin:end], second[begin:end], 1.0)
+    whole = common, (numbers[0], numbers[1]), (numbers[2], numbers[3])
+    radii, far_limit, poles, toward, few = reaches
+    around = Reaches(radii, far_limit, (numbers[4], numbers[5]), poles, toward, few)
+    shares[part] = _share_of(ends, whole, around, first[begin:end], second[begin:end], 1.0)
 
 
 @kernel
 def share_in_parts(ends, common, numbers, reaches, first, second):
     """Return `_share_of` over the parts of a list of pairs; `numbers` are ways, band and edges."""
     shares, marker, share = np.empty(PARTS), OWN[:0], 1.0
-    for component in prange(PARTS):
-        _look_at_part(marker, ends, common, numbers, reaches, first, second, np.int64(component), shares)
-    for component in range(PARTS):
-        share = min(share, shares[component])
+    for part in prange(PARTS):
+        _look_at_part(marker, ends, common, numbers, reaches, first, second, np.int64(part), shares)
+    for part in range(PARTS):
+        share = min(share, shares[part])
     return share
 
 
@@ -109,24 +109,24 @@ def _share_of_list(ends, whole, around, first, second, share):
         return _share_of(ends, whole, around, first, second, share)
     common_motion, path_bounds, distance_band = whole
     numbers = path_bounds[0], path_bounds[1], distance_band[0], distance_band[1], around.edges[0], around.edges[1]
-    reach_series = around.radii, around.far, around.poles, around.toward, around.few
+    reach_data = around.radii, around.far, around.poles, around.toward, around.few
     if SEVERAL:
-        return min(share, parallel_share_in_parts(ends, common_motion, numbers, reach_series, first, second))
-    return min(share, share_in_parts(ends, common_motion, numbers, reach_series, first, second))
+        return min(share, parallel_share_in_parts(ends, common_motion, numbers, reach_data, first, second))
+    return min(share, share_in_parts(ends, common_motion, numbers, reach_data, first, second))
 
 
 @inlined
 def _share_of_crowd(ends, whole, around, share):
     """Return the share of a step allowed by all close pairs, found block by block without a list."""
-    q0, squared_limit = ends.q0, whole[2][1]
+    q0, limit = ends.q0, whole[2][1]
     (n, m), cell, row = q0.shape, np.int64(0), np.int64(0)  # typed, as in `advance`
-    grid, x = sort_into_grid(q0, squared_limit), np.empty(q0.shape)
+    grid, x = sort_into_grid(q0, limit), np.empty(q0.shape)
     for i in range(n):
         for c in range(m):
             x[i, c] = q0[grid[0][i], c]
     first, second_agents = np.empty(max(_BLOCK, n), np.uint32), np.empty(max(_BLOCK, n), np.uint32)
     while row < n and share >= 0.0:
-        cell, row, count = fill_from_grid(x, grid, squared_limit * squared_limit, cell, row, first, second_agents)
+        cell, row, count = fill_from_grid(x, grid, limit * limit, cell, row, first, second_agents)
         share = _share_of(ends, whole, around, first[:count], second_agents[:count], share)
     return share
 
@@ -147,8 +147,8 @@ def share_of_step(t, ends, around, view, kept, near):
         common, ways = _ways_of(ends)
         between = band(common, ways, around.edges, around.far)
         if POLES and around.few:
-            side_state = steepest(common[1]), ways[0] + ways[1]
-            if crossing_listed(ends, side_state, around.poles, around.toward, around.first, around.second):
+            limits = steepest(common[1]), ways[0] + ways[1]
+            if crossing_listed(ends, limits, around.poles, around.toward, around.first, around.second):
                 return POLE
             if not around.radii.size:
                 return share

@@ -102,11 +102,11 @@ def covers(pairs, q, within):
     Only where the first does not do is the second asked: a flock drawn together by its target.
     """
     reference, m = pairs.places, q.shape[1]
-    for stretch_axis in range(2 if pairs.reach[0] > 0.0 else 0):
+    for is_stretched in range(2 if pairs.reach[0] > 0.0 else 0):
         squared_value, nearest = 0.0, np.inf
         for c in range(0, m, 2):  # two coordinates at once: they lie side by side
             d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
-            if stretch_axis:
+            if is_stretched:
                 along_c, along_d = slope_along(reference, q, c, 1.0), slope_along(reference, q, d, 1.0)
             low_c = high_c = q[0, c] - along_c * reference[0, c]
             low_d = high_d = q[0, d] - along_d * reference[0, d]
@@ -149,7 +149,7 @@ def no_pairs(n: int, m: int) -> Pairs:
 
 def with_room(pairs: Pairs) -> Pairs | None:
     """Return an empty list with the lacking room, or twice the room; None if the last list sufficed."""
-    if (missing_names := -int(pairs.counts[COUNT])) <= -CROWDED:
+    if (missing_count := -int(pairs.counts[COUNT])) <= -CROWDED:
         return None
-    workspace = max(missing_names, 2 * pairs.first.size)
-    return pairs._replace(first=np.empty(workspace, np.uint32), second=np.empty(workspace, np.uint32))
+    capacity = max(missing_count, 2 * pairs.first.size)
+    return pairs._replace(first=np.empty(capacity, np.uint32), second=np.empty(capacity, np.uint32))

@@ -113,10 +113,10 @@ def export_lammps(
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)
     value_checks.ensure_known("choice of consensus", consensus, CONSENSUS)
-    first_index = _first_distance(term, q0, inner)
+    first_distance = _first_distance(term, q0, inner)
     start, end = value_checks.ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)
-    table = pair_table(term, points, first_index)
+    table = pair_table(term, points, first_distance)
     result = script.translated(law, q0.shape[1], table, nearest=consensus == "nearest")
     title = f"{len(q0)} agents of {law.title}, t = {start:g} to {end:g}"
     texts = {
@@ -130,9 +130,9 @@ def export_lammps(
     except OSError as error:
         raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
     files = tuple(write_atomic(folder / name, text, remedy="choose another folder") for name, text in texts.items())
-    exact, near_terms, missing = (tuple(item) for item in (result.exact, result.near, result.missing))
+    exact, near_texts, missing = (tuple(item) for item in (result.exact, result.near, result.missing))
     errors = table.force_error, table.energy_error
-    return LammpsExport(folder, files, *errors, exact, near_terms, missing, clock.dt, clock.steps)
+    return LammpsExport(folder, files, *errors, exact, near_texts, missing, clock.dt, clock.steps)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:

@@ -108,10 +108,10 @@ def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
         low[1], high[1] = -reach, reach
     box = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for a, b, x in zip(low.tolist(), high.tolist(), AXES, strict=True))
     rows = [[" ".join(map(repr, x + [0.0] * (3 - m))) for x in item.tolist()] for item in (q, p)]
-    position_rows = "".join(f"{k} 1 {row}\n" for k, row in enumerate(rows[0], 1))
+    position_text = "".join(f"{k} 1 {row}\n" for k, row in enumerate(rows[0], 1))
     speeds = "".join(f"{k} {row}\n" for k, row in enumerate(rows[1], 1))
     header = f"{title}\n\n{n} atoms\n1 atom types\n\n{box}\n"
-    return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{position_rows}\nVelocities\n\n{speeds}"
+    return f"{header}Masses\n\n1 1.0\n\nAtoms # atomic\n\n{position_text}\nVelocities\n\n{speeds}"
 
 
 def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Translation) -> str:

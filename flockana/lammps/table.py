@@ -51,14 +51,14 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
     force_ratio = force / r
     read_force = (force_ratio[:-1] + shares * np.diff(force_ratio)) * between
     read_energy = energy[:-1] + shares * np.diff(energy)
-    side_state = np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
+    factors = np.array([1.0 - _BESIDE, 1.0 + _BESIDE])
     large = _JUMP * float(np.abs(force).max())
     inner_surfaces = [x for x in term.pair.surfaces if inner < x < outer]
-    jumps = tuple(x for x in inner_surfaces if abs(np.diff(energy_and_force(term, x * side_state)[1])[0]) > large)
+    jumps = tuple(x for x in inner_surfaces if abs(np.diff(energy_and_force(term, x * factors)[1])[0]) > large)
     is_smooth = np.ones(points - 1, bool)
     is_smooth[np.searchsorted(r, jumps) - 1] = False
-    deviation = [np.abs(a - b)[:, is_smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
-    return PairTable(r, energy, force, float(deviation[0]), float(deviation[1]), jumps)
+    errors = [np.abs(a - b)[:, is_smooth].max() for a, b in ((read_force, exact_force), (read_energy, exact_energy))]
+    return PairTable(r, energy, force, float(errors[0]), float(errors[1]), jumps)
 
 
 def inner_cutoff(term: PairTerm) -> float:

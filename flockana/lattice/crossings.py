@@ -123,8 +123,8 @@ class _Exact:
         """Return the position of agent i as whole numbers, padded to three coordinates."""
         if i not in self._known:
             parts = [float(v).as_integer_ratio() for v in self._q[i]]
-            full_matrix = [(dividend << self._shift) // divisor for dividend, divisor in parts]
-            self._known[i] = tuple(full_matrix + [0] * (3 - self._m))
+            coordinates = [(dividend << self._shift) // divisor for dividend, divisor in parts]
+            self._known[i] = tuple(coordinates + [0] * (3 - self._m))
         return self._known[i]
 
     def cross(self, a: int, b: int) -> bool:

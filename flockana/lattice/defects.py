@@ -53,8 +53,8 @@ class Defects:
     @property
     def counts(self) -> dict[int, int]:
         """Return the numbers of interior agents with 3, 4, 5 … neighbours."""
-        counts, agent_counts = np.unique(self.coordination[self.interior], return_counts=True)
-        return {int(k): int(v) for k, v in zip(counts, agent_counts, strict=True)}
+        degrees, agent_counts = np.unique(self.coordination[self.interior], return_counts=True)
+        return {int(k): int(v) for k, v in zip(degrees, agent_counts, strict=True)}
 
 
 def defects(q: Any, links: Any) -> Defects:
@@ -88,9 +88,9 @@ def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))
     centre, neighbour = centre[order], neighbour[order]
-    first_term = np.cumsum(count) - count
-    slot_numbers = np.arange(len(centre)) - first_term[centre]
-    next_positions = first_term[centre] + (slot_numbers + 1) % np.maximum(count[centre], 1)
+    starts = np.cumsum(count) - count
+    slot_numbers = np.arange(len(centre)) - starts[centre]
+    next_positions = starts[centre] + (slot_numbers + 1) % np.maximum(count[centre], 1)
     codes = np.sort(centre * n + neighbour)
     sought_codes = neighbour * n + neighbour[next_positions]
     code_position = np.minimum(np.searchsorted(codes, sought_codes), max(len(codes) - 1, 0))

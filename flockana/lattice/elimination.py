@@ -54,10 +54,10 @@ class Elimination:
         block_ends = m * np.cumsum(np.bincount(turns, minlength=len(nodes)))
         for node, start, end in zip(nodes, [0, *block_ends[:-1].tolist()], block_ends.tolist(), strict=True):
             child_blocks = [waiting_blocks.pop(), waiting_blocks.pop()] if node < 2**depth else []
-            front_matrix, left = self._eliminated(start, end, child_blocks)
-            waiting_blocks.append((front_matrix.boundary, left))
+            front, left = self._eliminated(start, end, child_blocks)
+            waiting_blocks.append((front.boundary, left))
             if keep:
-                self._fronts.append(front_matrix)
+                self._fronts.append(front)
 
     def solve(self, b: FloatArray) -> FloatArray:
         """Return A⁻¹ b for a vector, or for the columns of a matrix."""
@@ -110,13 +110,13 @@ class Elimination:
             return dtrtri(factor, lower=1)[0], None
         if self._definite:
             raise SolverError("the matrix is not positive definite")
-        magnitudes, vectors = np.linalg.eigh(block)
-        self.negative += int(np.sum(magnitudes < 0.0))
+        eigenvalues, vectors = np.linalg.eigh(block)
+        self.negative += int(np.sum(eigenvalues < 0.0))
         if self._least is not None:
-            return (vectors / np.sqrt(np.maximum(np.abs(magnitudes), self._least))).T, None
-        if np.abs(magnitudes).min() <= _ZERO * largest:
+            return (vectors / np.sqrt(np.maximum(np.abs(eigenvalues), self._least))).T, None
+        if np.abs(eigenvalues).min() <= _ZERO * largest:
             raise SolverError("the sparse elimination met a pivot that is zero to rounding: its sign is undetermined")
-        return (vectors / np.sqrt(np.abs(magnitudes))).T, np.sign(magnitudes)
+        return (vectors / np.sqrt(np.abs(eigenvalues))).T, np.sign(eigenvalues)
 
 
 def _bottom_up(node: int, leaves: int) -> Iterator[int]:

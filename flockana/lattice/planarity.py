@@ -114,17 +114,17 @@ def kuratowski(n: int, links: Any) -> Kuratowski | None:
     remaining_links = _distinct(n, links)
     if _planar(n, remaining_links):
         return None
-    dimension = len(remaining_links)
-    while dimension >= 1:
-        dimension = min(dimension, len(remaining_links))
+    batch_size = len(remaining_links)
+    while batch_size >= 1:
+        batch_size = min(batch_size, len(remaining_links))
         start = 0
         while start < len(remaining_links):
-            fewer_links = np.delete(remaining_links, slice(start, start + dimension), axis=0)
+            fewer_links = np.delete(remaining_links, slice(start, start + batch_size), axis=0)
             if _planar(n, fewer_links):
-                start += dimension
+                start += batch_size
             else:
                 remaining_links = fewer_links
-        dimension //= 2
+        batch_size //= 2
     return _name(remaining_links)
 
 

@@ -112,9 +112,9 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     if dense is None:
         dense = q.size <= DENSE_MAX
     rigid = rigid_motion_count(q)
-    below, soft_text = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7), q, rigid)
+    below, soft_count = _by_singular_values(matrix, tol) if dense else _by_inertia(matrix, max(tol, 1e-7), q, rigid)
     rank = q.size - below
-    return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft_text)
+    return Rigidity(rank, rigid, below - rigid, matrix.shape[0] - rank, soft_count)
 
 
 def rigid_motion_count(q: FloatArray) -> int:
@@ -127,9 +127,9 @@ def rigid_motion_count(q: FloatArray) -> int:
 
 def _by_singular_values(matrix: csr_array, tol: float) -> tuple[int, int]:
     singular_values = np.linalg.svd(matrix.toarray(), compute_uv=False)
-    counts = np.pad(singular_values, (0, matrix.shape[1] - len(singular_values)))
-    zero, zero_counts = (int(np.sum(counts <= factor * tol * counts[0])) for factor in (1.0, 10.0))
-    return zero, zero_counts - zero
+    values = np.pad(singular_values, (0, matrix.shape[1] - len(singular_values)))
+    zero, wide_count = (int(np.sum(values <= factor * tol * values[0])) for factor in (1.0, 10.0))
+    return zero, wide_count - zero
 
 
 def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tuple[int, int]:
@@ -137,10 +137,10 @@ def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tup
     largest = float(abs(gram).sum(axis=0).max())  # at least σ_max², on a lattice at most about twice that
     if largest == 0.0:
         return matrix.shape[1], 0
-    doubtful_count = eigenvalues_below(gram, (10.0 * tol) ** 2 * largest, q)
+    wide_count = eigenvalues_below(gram, (10.0 * tol) ** 2 * largest, q)
     # rigid motions stretch nothing: if there is no other below the larger threshold, there is none below the smaller
-    zero = rigid if doubtful_count == rigid else eigenvalues_below(gram, tol**2 * largest, q)
-    return zero, doubtful_count - zero
+    zero = rigid if wide_count == rigid else eigenvalues_below(gram, tol**2 * largest, q)
+    return zero, wide_count - zero
 
 
 def eigenvalues_below(gram: Any, shift: float, q: FloatArray) -> int:

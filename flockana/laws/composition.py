@@ -118,11 +118,11 @@ class Composition(GainedLaw):
         law = self.alpha or self.net
         if law is None or isinstance(law, Weight):
             return None
-        length_scales = alpha_scales(
+        law_scales = alpha_scales(
             law, self.gains if self.alpha else Gains(0.0, self.gains.c2_alpha, 0.0, 0.0, *self._pull)
         )
         is_used = any(np.max(gain) > 0.0 for gain in (self.gains.c1_alpha, self.gains.c2_alpha, *self._pull))
-        return Scales(length_scales.length, 1.0 / abs(self.thrust)) if not is_used and self.thrust else length_scales
+        return Scales(law_scales.length, 1.0 / abs(self.thrust)) if not is_used and self.thrust else law_scales
 
     @property
     def _pull(self) -> tuple[Any, Any]:
@@ -149,8 +149,8 @@ class Composition(GainedLaw):
         # The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
         # nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given
         # frame.
-        gains, net, has_obstacles = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
-        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=has_obstacles)
+        gains, net, is_tied = self.gains, self.net, bool(self.obstacles) or self.brake != 0.0
+        pull = None if self.target is None else Navigation(self.target, gains, self.unit, given=is_tied)
         moving = pull is not None and pull.moving
         terms: list[Term] = []
         if self.alpha is not None:
@@ -319,8 +319,8 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
         raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
     n = value_checks.ensure_count("agents", agents)
     members = {value_checks.ensure_index("informed has", i, n) for i in informed}
-    common_motion = value_checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
-    return tuple(common_motion if i in members else 0.0 for i in range(n))
+    checked_gain = value_checks.ensure_nonnegative("pull" if name.startswith("c1") else "match", gain)
+    return tuple(checked_gain if i in members else 0.0 for i in range(n))
 
 
 def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:

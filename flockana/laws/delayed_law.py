@@ -99,8 +99,8 @@ class Delayed(Wrapper):
     def _past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return positions, velocities and accelerations, (K, n, m), at times before the start."""
         if self.history_t is None:
-            zero_velocity = np.zeros((len(back), *q.shape))
-            return q + back[:, None, None] * p, zero_velocity + p, zero_velocity
+            zero_array = np.zeros((len(back), *q.shape))
+            return q + back[:, None, None] * p, zero_array + p, zero_array
         from scipy.interpolate import CubicSpline
 
         t, positions = np.append(self.history_t, 0.0), np.append(self.history_q, q[None], axis=0)

@@ -83,9 +83,9 @@ class Disturbed(Wrapper):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name, length_unit in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
+        for name, axis_count in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
             if not callable(getattr(self, name)) or name != "force":
-                object.__setattr__(self, name, _pushes(name, getattr(self, name), length_unit))
+                object.__setattr__(self, name, _pushes(name, getattr(self, name), axis_count))
         if (self.times is None) != (self.table is None) or len(self.times or ()) != len(self.table or ()):
             raise ArgumentError(
                 f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected the same"

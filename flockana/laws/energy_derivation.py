@@ -24,8 +24,8 @@ def law_derivation(law: Any, m: int = 2) -> EnergyIdentity:
 
     kinds = [type(term) for term in law.terms]
     pull = law.term(Navigation)
-    is_plain_law = pull is None or (pull.unit is None and not pull.gains.per_agent)
-    if kinds not in ([PairTerm], [PairTerm, Navigation]) or not is_plain_law:
+    is_plain_pull = pull is None or (pull.unit is None and not pull.gains.per_agent)
+    if kinds not in ([PairTerm], [PairTerm, Navigation]) or not is_plain_pull:
         raise ArgumentError(
             f"{type(law).__name__} is no sum of a pair term and a linear pull common to all agents: "
             "expected such a law, as Algorithm 1 or 2 is, for its derivation"

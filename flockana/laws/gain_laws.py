@@ -68,5 +68,5 @@ class GainedLaw(SumOfTerms):
 
 def timed(pair: PairInteraction | Weight | None) -> bool:
     """Return whether a pair law or a weight depends on the unit of time."""
-    power_terms = (power for _, _, power in getattr(pair, "powers", ()))
-    return any(power for _, power in getattr(pair, "units", {}).values()) or any(power_terms)
+    time_powers = (power for _, _, power in getattr(pair, "powers", ()))
+    return any(power for _, power in getattr(pair, "units", {}).values()) or any(time_powers)

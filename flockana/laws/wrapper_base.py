@@ -302,7 +302,7 @@ def _has_pairs(law: Any) -> bool:
 def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return the input of any law, evaluated agent by agent with own states known and others' states heard."""
     n, u = len(view.q), np.empty_like(view.q)
-    q, p = (np.broadcast_to(component, (n, *view.q.shape)) for component in heard)
+    q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
     for i in range(n):
         is_self = np.arange(n)[:, None] == i
         u[i] = law.flow(view.t, np.where(is_self, view.q, q[i]), np.where(is_self, view.p, p[i]))[0][i]

@@ -62,13 +62,13 @@ def clearance(
         next_rows = slice(part.start + 1, part.stop + 1)
         h = (t[next_rows] - t[part])[:, None, None]
         segment_ends = (x.reshape(-1, m) for k in (part, next_rows) for x in (q[k], h * p[k], h * h * u[k]))
-        curves, reach, speed_bound = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *segment_ends))
-        points, slack_share = curves[..., :m], 0.0 if slack is None else slack[part]
+        curves, reach, path_error = (x.reshape(-1, n, *x.shape[1:]) for x in bernstein(1.0, *segment_ends))
+        points, slack_part = curves[..., :m], 0.0 if slack is None else slack[part]
         for obstacle, clearances in zip(obstacles, minima, strict=True):
-            row, agent = np.nonzero(clearances.at_samples[part] - (reach + slack_share) < clearances.lower)
+            row, agent = np.nonzero(clearances.at_samples[part] - (reach + slack_part) < clearances.lower)
             path_offsets = points[row, agent] - points[row, agent, 5:]  # from their last points fewer get so far
             back_lengths = np.sqrt(np.einsum("kxm,kxm->kx", path_offsets, path_offsets).max(axis=1, initial=0.0))
-            allowance = (speed_bound + slack_share)[row, agent]
+            allowance = (path_error + slack_part)[row, agent]
             near = clearances.at_samples[next_rows][row, agent] - (back_lengths + allowance) < clearances.lower
             row, agent = row[near], agent[near]
             bound = refine(obstacle, points[row, agent], allowance[near], clearances.lower, tol)
@@ -83,8 +83,8 @@ def clearance(
 def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
     """Return exact signed distances near the least one, and lower bounds elsewhere."""
     centre, radius = obstacle.ball
-    deviation = points - centre
-    distance: FloatArray = np.sqrt(np.einsum("km,km->k", deviation, deviation)) - radius
+    offsets = points - centre
+    distance: FloatArray = np.sqrt(np.einsum("km,km->k", offsets, offsets)) - radius
     distance -= 4.0 * ROUNDING * (np.abs(points).max() + np.abs(centre).max() + (radius if radius < inf else 0.0))
     best_clearance = obstacle.clearance(points[np.argmin(distance)][None])[0]
     is_candidate = distance <= best_clearance
@@ -147,13 +147,13 @@ def bounds_over_hull(
     obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
-    gap, _, gradient = obstacle._project(middle, np.zeros_like(middle))
+    gap, _, distance = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]
     with np.errstate(divide="ignore", invalid="ignore"):
-        outward_normal = -gap / gradient[:, None]  # the gradient of the signed distance, inside too
+        outward_normal = -gap / distance[:, None]  # the gradient of the signed distance, inside too
     plane = np.einsum("km,kcm->kc", outward_normal, hull).min(axis=1)
-    plane[~np.isfinite(plane) | (np.abs(gradient) <= tol)] = -inf  # no direction there: only the distance bounds
-    return gradient, gradient + np.maximum(plane, -lengths(hull).max(axis=1))
+    plane[~np.isfinite(plane) | (np.abs(distance) <= tol)] = -inf  # no direction there: only the distance bounds
+    return distance, distance + np.maximum(plane, -lengths(hull).max(axis=1))
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:

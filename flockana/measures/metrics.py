@@ -277,11 +277,11 @@ def _headings(p: FloatArray) -> FloatArray:
     """Return directions of motion; 0 for agents at rest."""
     with np.errstate(over="ignore"):
         speed = lengths(p)
-    is_invalid = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))
-    if is_invalid.any():
-        powers = np.frexp(np.abs(p[is_invalid]).max(axis=1))[1]  # of two: nothing is rounded
+    is_extreme = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))
+    if is_extreme.any():
+        powers = np.frexp(np.abs(p[is_extreme]).max(axis=1))[1]  # of two: nothing is rounded
         p, speed = p.copy(), speed.copy()
-        p[is_invalid] = np.ldexp(p[is_invalid], -powers[:, None])
-        speed[is_invalid] = lengths(p[is_invalid][None])[0]
+        p[is_extreme] = np.ldexp(p[is_extreme], -powers[:, None])
+        speed[is_extreme] = lengths(p[is_extreme][None])[0]
     speed = speed[..., None]
     return np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)

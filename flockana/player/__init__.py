@@ -62,8 +62,8 @@ class Player:
                 "a widget needs anywidget: expected it to be installed; run pip install 'flockana[notebook]', or show "
                 "run.player() itself, which needs nothing"
             ) from None
-        source_path = Path(__file__).with_name("widget.js").read_text(encoding="utf-8")
-        fields = {"_esm": script() + source_path, "_css": style()}
+        source_text = Path(__file__).with_name("widget.js").read_text(encoding="utf-8")
+        fields = {"_esm": script() + source_text, "_css": style()}
         fields |= {"data": traitlets.Bytes().tag(sync=True), "time": traitlets.Float(0.0).tag(sync=True)}
         kind = type("RunWidget", (anywidget.AnyWidget,), fields)
         return kind(data=self._scene(), time=float(self.trajectory.t[0]))

@@ -53,15 +53,15 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
         header = json.loads(raw_bytes[4:start].decode("utf-8"))
         arrays = {}
         for entry in header.pop("arrays"):
-            rows, array_shape = entry["shape"][0], int(np.prod(entry["shape"]))
-            planes = np.frombuffer(raw_bytes, np.uint8, 4 * array_shape, start).reshape(4, array_shape)
-            start += 4 * array_shape
-            joined_bytes = np.ascontiguousarray(planes.T).view("<u4").reshape(array_shape // max(rows, 1), rows).T
-            joined_bytes = np.cumsum(joined_bytes, axis=0, dtype=np.uint32)
+            rows, value_count = entry["shape"][0], int(np.prod(entry["shape"]))
+            planes = np.frombuffer(raw_bytes, np.uint8, 4 * value_count, start).reshape(4, value_count)
+            start += 4 * value_count
+            words = np.ascontiguousarray(planes.T).view("<u4").reshape(value_count // max(rows, 1), rows).T
+            words = np.cumsum(words, axis=0, dtype=np.uint32)
             if entry["step"] == 0.0:
-                values = np.ascontiguousarray(joined_bytes).view("<f4").astype(np.float64)
+                values = np.ascontiguousarray(words).view("<f4").astype(np.float64)
             else:
-                values = entry["origin"] + entry["step"] * joined_bytes.astype(np.float64)
+                values = entry["origin"] + entry["step"] * words.astype(np.float64)
             arrays[entry["name"]] = values.reshape(entry["shape"])
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
         raise ArgumentError(f"{len(data)} bytes: expected those of a run for the player ({error})") from None

@@ -143,8 +143,8 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
             rows.append(("residual", "residual of the energy balance", False, run.energy_residual))
     for name in SHOWN:
         if name in run._metric_names:
-            measurement = run.measure(name)
-            rows.append((name, measurement.label, bool(measurement.logarithmic), run.metric(name)))
+            measure = run.measure(name)
+            rows.append((name, measure.label, bool(measure.logarithmic), run.metric(name)))
     rows.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
     return [row for row in rows if np.isfinite(row[-1]).all()]  # a strip draws finite numbers only
 
@@ -174,6 +174,6 @@ def outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
             continue
         centre, radius = obstacle.ball
         for u, v in _CIRCLES.get(obstacle.dimension, ()):
-            surroundings = centre + 1.001 * radius * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
-            lines.append(obstacle.beta_agents(surroundings, np.zeros_like(surroundings)).q)
+            ring_points = centre + 1.001 * radius * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
+            lines.append(obstacle.beta_agents(ring_points, np.zeros_like(ring_points)).q)
     return tuple(lines)

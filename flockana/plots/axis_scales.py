@@ -190,12 +190,12 @@ class PlainScale(Artist):
         context.restore()
 
     def _draw_numbers(self, renderer: Any, ticks: Ticks) -> None:
-        box, (_, text_height, bottom_margin) = self.ax.bbox, self._size(renderer, "lp")
+        box, (_, text_height, text_descent) = self.ax.bbox, self._size(renderer, "lp")
         label_distance = ticks.length + ticks.pad
         for position, text in ticks.numbered:
             width, height, descent = self._size(renderer, text)
             if self.name == "x":
-                x, y = position - 0.5 * width, box.y0 - label_distance - (text_height - bottom_margin)
+                x, y = position - 0.5 * width, box.y0 - label_distance - (text_height - text_descent)
             else:
                 x = box.x0 - label_distance - width if self.side == "left" else box.x1 + label_distance
                 y = position - 0.5 * (height - descent)
@@ -238,5 +238,5 @@ class PlainScale(Artist):
 def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
     """Install fast scales on all two-dimensional axes of a figure, colour bars included; return them by axes."""
     flat_axes = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
-    magnitudes: dict[tuple[str, float], Size] = {}
-    return {ax: tuple(PlainScale(ax, name, magnitudes) for name in "xy") for ax in flat_axes}
+    text_sizes: dict[tuple[str, float], Size] = {}
+    return {ax: tuple(PlainScale(ax, name, text_sizes) for name in "xy") for ax in flat_axes}

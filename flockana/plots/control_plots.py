@@ -156,8 +156,8 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     width, alpha = line_width_and_opacity(roots.shape[1])
     ax.plot(roots.real, roots.imag, color=BLUE, linestyle="-", linewidth=max(0.7, width), alpha=max(0.6, alpha))
     name = _NAMES[sweep.name]
-    first_index, last_label = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
-    ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first_index)
+    first_label, last_label = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
+    ax.plot(roots[0].real, roots[0].imag, "x", color=INK, markersize=5, linestyle="none", label=first_label)
     ax.plot(roots[-1].real, roots[-1].imag, "o", color=VERMILLION, markersize=3.5, linestyle="none", label=last_label)
     ax.axvline(0.0, color=MUTED, linewidth=0.9, linestyle="-", zorder=0)
     return finish(ax, "Re s (1/time)", "Im s (radians/time)")

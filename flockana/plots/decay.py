@@ -31,11 +31,11 @@ def linear_range(
     ax = ensure_axes(ax)
     for k, (label, (magnitudes, deviations, changes)) in enumerate(ranges.items()):
         colour, marker, dash = _LOOKS[k % len(_LOOKS)]
-        x, y, is_broken = np.asarray(magnitudes), np.asarray(deviations), np.asarray(changes, dtype=bool)
+        x, y, is_changed = np.asarray(magnitudes), np.asarray(deviations), np.asarray(changes, dtype=bool)
         ax.plot(x, y, color=colour, linestyle=dash, linewidth=1.2, zorder=2)
         plot_style: Any = {"marker": marker, "color": colour, "linestyle": "none", "zorder": 3}
-        ax.plot(x[~is_broken], y[~is_broken], markersize=4.5, label=label, **plot_style)
-        ax.plot(x[is_broken], y[is_broken], markersize=5.0, markerfacecolor="white", **plot_style)
+        ax.plot(x[~is_changed], y[~is_changed], markersize=4.5, label=label, **plot_style)
+        ax.plot(x[is_changed], y[is_changed], markersize=5.0, markerfacecolor="white", **plot_style)
         if k == 0:
             guide_line = y[0] * x / x[0]
             ax.plot(x, guide_line, color=MUTED, linestyle="-", linewidth=0.8, label="∝ amplitude", zorder=1)

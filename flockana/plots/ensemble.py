@@ -173,9 +173,9 @@ def distribution(
         data = x[x > 0.0] if log else x
         if not data.size:
             continue
-        nan_count = x.size - data.size  # they count in the shares, although a logarithmic axis has no place for them
-        note = f", {nan_count} at 0" if nan_count else ""
-        share = (nan_count + np.arange(data.size + 1)) / x.size
+        zero_count = x.size - data.size  # they count in the shares, although a logarithmic axis has no place for them
+        note = f", {zero_count} at 0" if zero_count else ""
+        share = (zero_count + np.arange(data.size + 1)) / x.size
         label = f"{name} ({x.size} runs{note})"
         (line,) = axes.step(np.concatenate([data[:1], data]), share, where="post", label=label)
         height = -0.02 - 0.03 * k

@@ -104,8 +104,8 @@ def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster
     coloured = lines(segments, array=strain, cmap=STRAIN, norm=Normalize(-end, end), **plot_style)
     ax.add_collection(coloured)
     extend_kind = ("min" if strain.min() < -end else "") + ("max" if strain.max() > end else "")
-    arrow_kinds = {"": "neither", "minmax": "both"}.get(extend_kind, extend_kind)
-    colour_bar(ax, coloured, "strain of links (length − d)/d", extend=arrow_kinds)
+    extension = {"": "neither", "minmax": "both"}.get(extend_kind, extend_kind)
+    colour_bar(ax, coloured, "strain of links (length − d)/d", extend=extension)
 
 
 @check_kinds
@@ -121,12 +121,12 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     places = np.stack(np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :]))
     is_separated, is_coincident, is_failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
     plot_style: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0, "s": 34, "zorder": 3}
-    dot_artists = axes.scatter(*places[:, is_separated], c=diagram.closest[is_separated], **plot_style)
+    dot_artist = axes.scatter(*places[:, is_separated], c=diagram.closest[is_separated], **plot_style)
     axes.scatter(*places[:, is_coincident], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
     if is_failed.any():
         axes.scatter(*places[:, is_failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
     axes.plot(diagram.sizes, diagram.onset(), color=INK, linestyle="--", linewidth=1.0, label="onset")
-    colour_bar(axes, dot_artists, "least distance over d", share=1.0)
+    colour_bar(axes, dot_artist, "least distance over d", share=1.0)
     return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
 
 
@@ -140,12 +140,12 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
         By number of agents: the largest ratio seen safe, the least seen to collapse.
     """
     axes = ensure_axes(ax)
-    magnitudes = sorted(brackets)
-    low, high = np.array([brackets[n] for n in magnitudes]).T
-    axes.vlines(magnitudes, low, high, color=MUTED, linewidth=1.2, zorder=2)
-    axes.plot(magnitudes, high, marker="x", color=VERMILLION, linestyle="--", linewidth=1.0, label="agents coincide")
-    axes.plot(magnitudes, low, marker="o", color=BLUE, linestyle="-", linewidth=1.0, label="all stay apart")
-    return _over_size(axes, magnitudes, "c1γ/c1α")
+    counts = sorted(brackets)
+    low, high = np.array([brackets[n] for n in counts]).T
+    axes.vlines(counts, low, high, color=MUTED, linewidth=1.2, zorder=2)
+    axes.plot(counts, high, marker="x", color=VERMILLION, linestyle="--", linewidth=1.0, label="agents coincide")
+    axes.plot(counts, low, marker="o", color=BLUE, linestyle="-", linewidth=1.0, label="all stay apart")
+    return _over_size(axes, counts, "c1γ/c1α")
 
 
 @check_kinds

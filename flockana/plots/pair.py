@@ -77,9 +77,9 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     psi = interaction.psi_alpha(interaction.sigma_norm(np.abs(x))) / interaction.c_star
     ax.plot(x, psi, color=VERMILLION, linestyle="--", label="V, the pair's potential, over c*")
     zero, inside_range = deviation_energy([[0.0], [0.0]], d, r), np.nextafter(r, 0.0)
-    is_inside = np.append(x[x < r], inside_range)
-    values = np.array([deviation_energy([[0.0], [distance]], d, r) for distance in is_inside]) / zero
-    ax.plot(is_inside, values, color=BLUE, linestyle="-", label="E, deviation energy, over E(0)")
+    distances = np.append(x[x < r], inside_range)
+    values = np.array([deviation_energy([[0.0], [distance]], d, r) for distance in distances]) / zero
+    ax.plot(distances, values, color=BLUE, linestyle="-", label="E, deviation energy, over E(0)")
     ax.plot([r, x[-1]], [0.0, 0.0], color=BLUE, linestyle="-")
     ax.plot([r], [values[-1]], "o", color=BLUE, markerfacecolor="white", markersize=5)
     ax.plot([r], [0.0], "o", color=BLUE, markersize=5)

@@ -69,11 +69,11 @@ def nearest_sample(t: value_checks.FloatArray, time: float | None) -> int:
     """Return the index of the sample nearest to a time; the last by default."""
     if time is None:
         return len(t) - 1
-    sample_time, first_index, last_time = value_checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
-    time_tolerance = _ROUNDING * (last_time - first_index)
-    if not first_index - time_tolerance <= sample_time <= last_time + time_tolerance:
-        raise ArgumentError(f"time = {sample_time:g}: expected a time of the run, {first_index:g} to {last_time:g}")
-    return int(np.argmin(np.abs(t - sample_time)))
+    given_time, first_time, last_time = value_checks.ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
+    time_tolerance = _ROUNDING * (last_time - first_time)
+    if not first_time - time_tolerance <= given_time <= last_time + time_tolerance:
+        raise ArgumentError(f"time = {given_time:g}: expected a time of the run, {first_time:g} to {last_time:g}")
+    return int(np.argmin(np.abs(t - given_time)))
 
 
 def _range_circles(ax: Any, q: value_checks.FloatArray, law: Any) -> None:
@@ -193,10 +193,10 @@ def _lengths(d: Any, pairs: Any) -> Any:
     """Return desired distances: one number > 0, or one for each edge."""
     if pairs is None or np.isscalar(d):
         return value_checks.ensure_positive("d", d)
-    link_lengths = value_checks.ensure_series("d", d, len(pairs))
-    if not (link_lengths > 0.0).all():
-        raise ArgumentError(f"d has the entry {link_lengths.min():g}: expected numbers > 0")
-    return link_lengths
+    desired = value_checks.ensure_series("d", d, len(pairs))
+    if not (desired > 0.0).all():
+        raise ArgumentError(f"d has the entry {desired.min():g}: expected numbers > 0")
+    return desired
 
 
 def _multiplicities(ax: Any, x: value_checks.FloatArray) -> None:

@@ -225,11 +225,11 @@ def place_legend(ax: Any) -> None:
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
     """Add a colour bar to the right of axes, as a part of them."""
-    side_state = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
-    scale = ax.get_figure().colorbar(colours, cax=side_state, extend=extend, label=typeset(label))
+    bar_axes = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
+    scale = ax.get_figure().colorbar(colours, cax=bar_axes, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
-    side_state.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
-    side_state.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
+    bar_axes.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
+    bar_axes.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
     return scale
 
 

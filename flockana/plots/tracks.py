@@ -45,11 +45,11 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
     """Widen the view if a path is constant up to rounding."""
-    magnitude = float(np.ptp(trajectory.q.reshape(-1, trajectory.m), axis=0).max())
-    if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * magnitude:
+    extent = float(np.ptp(trajectory.q.reshape(-1, trajectory.m), axis=0).max())
+    if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * extent:
         if trajectory.m == 2:
             ax.set_aspect("equal", adjustable="box")  # else the limits below are for matplotlib to change
-        limit(ax, points[0] - 0.5 * magnitude, points[0] + 0.5 * magnitude)
+        limit(ax, points[0] - 0.5 * extent, points[0] + 0.5 * extent)
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:

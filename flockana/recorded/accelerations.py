@@ -60,12 +60,12 @@ def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
     """Return the mean accelerations from sample to sample, by recorded velocities."""
     h = np.diff(rec.t)
     u = np.diff(p, axis=0) / h[:, None, None]
-    speed_bounds: Any = rec.accuracy.speed
+    speed_error: Any = rec.accuracy.speed
     if rec.sd is not None:  # standard deviations, as those of splines are
-        speed_bounds = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
-    speed = np.broadcast_to(speed_bounds, rec.q.shape[:2])
-    speed_sums = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
-    error = np.nan_to_num(speed_sums / h[:, None], posinf=0.0)
+        speed_error = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
+    speed = np.broadcast_to(speed_error, rec.q.shape[:2])
+    error_sums = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
+    error = np.nan_to_num(error_sums / h[:, None], posinf=0.0)
     scheme, states = kinematic_scheme(rec), (rec.t, rec.q, p)
     if scheme is not None:  # then u is the input at the beginning of each step
         return Accelerations("accelerations", rec.t[:-1], u, error, tuple(x[:-1] for x in states), scheme)

@@ -83,10 +83,10 @@ class Comparison(ShortRepr):
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:
         """Largest residuals: time, agent, size."""
-        deviation_norms = np.nan_to_num(lengths(self.residual))
-        order = np.argsort(-deviation_norms, axis=None)[:_WORST]
-        worst_indices = [np.unravel_index(k, deviation_norms.shape) for k in order]
-        return tuple((float(self.t[k]), self.ids[i], float(deviation_norms[k, i])) for k, i in worst_indices)
+        residual_norms = np.nan_to_num(lengths(self.residual))
+        order = np.argsort(-residual_norms, axis=None)[:_WORST]
+        worst_indices = [np.unravel_index(k, residual_norms.shape) for k in order]
+        return tuple((float(self.t[k]), self.ids[i], float(residual_norms[k, i])) for k, i in worst_indices)
 
     def __str__(self) -> str:
         name = self.law.title
@@ -99,8 +99,8 @@ class Comparison(ShortRepr):
             )
         lines += [f"  finding: {text}" for text in self.findings]
         lines += [f"  caution: {self.caution}"] if self.caution else []
-        t, agent, deviation_norms = self.worst[0]
-        lines.append(f"  off most by {deviation_norms:.3g}, agent {agent} at t = {t:.4g}")
+        t, agent, residual_norm = self.worst[0]
+        lines.append(f"  off most by {residual_norm:.3g}, agent {agent} at t = {t:.4g}")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
@@ -110,7 +110,7 @@ class Comparison(ShortRepr):
             "law": self.law.title,
             "shares": [share._asdict() for share in self.shares],
             "findings": list(self.findings),
-            "worst": [{"time": t, "agent": agent, "size": deviation_norms} for t, agent, deviation_norms in self.worst],
+            "worst": [{"time": t, "agent": agent, "size": residual_norm} for t, agent, residual_norm in self.worst],
         } | {name: getattr(self, name) for name in names}
 
 

@@ -20,12 +20,12 @@ def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.ND
     for k in range(count - 1, -1, -1):
         first_samples[k] = np.where(present[k], first_samples[k + 1], k)
     starts = np.flatnonzero((present & ~np.vstack([np.zeros((1, n), dtype=bool), present[:-1]])).any(axis=1))
-    best_length, window = 0, (0, 0)
+    best_area, window = 0, (0, 0)
     for k in starts.tolist():
         order = np.sort(first_samples[k])[::-1]
         area = (order - k) * np.arange(1, n + 1)
-        if area.max() > best_length:
+        if area.max() > best_area:
             j = int(np.argmax(area))
-            best_length, window = int(area[j]), (k, int(order[j]))
+            best_area, window = int(area[j]), (k, int(order[j]))
     start, end = window
     return slice(start, end), np.flatnonzero(present[start:end].all(axis=0))

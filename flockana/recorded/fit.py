@@ -310,7 +310,7 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
     values, covariance = best.values[:count], best.covariance[:count, :count] * unit
     errors = np.where(best.identifiable[:count], np.sqrt(np.maximum(np.diag(covariance), 0.0)), inf)
     scale = np.where(np.isfinite(errors) & (errors > 0.0), errors, 1.0)
-    unknown_names = [
+    open_remarks = [
         f"the data do not tell {name}: {value:.4g}, {interval_text(*end)}"
         for name, value, end in zip(names, values, parameter_bounds, strict=True)
         if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * abs(value)
@@ -323,7 +323,7 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
         sqrt(best.variance) if search.rec.bound is not None or search.stated else np.nan,
         best.freedom,
         dict(zip(names, parameter_bounds, strict=True)),
-        tuple(unknown_names),
+        tuple(open_remarks),
         tuple(doubts),
         best.message,
     )

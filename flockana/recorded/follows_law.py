@@ -71,21 +71,21 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     for stride in {1, wide} if len(rec.t) > wide else {1}:  # dense samples are compared one law time apart too
         times, q, p = rec.t[::stride], rec.q[::stride], rec.p[::stride]
         widths = [x[::stride] if is_known else np.zeros(q.shape[:2]) for x in (place, speed)]
-        deviation, allowances = _differences(law, times, q, p, *widths)
-        for name, deviations, allowance in zip(("q", "p"), deviation, allowances, strict=True):
+        distances, allowances = _differences(law, times, q, p, *widths)
+        for name, deviations, allowance in zip(("q", "p"), distances, allowances, strict=True):
             ratio = deviations / allowance
             k, i = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
             worst.append((float(ratio[k, i]), float(deviations[k, i]), name, float(times[k + 1]), int(i)))
     excess, size, name, t, agent = max(worst)
-    window_end, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
+    worst_text, accuracy = f"{name} of agent {rec.ids[agent]} at t = {t:.6g}", rec.accuracy
     reach = " and ".join(f"{max(item[1] for item in worst if item[2] == kind):.3g} in {kind}" for kind in "qp")
     status: Literal["met", "unmet", "assumed"] = "met" if accuracy.decides else "assumed"
     if not is_known:
-        excess, text = 1.0, f"off by {reach} (worst: {window_end}); no accuracy is stated"
+        excess, text = 1.0, f"off by {reach} (worst: {worst_text}); no accuracy is stated"
     elif excess > 1.0:
-        status, text = "unmet", f"{window_end} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
+        status, text = "unmet", f"{worst_text} is off by {size:.3g} where {size / excess:.3g} is allowed, {accuracy}"
     else:
-        text = f"within {reach} from sample to sample (worst: {window_end}), {accuracy}"
+        text = f"within {reach} from sample to sample (worst: {worst_text}), {accuracy}"
     return Following(status, 1.0 - excess, text, rec.q[0], rec.p[0], rec.p, speed)
 
 

@@ -40,11 +40,11 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", law.title, "the law as a whole", 1.0, _acts(law)),)
-    parts, gained_law = [], replace(law, **_other_terms(law))
+    parts, gains_law = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
         (symbol, text), gain = SYMBOLS[name], getattr(gains, name)
         is_tuple = isinstance(gain, tuple)
-        gain_action = _acts(replace(gained_law, gains=_single_gain(name, gain if is_tuple else 1.0)))
+        gain_action = _acts(replace(gains_law, gains=_single_gain(name, gain if is_tuple else 1.0)))
         label, stated_value = (f"{symbol} of each agent, times", 1.0) if is_tuple else (symbol, float(gain))
         parts.append(Contribution(name, label, text, stated_value, gain_action))
     return tuple(parts)
@@ -59,7 +59,7 @@ def remainder(law: Any) -> Part | None:
 
 def _other_terms(law: Any) -> dict[str, Any]:
     """Return the field values that switch off the parts of a law without a gain."""
-    return {name: missing_term for name, missing_term in _NO_OTHERS.items() if getattr(law, name, missing_term)}
+    return {name: off_value for name, off_value in _NO_OTHERS.items() if getattr(law, name, off_value)}
 
 
 def _used_gains(law: Any) -> list[str]:

@@ -24,7 +24,7 @@ class FreeParameters:
     def of(cls, law: Any, names: Sequence[str] | None) -> Self:
         """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
-            names = [segment.name for segment in contributions(law) if segment.name in SYMBOLS]
+            names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:
                 listing = ", ".join(_names(law)) or "it has none"
                 raise ArgumentError(f"free = None: {law.title} has no gains; name parameters: {listing}")

@@ -36,8 +36,8 @@ def profile_interval(problem: Problem, best: MatchResult, k: int, level: float, 
 
 
 def _end(problem: Problem, best: MatchResult, k: int, side: float, level: float, unit: float, error: float) -> float:
-    value, is_positive_measure = float(best.values[k]), problem.first[k] > 0.0
-    floor = 1e-6 * problem.first[k] if is_positive_measure else -inf
+    value, is_positive = float(best.values[k]), problem.first[k] > 0.0
+    floor = 1e-6 * problem.first[k] if is_positive else -inf
     farthest = _FARTHEST * max(abs(value), error)
     inside, outside, off, last = 0.0, inf, level * error, _Trial(0.0, best.values, best.starts)
     for number in range(_TRIALS):

@@ -91,8 +91,8 @@ def _propagator(
     size = q.size
     by_q, by_p = _derivatives(law, t, q, p)
     forced = np.zeros((size, 2 * size + len(nearby)))
-    for k, (raised_values, less, nudge_size) in enumerate(nearby):
-        forced[:, 2 * size + k] = (raised_values.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / nudge_size
+    for k, (raised_law, less, value_step) in enumerate(nearby):
+        forced[:, 2 * size + k] = (raised_law.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / value_step
 
     def rate(x: FloatArray) -> FloatArray:
         return np.concatenate([x[size:], by_q @ x[:size] + by_p @ x[size:]])

@@ -77,10 +77,10 @@ def kinematic_scheme(rec: Recording) -> str | None:
     h, p = rec.interval, rec.p
     steps = np.diff(rec.q, axis=0)
     forms = {"explicit Euler": p[:-1], "semi-implicit Euler": p[1:], "Taylor steps": 0.5 * (p[:-1] + p[1:])}
-    magnitude = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(steps).max())
-    turn_size = float(np.abs(np.diff(p, axis=0)).max()) * h
+    tolerance = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(steps).max())
+    turned = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():
-        if turn_size > 100.0 * magnitude and float(np.abs(steps - h * mean).max()) <= magnitude:
+        if turned > 100.0 * tolerance and float(np.abs(steps - h * mean).max()) <= tolerance:
             return name
     return None
 

@@ -78,14 +78,14 @@ def _ensure_short(
     is_dense = h[:, 0] <= 1.5 * median_step
     fastest = rate[is_dense].max(axis=0, initial=0.0)
     rate_changes = [np.abs(rate[b] - rate[a]) for a, b in pairwise(np.flatnonzero(is_dense).tolist()) if b == a + 1]
-    turned_change = np.max(rate_changes, axis=0, initial=0.0) if rate_changes else np.zeros(rec.m)
-    reach = np.maximum((fastest + turned_change) * h, np.abs(short))
+    rate_change = np.max(rate_changes, axis=0, initial=0.0) if rate_changes else np.zeros(rec.m)
+    reach = np.maximum((fastest + rate_change) * h, np.abs(short))
     if (is_invalid := reach >= _HALF * size).any():
         k, axis = (int(x) for x in np.argwhere(is_invalid)[0])
         rows = np.flatnonzero(rec.present[:, i])
-        side_state = " beyond its velocity" if rec.p is not None else ""
+        note = " beyond its velocity" if rec.p is not None else ""
         raise ArgumentError(
-            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{side_state} from t = {rec.t[rows[k]]:g} to "
+            f"agent {rec.ids[i]} may move by {reach[k, axis]:.3g}{note} from t = {rec.t[rows[k]]:g} to "
             f"{rec.t[rows[k + 1]]:g} along {'xyz'[axis]}, half of the period {size[axis]:g} or more: "
             "expected shorter steps; sample more often, give velocities, or leave the agent out"
         )

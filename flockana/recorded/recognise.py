@@ -31,8 +31,8 @@ class Recognition(ShortRepr):
     @property
     def best(self) -> Comparison | None:
         """Comparison with the best-fitting law; None without one."""
-        first_law = self.ranked[0][1] if self.ranked else None
-        return first_law if first_law is not None and first_law.explained_refitted >= _FITS else None
+        first_fit = self.ranked[0][1] if self.ranked else None
+        return first_fit if first_fit is not None and first_fit.explained_refitted >= _FITS else None
 
     def __str__(self) -> str:
         lines = [

@@ -34,14 +34,14 @@ def measured(rec: Samples, d: float, r: float) -> "xarray.Dataset":
     values, errors = ({name: np.full(len(rec.t), np.nan) for name in used_measures} for _ in range(2))
     widths = [np.broadcast_to(x, shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
     moving = rec.present & ~np.isnan(p[:, :, 0])
-    for is_of_velocities, present_samples in ((False, rec.present), (True, moving)):
-        for agents, samples in _alike(present_samples):
+    for is_of_velocities, is_present in ((False, rec.present), (True, moving)):
+        for agents, samples in _alike(is_present):
             at = np.ix_(samples, agents)
-            flock, deviation = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
+            flock, half_widths = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
             for name, it in used_measures.items():
                 if (name in _OF_VELOCITIES) == is_of_velocities:
                     values[name][samples] = series = it.over_time(flock)  # type: ignore[misc]
-                    errors[name][samples] = _error(name, flock, series, *deviation)
+                    errors[name][samples] = _error(name, flock, series, *half_widths)
     data: dict[str, Any] = {"agents": ("time", rec.present.sum(axis=1), {"long_name": "agents seen"})}
     for name, it in used_measures.items():
         data[name] = ("time", values[name], {"long_name": it.text, "units": it.unit})
@@ -65,8 +65,8 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
         return np.multiply(2.0, off_p if name == "velocity_diameter" else off_q)
     if name in ("inertia", "normalised_velocity_mismatch"):  # half a square of a norm, which moves by √n off, over n
         spread_error, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
-        noise_shape = np.sqrt(2.0 * values * share)
-        return (0.5 * (noise_shape + np.sqrt(n) * spread_error) ** 2) / share - values
+        norm = np.sqrt(2.0 * values * share)
+        return (0.5 * (norm + np.sqrt(n) * spread_error) ** 2) / share - values
     if name in ("order", "coordination"):
         speed = lengths(flock.p)
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -132,8 +132,8 @@ class Recording(ResultCache):
         gaps = f", {self.gaps} gaps" if self.gaps else ""
         start, end = (f"{x:.{_digits(self.t)}g}" for x in (self.t[0], self.t[-1]))
         text = f"Recording of {self.n} agents, m = {self.m}, {len(self.t)} samples, t = {start} to {end}{gaps}"
-        reading_remarks = f"; read as {'; '.join(self.read_as)}" if self.read_as else ""
-        return f"<{text}, {self.accuracy}{reading_remarks}>"
+        reading_text = f"; read as {'; '.join(self.read_as)}" if self.read_as else ""
+        return f"<{text}, {self.accuracy}{reading_text}>"
 
     @property
     def n(self) -> int:

@@ -112,7 +112,7 @@ def read_recording(
             "dataset, or arrays by name"
         )
     for name, value, text in (("axes", axes, "arrays"), ("clock", clock, "times that are dates")):
-        if value is not None and not any(read_a.startswith(("axes in", "dates count")) for read_a in rec.read_as):
+        if value is not None and not any(note.startswith(("axes in", "dates count")) for note in rec.read_as):
             raise ArgumentError(f"{name} = {value!r} is for {text}, and there are none: expected no {name}=")
     rec = rec if box is None else unwrapped(rec, box)
     if interpolate is not None and interpolate is not False:
@@ -138,8 +138,8 @@ class _How(NamedTuple):
 def _of_arrays(arrays: Mapping[str, Any], where: str, how: _How) -> dict[str, Any]:
     if how.columns is not None and not isinstance(how.columns, Mapping):
         raise ArgumentError(f'columns = {how.columns!r}: {where} has arrays by name: expected {{"t": ..., "q": ...}}')
-    stated_value = {key: value for key, value in how._asdict().items() if key not in ("missing", "wrapped")}
-    named = named_arrays(arrays, where, **stated_value)
+    options = {key: value for key, value in how._asdict().items() if key not in ("missing", "wrapped")}
+    named = named_arrays(arrays, where, **options)
     ids = arrays.get("ids") if isinstance(arrays.get("ids"), tuple) else None
     return named if ids is None else named | {"ids": ids}
 
@@ -159,12 +159,12 @@ def _of_file(path: Path, how: _How, accuracy: Mapping[str, Any]) -> Recording:
     if not path.exists():
         raise FileError(f"no file {path}: expected CSV, TSV, npz, mat, netCDF or a dump of LAMMPS")
     try:
-        stated_value = {name: value for name, value in accuracy.items() if value is not None}
+        stated_values = {name: value for name, value in accuracy.items() if value is not None}
         contents = _contents(path, how)
         if how.missing is not None or "estimated" not in contents:  # Recording.save has written NaN
             contents = without_missing(contents, how.missing, str(path))
-        arrays = {name: value for name, value in contents.items() if not stated_value or name not in _ACCURACY}
-        return Recording(**({"source": path.name} | arrays | stated_value))
+        arrays = {name: value for name, value in contents.items() if not stated_values or name not in _ACCURACY}
+        return Recording(**({"source": path.name} | arrays | stated_values))
     except FileError:
         raise
     except ArgumentError as error:
@@ -195,8 +195,8 @@ def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:
     """Return names, source and accuracy from the file written by `Recording.save` beside the samples."""
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}
-    stated_value = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
-    return stated_value | {"ids": arrays["ids"].tolist(), "source": str(arrays["source"])}
+    stated_values = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
+    return stated_values | {"ids": arrays["ids"].tolist(), "source": str(arrays["source"])}
 
 
 def _starts_with_item(path: Path) -> bool:

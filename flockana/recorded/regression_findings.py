@@ -88,16 +88,16 @@ def explained(data: Accelerations, law: Any) -> Explained:
     from scipy.stats import t as student
 
     regression, parts = Regression(data, law), contributions(law)
-    columns = [data.of(segment.acts) for segment in parts]
-    residual = regression.target - sum(segment.stated * column for segment, column in zip(parts, columns, strict=True))
+    columns = [data.of(part.acts) for part in parts]
+    residual = regression.target - sum(part.stated * column for part, column in zip(parts, columns, strict=True))
     left, total = regression.squares(residual), regression.total
     texts: list[str] = []
     if total and left > _EXACT * total:
-        columns, texts = _with_better_forms(regression, law, [segment.name for segment in parts], columns)
+        columns, texts = _with_better_forms(regression, law, [part.name for part in parts], columns)
     solution = regression.solve(columns)
     shares = tuple(
-        Share(segment.symbol, segment.text, segment.stated, float(c), float(e), regression.share(c * column))
-        for segment, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
+        Share(part.symbol, part.text, part.stated, float(c), float(e), regression.share(c * column))
+        for part, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
     )
     if left > _EXACT * total and solution.left < 0.5 * total:
         chance_limit = float(student.isf(_CHANCE, solution.freedom))

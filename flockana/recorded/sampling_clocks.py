@@ -19,14 +19,14 @@ def ensure_one_clock(rec: Recording) -> None:
     """Raise if two agents are seen over the same period but hardly ever at one instant."""
     present_agents = np.sort(np.argsort(-rec.present.sum(axis=0), kind="stable")[:_MOST])
     presence: FloatArray = rec.present[:, present_agents].astype(np.float64)
-    is_present = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
-    common_samples, shared = presence.T @ is_present, presence.T @ presence
-    fewer_samples = np.minimum(common_samples, common_samples.T)
+    in_span = np.maximum.accumulate(presence, axis=0) * np.maximum.accumulate(presence[::-1], axis=0)[::-1]
+    overlap_counts, shared = presence.T @ in_span, presence.T @ presence
+    fewer_samples = np.minimum(overlap_counts, overlap_counts.T)
     is_disjoint = (fewer_samples >= _ENOUGH) & (shared < _SHARED * fewer_samples)
     if is_disjoint.any():
         i, j = (int(x) for x in np.argwhere(is_disjoint)[0])
         first_id, second_id = (rec.ids[present_agents[k]] for k in (i, j))
-        counts = f"{common_samples[i, j]:.0f} and {common_samples[j, i]:.0f}"
+        counts = f"{overlap_counts[i, j]:.0f} and {overlap_counts[j, i]:.0f}"
         raise ArgumentError(
             f"agents {first_id} and {second_id} are sampled at other times: of {counts} samples while both are seen, "
             f"{shared[i, j]:.0f} are at one instant; expected common instants: give jitter=, within which stamps are "

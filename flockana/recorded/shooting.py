@@ -131,10 +131,10 @@ class NormalEquations:
         for slope in slopes:
             gram_matrix = slope.T @ slope
             gram_matrix[np.diag_indices_from(gram_matrix)] *= 1.0 + damping
-            dimension = len(gram_matrix) - count
-            corners.append(inverse(gram_matrix[:dimension, :dimension]))
-            cross_blocks.append(gram_matrix[:dimension, dimension:])
-            reduced_matrix += gram_matrix[dimension:, dimension:] - cross_blocks[-1].T @ corners[-1] @ cross_blocks[-1]
+            size = len(gram_matrix) - count
+            corners.append(inverse(gram_matrix[:size, :size]))
+            cross_blocks.append(gram_matrix[:size, size:])
+            reduced_matrix += gram_matrix[size:, size:] - cross_blocks[-1].T @ corners[-1] @ cross_blocks[-1]
         return cls(slopes, corners, cross_blocks, reduced_matrix, damping)
 
     @property
@@ -150,16 +150,16 @@ class NormalEquations:
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
         """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
         count, starts, gain_sum = len(self.reduced), [], 0.0
-        gradients = [slope.T @ deviation for slope, deviation in zip(self.slopes, residuals, strict=True)]
+        gradients = [slope.T @ residual for slope, residual in zip(self.slopes, residuals, strict=True)]
         parts = [(x[: x.size - count], x[x.size - count :]) for x in gradients]
         blocks = list(zip(parts, self.corners, self.across, strict=True))
-        start_step = self.covariance @ sum(
+        theta_step = self.covariance @ sum(
             (own_block - across.T @ (corner @ start) for (start, own_block), corner, across in blocks), np.zeros(count)
         )
         for (start, own_block), corner, across in blocks:
-            starts.append(corner @ (start - across @ start_step))
-            gain_sum += float(start @ starts[-1]) + float(own_block @ start_step)
-        return start_step, starts, gain_sum
+            starts.append(corner @ (start - across @ theta_step))
+            gain_sum += float(start @ starts[-1]) + float(own_block @ theta_step)
+        return theta_step, starts, gain_sum
 
 
 def inverse(matrix: FloatArray) -> FloatArray:
@@ -190,18 +190,18 @@ def matched(
     starts = _with_prior(problem, [segment.start for segment in problem.parts] if starts is None else list(starts))
     if finer is None:
         finer = _refinement(problem.parts, problem.with_values(problem.split(theta)[0]))
-    start_time, slow_steps, message = 0.0, 0, ""
+    total_gain, slow_steps, message = 0.0, 0, ""
     now = problem.residuals(theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    dimension = problem.size
+    size = problem.size
     for _ in range(rounds):
         if normal is None:
-            start_time, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)
+            total_gain, normal = 0.0, _normal(problem, theta, starts, finer, block, damping=damping)
         step, start_steps, expected_gain = normal.step(now)
-        unit = max(_squares(now) / dimension, 1.0)  # residuals of a law that does not fit are larger than noise
+        unit = max(_squares(now) / size, 1.0)  # residuals of a law that does not fit are larger than noise
         if expected_gain <= (_GAIN if block == _FINE else _CLOSE) * unit:
-            if block == _FINE and start_time <= _NEAR * unit and normal.damping == 0.0:
+            if block == _FINE and total_gain <= _NEAR * unit and normal.damping == 0.0:
                 message = "settled"
                 break
             block, damping, normal = _FINE, 0.0, None
@@ -210,25 +210,25 @@ def matched(
         tried_theta = theta + step_share * step
         tried_starts = [x + step_share * start_step for x, start_step in zip(starts, start_steps, strict=True)]
         tried_residuals = problem.residuals(tried_theta, tried_starts, finer)
-        gain_sum = 0.0 if tried_residuals is None else _squares(now) - _squares(tried_residuals)
-        if tried_residuals is not None and gain_sum > 0.0:
-            theta, starts, now, start_time = tried_theta, tried_starts, tried_residuals, start_time + gain_sum
+        gained = 0.0 if tried_residuals is None else _squares(now) - _squares(tried_residuals)
+        if tried_residuals is not None and gained > 0.0:
+            theta, starts, now, total_gain = tried_theta, tried_starts, tried_residuals, total_gain + gained
             damping = 0.1 * damping if damping > 1e-4 else 0.0
-            slow_steps = slow_steps + 1 if gain_sum < _GAIN * unit else 0
+            slow_steps = slow_steps + 1 if gained < _GAIN * unit else 0
             if slow_steps == _SLOW:
                 message = "settled"
                 break
-        elif start_time == 0.0:
+        elif total_gain == 0.0:
             damping = max(10.0 * damping, 1e-2)
             if damping > _DAMPED:
                 message = "no smaller residual was found nearby"
                 break
-        if not start_time or normal.damping or abs(gain_sum - expected_gain) > _TRUSTED * expected_gain:
+        if not total_gain or normal.damping or abs(gained - expected_gain) > _TRUSTED * expected_gain:
             normal = None
     if message != "settled" or normal is None or slow_steps == _SLOW:
         message = message or f"no end after {rounds} rounds"
         normal = _normal(problem, theta, starts, finer, _FINE)
-    degrees_of_freedom = max(dimension - sum(x.size for x in starts) - len(problem.first), 1)
+    degrees_of_freedom = max(size - sum(x.size for x in starts) - len(problem.first), 1)
     identifiable = np.diag(normal.reduced) * theta**2 > _FELT
     return MatchResult(theta, normal.covariance, identifiable, starts, now, degrees_of_freedom, message, normal, finer)
 

@@ -81,9 +81,9 @@ def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
 
 def _steepest(x: FloatArray, pieces: _Pieces) -> float:
     """Return the logarithm of third differences, an upper bound of the jerk with noise."""
-    third_value = _differences(x, pieces, 3)
-    dimension = float(np.sqrt(np.mean(third_value**2))) if third_value.size else 1.0
-    return float(np.log(max(dimension, 1e-14))) + 2.0
+    differences = _differences(x, pieces, 3)
+    rms_value = float(np.sqrt(np.mean(differences**2))) if differences.size else 1.0
+    return float(np.log(max(rms_value, 1e-14))) + 2.0
 
 
 def _local_jerk(
@@ -106,9 +106,9 @@ def _local_jerk(
         )
         np.add.at(whole[g], (piece, np.arange(series // groups)), variances)
         for by in range(-_WINDOW, _WINDOW + 1):
-            here, right_slice = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
+            here, far_slice = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
             weight = 1.0 - abs(by) / (_WINDOW + 1.0)
-            local[g, here] += weight * np.where(piece[here] == piece[right_slice], variances[right_slice], 0.0)
+            local[g, here] += weight * np.where(piece[here] == piece[far_slice], variances[far_slice], 0.0)
     is_likely = local[:-1] >= local[:-1].max(axis=0) - _DROP
     largest = tried[np.argmax(is_likely, axis=0)]
     gain = whole.max(axis=0) - whole[-1] if np.isinf(tried[-1]) else np.full(whole.shape[1:], np.inf)

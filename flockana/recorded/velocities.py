@@ -169,25 +169,25 @@ def _bridge(
     ``most`` at most is off by ``most`` times the integral of the absolute value of Peano's kernel; errors of ends add.
     """
     ones, zeros = np.ones(len(s)), np.zeros((2, len(s)))
-    rise, fall_weights = s**2 * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / duration
+    rise, rise_slope = s**2 * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / duration
     forms = [
         [(np.stack([1.0 - s, s]), zeros), (np.stack([-ones, ones]) / duration, zeros)],
         [
             (np.stack([1.0 - rise, rise]), duration * np.stack([s * (1.0 - s) ** 2, -(s**2) * (1.0 - s)])),
-            (np.stack([-fall_weights, fall_weights]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
+            (np.stack([-rise_slope, rise_slope]), np.stack([1.0 - 4.0 * s + 3.0 * s**2, 3.0 * s**2 - 2.0 * s])),
         ],
     ]
     is_told = bool(np.isfinite(ends.off_p).all() and np.isfinite(ends.p).all())
-    p, velocity_offset = (ends.p, ends.off_p) if is_told else (np.zeros(ends.p.shape), np.zeros(2))
+    p, velocity_error = (ends.p, ends.off_p) if is_told else (np.zeros(ends.p.shape), np.zeros(2))
     pieces = []
     for order in (0, 1):
         best_values, error = np.zeros((len(s), ends.q.shape[1])), np.full(len(s), np.inf)
         for form in forms[: 1 + is_told]:
             by_q, by_p = form[order]
-            deviation = most * _kernel(s, duration, by_q[1], by_p[1], order)
-            deviation = deviation + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ velocity_offset
-            best_values = np.where((deviation < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best_values)
-            error = np.minimum(deviation, error)
+            bound = most * _kernel(s, duration, by_q[1], by_p[1], order)
+            bound = bound + np.abs(by_q).T @ ends.off_q + np.abs(by_p).T @ velocity_error
+            best_values = np.where((bound < error)[:, None], by_q.T @ ends.q + by_p.T @ p, best_values)
+            error = np.minimum(bound, error)
         pieces += [best_values, error]
     return pieces[0], pieces[1], pieces[2], pieces[3]
 
@@ -196,8 +196,8 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
     """Return the integral of |Peano kernel| of an interpolation, or of its slope, at shares s of a gap."""
 
     def kernel(x: FloatArray | float) -> tuple[Any, Any]:
-        end_part = -by_q * (1.0 - x) * duration - by_p
-        return end_part + ((s - x) * duration if order == 0 else 1.0), end_part
+        after = -by_q * (1.0 - x) * duration - by_p
+        return after + ((s - x) * duration if order == 0 else 1.0), after
 
     def area(a: FloatArray, b: FloatArray, width: FloatArray) -> FloatArray:  # of |a line| from a to b
         total = np.abs(a) + np.abs(b)
@@ -205,8 +205,8 @@ def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, 
         result: FloatArray = 0.5 * width * np.where(a * b < 0.0, crossing, total)
         return result
 
-    kernel_value = kernel(s)
-    return duration * (area(kernel(0.0)[0], kernel_value[0], s) + area(kernel_value[1], kernel(1.0)[1], 1.0 - s))
+    at_s = kernel(s)
+    return duration * (area(kernel(0.0)[0], at_s[0], s) + area(at_s[1], kernel(1.0)[1], 1.0 - s))
 
 
 def _gaps(rec: Samples) -> Iterator[tuple[int, slice, float]]:

@@ -86,9 +86,9 @@ def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
     if samples <= 2 * _SPANS:
         return np.arange(samples)
     edges = np.linspace(0, samples, _SPANS + 1).astype(int)
-    corners, value_list = {0, samples - 1}, np.nan_to_num(values)
+    corners, finite_values = {0, samples - 1}, np.nan_to_num(values)
     for first_index, chunk_stop in pairwise(edges.tolist()):
-        chunk_values = value_list[first_index:chunk_stop]
+        chunk_values = finite_values[first_index:chunk_stop]
         corners |= {int(first_index + chunk_values.argmin()), int(first_index + chunk_values.argmax())}
     return np.array(sorted(corners))
 

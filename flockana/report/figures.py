@@ -53,10 +53,10 @@ _WORDS = "Links shorter than desired by more than a tenth are blue, longer ones 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the flock at its start, middle and end; its measures; energy, distances, speeds and control effort."""
     run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
-    is_blocked = bool((run.law.continuous or run.law).obstacles)
-    caption = "middle (of a flock that splits: where it is most split)" if is_blocked else "middle"
+    has_obstacles = bool((run.law.continuous or run.law).obstacles)
+    middle_text = "middle (of a flock that splits: where it is most split)" if has_obstacles else "middle"
     pictures_made = [
-        Picture(f"Start, {caption} and end. {_WORDS}", stills(run, times)),
+        Picture(f"Start, {middle_text} and end. {_WORDS}", stills(run, times)),
         Picture(
             "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
             "when every link has length d; K̃ is zero when all velocities agree.",
@@ -69,7 +69,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             panels([*_energy(run), _distances(run), speeds(run), effort(run)]),
         ),
     ]
-    if is_blocked:
+    if has_obstacles:
         words = (
             "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
             "where the flock splits."
@@ -80,8 +80,8 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 def measured(run: Trajectory, name: str) -> Chart:
     """Return the chart of one metric of a run."""
-    measurement = run.measure(name)
-    return Chart(measurement.label, run.t, (Curve(run.metric(name)),), bool(measurement.logarithmic))
+    measure = run.measure(name)
+    return Chart(measure.label, run.t, (Curve(run.metric(name)),), bool(measure.logarithmic))
 
 
 def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:

@@ -65,8 +65,8 @@ def _project(points: FloatArray) -> FloatArray:
         return np.column_stack([points, np.zeros(len(points))])
     if points.shape[1] == 3:
         x, y, z = points.T
-        view_axis, deep = np.cos(_TURN) * x - np.sin(_TURN) * y, np.sin(_TURN) * x + np.cos(_TURN) * y
-        return np.column_stack([view_axis, np.sin(_TILT) * deep + np.cos(_TILT) * z])
+        horizontal, deep = np.cos(_TURN) * x - np.sin(_TURN) * y, np.sin(_TURN) * x + np.cos(_TURN) * y
+        return np.column_stack([horizontal, np.sin(_TILT) * deep + np.cos(_TILT) * z])
     return points
 
 
@@ -89,9 +89,9 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
         return ""
     if not 0 < len(pairs) <= _MOST:
         return ""
-    line_ends, text = put(_project(q)), ""
+    points, text = put(_project(q)), ""
     for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
-        a, b = (line_ends[pairs[kinds == kind, c]] for c in (0, 1))
+        a, b = (points[pairs[kinds == kind, c]] for c in (0, 1))
         path = "".join(f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for x, y, u, v in np.hstack([a, b]).tolist())
         text += f'<path class="link {name}" d="{path}"/>' if path else ""
     return text

@@ -44,18 +44,18 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
     verdicts = [(name, verdict) for name, verdict in verdicts if verdict.theorem in _TOPICS]
     if not verdicts:
         return None
-    end_verdicts = (end for name, v in verdicts if v.theorem == "os-5-terminal" for end in _end(name, v))
+    end_states = (end for name, v in verdicts if v.theorem == "os-5-terminal" for end in _end(name, v))
     spirals = tuple((n, int((pdist(hexagonal_spiral(n, 7.0)) < 8.4).sum()), harborth(n)) for n in _SIZES)
     all_verdicts = [verdict for _, verdict in verdicts]
-    return LatticeSection(tuple(end_verdicts), spirals, (*_collapse(all_verdicts), *_barrier(all_verdicts)))
+    return LatticeSection(tuple(end_states), spirals, (*_collapse(all_verdicts), *_barrier(all_verdicts)))
 
 
 def _end(name: str, verdict: Verdict) -> Iterator[EndState]:
     claims = {claim.name: claim for claim in verdict.claims}
     for kind in (h.detail for h in verdict.hypotheses if h.name == "q is an α-lattice"):
         if "ii-sharp" in claims:
-            printed_value, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
-            yield EndState(name, kind, str(count), str(printed_value.computed), printed_value.status, extension.status)
+            printed_claim, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
+            yield EndState(name, kind, str(count), str(printed_claim.computed), printed_claim.status, extension.status)
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:

@@ -85,9 +85,9 @@ def own_pages(
 ) -> list[ScenarioPage]:
     """Return the page of a flock, scenario, run or recording, or the pages of verdicts by subject."""
     verdicts: tuple[Verdict, ...] = (subject,) if isinstance(subject, Verdict) else subject
-    if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(theorem, Verdict) for theorem in verdicts):
+    if isinstance(verdicts, (list, tuple)) and verdicts and all(isinstance(value, Verdict) for value in verdicts):
         _ensure_unused("verdicts have", law=law, theorems=theorems)
-        return [verdicts_page(name, theorem) for name, theorem in _by_subject(verdicts).items()]
+        return [verdicts_page(name, value) for name, value in _by_subject(verdicts).items()]
     theorems = _ensure_theorems(theorems)
     if isinstance(subject, Recording):
         if law is None:
@@ -111,7 +111,7 @@ def own_pages(
         )
     catalogued = isinstance(subject, Scenario) and not theorems
     verdicts = item.verify(run) if catalogued else _judge(item.name, evidence, law, theorems)
-    own_theorems = {theorem.id: theorem for theorem in theorems if isinstance(theorem, Theorem)}
+    own_theorems = {value.id: value for value in theorems if isinstance(value, Theorem)}
     return [scenario_page(item, run, verdicts, figures=figures, own=own_theorems)]
 
 

@@ -152,13 +152,13 @@ def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """Return the player's data of a run, with marked instants of source and claims."""
-    marks, title, player_html = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
+    marks, title, played_run = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
     if 1 < len(run.t) < _FEW_SAMPLES and not run.law.is_map:
         from flockana.plots.animation import equal_times
 
-        player_html = equal_times(run, _ENOUGH)  # cubics that match places and velocities
+        played_run = equal_times(run, _ENOUGH)  # cubics that match places and velocities
     try:
-        return text_of(scene(player_html, values=_VALUES, exact=False, title=title, marks=marks))
+        return text_of(scene(played_run, values=_VALUES, exact=False, title=title, marks=marks))
     except ArgumentError:  # places or velocities are so large that the player's numbers have no room for them
         return ""
 

@@ -78,8 +78,8 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
     for name in MEASURES:
         values, errors = seen[name].values, seen[f"{name}_error"].values
         texts = [f" ± {error:.2g}" if np.isfinite(error) else "" for error in errors]
-        first_index, last_text = (f"{values[k]:.4g}{texts[k]}" for k in (0, -1))
-        rows.append((str(seen[name].attrs["long_name"]), first_index, last_text))
+        first_text, last_text = (f"{values[k]:.4g}{texts[k]}" for k in (0, -1))
+        rows.append((str(seen[name].attrs["long_name"]), first_text, last_text))
     return rows
 
 

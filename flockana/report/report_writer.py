@@ -157,14 +157,14 @@ def page_environment() -> Environment:
 def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
     entries = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in entries)
-    verdicts, run_text = [finding.verdict for _, finding, _ in entries], run["of"] is None
+    verdicts, is_full = [finding.verdict for _, finding, _ in entries], run["of"] is None
     return (
         page_environment()
         .get_template("report/template.html.j2")
         .render(
             run=run,
             opening=opening_sentence([finding for _, finding, _ in entries]),
-            folded=run_text,
+            folded=is_full,
             telling=most_telling(pages),
             scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
             fixed=[page for page in pages if isinstance(page, FixedPage)],
@@ -174,8 +174,8 @@ def _html(pages: Sequence[Page], run: dict[str, Any], flocks: LinearisedFlocks, 
             sorts=SORTS,
             foreword=FOREWORD,
             checked={finding.verdict.theorem: anchor for _, finding, anchor in reversed(entries)},  # where it is first
-            coverage={"sources": coverage(), "anchors": anchors(pages)} if run_text else None,
-            front=front_findings(pages) if run_text else (),
+            coverage={"sources": coverage(), "anchors": anchors(pages)} if is_full else None,
+            front=front_findings(pages) if is_full else (),
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_unexpected(pages),
             sources=sorted({source_name(f.references[0]) for _, f, _ in entries if f.references}),

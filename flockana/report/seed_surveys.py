@@ -49,9 +49,9 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     else:
         counts = {name: count}
     return tuple(
-        Survey(subject, tuple(range(start_index, min(start_index + _AT_ONCE, seed + most))))
+        Survey(subject, tuple(range(first_seed, min(first_seed + _AT_ONCE, seed + most))))
         for subject, most in counts.items()
-        for start_index in range(seed, seed + most, _AT_ONCE)
+        for first_seed in range(seed, seed + most, _AT_ONCE)
     )
 
 

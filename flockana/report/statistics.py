@@ -127,10 +127,10 @@ def section_of(dataset: Any) -> StatisticsSection:
         statuses = {
             label: Counter({of: int(counts[of].sel(claim=label)) for of in STATUSES}) for label in runs.claim.values
         }
-        rows = tuple(_row(label, statuse, _LEVEL) for label, statuse in statuses.items() if statuse.total())
+        rows = tuple(_row(label, counter, _LEVEL) for label, counter in statuses.items() if counter.total())
         seconds = float(runs.seconds.mean()) if "seconds" in runs else 0.0
-        agent_counts = runs.run.size, int(counts.incomplete), seconds, rows
-        entries.append(ScenarioShares(name, "Runs of an ensemble", "", _in_words(point), *agent_counts))
+        run_facts = runs.run.size, int(counts.incomplete), seconds, rows
+        entries.append(ScenarioShares(name, "Runs of an ensemble", "", _in_words(point), *run_facts))
     return StatisticsSection(_LEVEL, tuple(entries), _picture(entries) if len(entries) <= _DRAWN else None)
 
 

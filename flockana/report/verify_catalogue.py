@@ -99,13 +99,13 @@ def check_all(
     # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     if not tasks:
         return
-    lost_claims: list[str] = []
+    lost_tasks: list[str] = []
     with worker_pool(jobs=min(jobs, len(tasks))) as workers:
         for batch in map_in_batches(_execution_order(tasks), _check_batch, workers, watch=watch):
             yield from (result for _, result in batch if result is not None)
-            lost_claims += [task.name for task, result in batch if result is None]
-    if lost_claims:
-        raise SolverError(f"{', '.join(lost_claims)}: the worker process ended; if memory is short, try --jobs 1")
+            lost_tasks += [task.name for task, result in batch if result is None]
+    if lost_tasks:
+        raise SolverError(f"{', '.join(lost_tasks)}: the worker process ended; if memory is short, try --jobs 1")
 
 
 def _execution_order(tasks: Sequence[Work]) -> list[Work]:

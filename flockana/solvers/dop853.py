@@ -94,15 +94,15 @@ class DOP853(AdaptivePair):
         """Return the tableau, with the published interpolant converted to powers of θ."""
         count = len(C)
         a, estimates = _dense_rows(A, count), _dense_rows((E5, E3), STAGES + 1)
-        whole, first_index, last_rows = a[STAGES], np.eye(count)[0], np.eye(count)[STAGES]
-        rows = np.vstack([whole, first_index - whole, 2.0 * whole - (first_index + last_rows), _dense_rows(D, count)])
-        interpolant, stage_nodes = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
+        whole, first_row, last_row = a[STAGES], np.eye(count)[0], np.eye(count)[STAGES]
+        rows = np.vstack([whole, first_row - whole, 2.0 * whole - (first_row + last_row), _dense_rows(D, count)])
+        interpolant, factors = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
         power = np.ones(1)
         for k, row in enumerate(rows):
-            power = np.asarray(polynomial.polymul(power, stage_nodes[k % 2]), dtype=np.float64)
+            power = np.asarray(polynomial.polymul(power, factors[k % 2]), dtype=np.float64)
             interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
-        block_indices, exponent = shared_rows(a, estimates, interpolant), -1.0 / (self.error_order + 1)
-        return Tableau(a, np.array(C), estimates, interpolant, block_indices, STAGES, exponent)
+        storage_rows, exponent = shared_rows(a, estimates, interpolant), -1.0 / (self.error_order + 1)
+        return Tableau(a, np.array(C), estimates, interpolant, storage_rows, STAGES, exponent)
 
 
 def _dense_rows(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:

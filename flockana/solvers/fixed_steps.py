@@ -73,11 +73,11 @@ class FixedStep(_Stepwise):
 
     def __new__(cls, *given: Any, **named: Any) -> Any:
         """Return the solver, or with a law the map of its steps."""
-        law, *residuals = (named.pop("law"), *given) if "law" in named else given or (None,)
+        law, *settings = (named.pop("law"), *given) if "law" in named else given or (None,)
         stepped_law: Any = law
         if not isinstance(law, LawOfMotion):
             return super().__new__(cls)
-        return FixedSteps(stepped_law, cls(*residuals, **named) if residuals or named else cls(0.01))
+        return FixedSteps(stepped_law, cls(*settings, **named) if settings or named else cls(0.01))
 
     @cached_property
     def tableau(self) -> Tableau:
@@ -344,20 +344,20 @@ class FixedSteps(DiscreteLaw):
             stage_position = q + h * _combination(table.a[s], speeds)
             speeds.append(p + h * _combination(table.a[s], inputs) + kick)
             inputs.append(input_of(self.law, now, View(t + table.c[s] * h, stage_position, speeds[-1])))
-        u, next_positions = _combination(table.a[-1], inputs), p + h * _combination(table.a[-1], inputs)
+        u, next_velocities = _combination(table.a[-1], inputs), p + h * _combination(table.a[-1], inputs)
         if factor is None:
             q = q + h * _combination(table.a[-1], speeds)
         else:  # velocities first, where positions follow them
-            q = q + h * next_positions if factor == 1.0 else q + h * p + (factor * h * h) * u
+            q = q + h * next_velocities if factor == 1.0 else q + h * p + (factor * h * h) * u
         if self._first_order:  # the rate of the velocity is in the place that is free
-            return (inputs[-1] - inputs[0]) / h, next_positions, inputs[-1], inputs[-1]
-        return q, next_positions + kick, u, inputs[-1]
+            return (inputs[-1] - inputs[0]) / h, next_velocities, inputs[-1], inputs[-1]
+        return q, next_velocities + kick, u, inputs[-1]
 
 
 def _combination(weights: FloatArray, parts: Sequence[FloatArray]) -> FloatArray:
     """Return Σ weights_j parts_j over the nonzero weights."""
     total: Any = 0.0
-    for weight, component in zip(weights.tolist(), parts, strict=False):
+    for weight, part in zip(weights.tolist(), parts, strict=False):
         if weight:
-            total = total + weight * component
+            total = total + weight * part
     return total

@@ -22,8 +22,8 @@ def solvers() -> dict[str, Callable[..., Solver]]:
     classes = [k for module in modules("flockana.solvers") for k in vars(module).values() if isinstance(k, type)]
     named = {k.__name__: k for k in classes if issubclass(k, Solver) and hasattr(k, "order") and k is not Scipy}
     named["Euler-Maruyama"] = named.pop("EulerMaruyama")
-    scipy_class = {name: partial(Scipy, kind) for kind in KINDS for name in (f"scipy-{kind}", Scipy(kind).name)}
-    return {**named, **scipy_class}
+    scipy_solvers = {name: partial(Scipy, kind) for kind in KINDS for name in (f"scipy-{kind}", Scipy(kind).name)}
+    return {**named, **scipy_solvers}
 
 
 def solver_of(method: Any, dt: float | None) -> Solver:

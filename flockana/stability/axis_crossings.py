@@ -48,7 +48,7 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     crossing = common_diagonals(four)
     if crossing is None:
         return None
-    best_pair = Crossing(inf, nan, inf)
+    best = Crossing(inf, nan, inf)
     for k0, d0, k1, d1 in crossing.values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
             continue
@@ -62,8 +62,8 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
         for omega in frequencies:
             late_coefficient, prompt_coefficient = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
             delay = phase(-late_coefficient * prompt_coefficient.conjugate()) / omega
-            best_pair = min(best_pair, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))
-    return best_pair
+            best = min(best, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))
+    return best
 
 
 def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
@@ -87,15 +87,15 @@ def common_diagonals(four: Four) -> _Diagonals | None:
     """Return the diagonals of four jointly diagonalised or triangularised matrices; None if impossible."""
     from scipy.linalg import schur
 
-    counts, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
-    used_parts = [(x, size) for x, size in zip(four, counts, strict=True) if size > 0.0]
+    magnitudes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
+    used_parts = [(x, size) for x, size in zip(four, magnitudes, strict=True) if size > 0.0]
     symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used_parts)
     mixed_matrix = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used_parts)), np.zeros_like(four[0]))
     if not symmetric and eigen(mixed_matrix)[2].max(initial=0.0) > CLOSE:
         return None
     rotation: Any = np.linalg.eigh(mixed_matrix)[1] if symmetric else schur(mixed_matrix, output="complex")[1]
     values = []
-    for x, size in zip(four, counts, strict=True):
+    for x, size in zip(four, magnitudes, strict=True):
         rotated_matrix = rotation.conj().T @ x @ rotation
         own_rates = np.diag(rotated_matrix)
         deviation = rotated_matrix - np.diag(own_rates) if symmetric else np.tril(rotated_matrix, -1)
@@ -107,10 +107,10 @@ def common_diagonals(four: Four) -> _Diagonals | None:
 
 def _frequencies(total: float, product: float, size: float) -> list[float]:
     """Return the ω > 0 with ω⁴ − total ω² + product = 0; double roots are recognised within rounding."""
-    squared_value = total * total - 4.0 * product
-    if squared_value < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
+    radicand = total * total - 4.0 * product
+    if radicand < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
         return []
-    far_root = 0.5 * (total + (sqrt(max(squared_value, 0.0)) if total >= 0.0 else -sqrt(max(squared_value, 0.0))))
+    far_root = 0.5 * (total + (sqrt(max(radicand, 0.0)) if total >= 0.0 else -sqrt(max(radicand, 0.0))))
     return [sqrt(x) for x in (far_root, product / far_root if far_root else 0.0) if x > 0.0]
 
 
@@ -188,7 +188,7 @@ def least_crossing(
     """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
     # needed. `advance` is called with the share of the frequencies that is done.
-    best_pair, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
+    best_crossing, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
     while todo:
         a, b = todo.pop()
         if b > _WIDE * a > 0.0:
@@ -199,18 +199,18 @@ def least_crossing(
         spectrum_at, left = _spectrum(four, midpoint), left - 1
         crossing_frequencies, delays = spectrum_at.crossings(midpoint)
         delays = np.where((crossing_frequencies >= a) & (crossing_frequencies <= b), delays, inf)
-        if midpoint > 0.0 and delays.min() < best_pair.least:
-            crossing, step_count = _refined(four, midpoint, spectrum_at, int(delays.argmin()), best_pair.delay)
-            best_pair, left = min(best_pair, crossing), left - step_count
-        reach = _crossing_free(spectrum_at, min(b * best_pair.least, 2.0 * pi))
+        if midpoint > 0.0 and delays.min() < best_crossing.least:
+            crossing, step_count = _refined(four, midpoint, spectrum_at, int(delays.argmin()), best_crossing.delay)
+            best_crossing, left = min(best_crossing, crossing), left - step_count
+        reach = _crossing_free(spectrum_at, min(b * best_crossing.least, 2.0 * pi))
         if left <= 0 or midpoint + reach == midpoint:
-            return best_pair._replace(least=0.0)
+            return best_crossing._replace(least=0.0)
         if a < midpoint - reach:
             todo.append((a, midpoint - reach))
         if b > midpoint + reach:
             todo.append((midpoint + reach, b))
         advance(1.0 - sum(top - bottom_end for bottom_end, top in todo) / (high - low))
-    return best_pair
+    return best_crossing
 
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:

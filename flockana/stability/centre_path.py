@@ -114,12 +114,12 @@ def transient(
 def _decayed(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
     """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
     since = since[:, None]
-    decay, squared_value = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
-    root = np.sqrt(complex(squared_value))
+    decay, radicand = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
+    root = np.sqrt(complex(radicand))
     # e^At of the companion matrix: cosh and sinh(√Δ t)/√Δ, real whatever the sign of Δ; decay ≥ Re √Δ, so no overflow
     rise, fast_decay = np.exp((root - decay) * since), np.exp((-root - decay) * since)
     level = 0.5 * (rise + fast_decay).real
-    short = np.abs(squared_value) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
-    series = since * np.exp(-decay * since) * (1.0 + squared_value * since**2 / 6.0)
+    short = np.abs(radicand) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
+    series = since * np.exp(-decay * since) * (1.0 + radicand * since**2 / 6.0)
     slope = np.where(short, series, ((rise - fast_decay) / (2.0 * (root or 1.0))).real)
     return left * level + (velocity + decay * left) * slope

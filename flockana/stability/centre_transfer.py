@@ -64,8 +64,8 @@ class CentreOfMass:
     def discriminant(self) -> float:
         """Discriminant c2γ²/4 − c1γ; 0 within the rounding of critical damping c2γ = 2√c1γ."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
-        squared_value = float(0.25 * c2 * c2 - c1)
-        return 0.0 if abs(squared_value) <= 4.0 * EPS * c1 else squared_value
+        radicand = float(0.25 * c2 * c2 - c1)
+        return 0.0 if abs(radicand) <= 4.0 * EPS * c1 else radicand
 
     @property
     def falling(self) -> float:
@@ -78,8 +78,8 @@ class CentreOfMass:
         """Roots of s² + c2γ s + c1γ, the slower one last, computed without cancellation."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         root = np.sqrt(complex(self.discriminant))
-        far_force = -(0.5 * c2 + root)
-        return np.array([far_force, c1 / far_force if root.real > 0.0 else np.conj(far_force)], dtype=np.complex128)
+        far_pole = -(0.5 * c2 + root)
+        return np.array([far_pole, c1 / far_pole if root.real > 0.0 else np.conj(far_pole)], dtype=np.complex128)
 
     @property
     def period(self) -> float:

@@ -266,11 +266,11 @@ def transient_growth(flock: LinearFlock, *, limit: float = LIMIT) -> TransientGr
     grid = np.linspace(
         log(0.01 / flock.second_order.fastest_rate), log((_SETTLED + 2.0 * len(a)) / flock.decay_rate), _TIMES
     )
-    magnitudes = [size(x) for x in grid.tolist()]
-    best_index = int(np.argmax(magnitudes))
+    norms = [size(x) for x in grid.tolist()]
+    best_index = int(np.argmax(norms))
     bounds = float(grid[max(best_index - 1, 0)]), float(grid[min(best_index + 1, _TIMES - 1)])
     finer = minimize_scalar(lambda x: -size(x), bounds=bounds, method="bounded", options={"xatol": 1e-9})
-    growth, exponent = max((magnitudes[best_index], float(grid[best_index])), (-float(finer.fun), float(finer.x)))
+    growth, exponent = max((norms[best_index], float(grid[best_index])), (-float(finer.fun), float(finer.x)))
     return TransientGrowth(growth, float(np.exp(exponent))) if growth > 1.0 else TransientGrowth(1.0, 0.0)
 
 

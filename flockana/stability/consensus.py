@@ -46,8 +46,8 @@ def _closed_groups(matrix: FloatArray) -> int:
     """Return the strongly connected groups of agents that hear nobody outside."""
     import networkx
 
-    heard_groups = networkx.from_numpy_array(matrix - np.diag(np.diag(matrix)), create_using=networkx.DiGraph)
-    return int(networkx.number_attracting_components(heard_groups))
+    heard_graph = networkx.from_numpy_array(matrix - np.diag(np.diag(matrix)), create_using=networkx.DiGraph)
+    return int(networkx.number_attracting_components(heard_graph))
 
 
 def consensus_root(eigenvalue: float, delay: float) -> complex:

@@ -150,8 +150,8 @@ def scaled_model(flock: LinearFlock) -> ScaledModel:
     kernel = flock.second_order.invariant.kernel
     _, singular_values, rows = np.linalg.svd(d @ kernel, full_matrices=False)
     drift = kernel @ rows[singular_values <= flock.zero * (float(np.abs(d).max()) or 1.0)].T
-    zero_rows, moving = np.vstack([kernel, 0.0 * kernel]), np.vstack([0.0 * drift, drift])
-    return ScaledModel(a, pace, flock.q.shape, np.hstack([zero_rows, moving]))
+    rest_states, moving = np.vstack([kernel, 0.0 * kernel]), np.vstack([0.0 * drift, drift])
+    return ScaledModel(a, pace, flock.q.shape, np.hstack([rest_states, moving]))
 
 
 @check_kinds

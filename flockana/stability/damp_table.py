@@ -17,8 +17,8 @@ class DampTable(pd.DataFrame):  # type: ignore[misc]  # pandas has no types here
     """Table of poles, printed with all its columns."""
 
     def __repr__(self) -> str:
-        row_texts: Any = dict.fromkeys(self.columns, "{:.5g}".format)
-        return self.to_string(formatters=row_texts, max_rows=pd.get_option("display.max_rows"))
+        formats: Any = dict.fromkeys(self.columns, "{:.5g}".format)
+        return self.to_string(formatters=formats, max_rows=pd.get_option("display.max_rows"))
 
 
 def damp_table(poles: Iterable[tuple[str, complex]], *, settled: float = 0.02, dt: float | None = None) -> DampTable:

@@ -92,22 +92,22 @@ def gain_for_damping(
     count = ensure_count("steps", steps)
     crossings, ratios = [], [start.mode.damping_ratio]
     for end in (low, high):
-        gain, crossing = own_gain, start
+        gain, tracked = own_gain, start
         share = np.log(end / own_gain) / np.log(high / low)
         for level in np.geomspace(own_gain, end, 1 + int(np.ceil(count * abs(share))))[1:].tolist():
-            next_modes = _follow(_with(law, name, level), crossing)
-            ratios.append(next_modes.mode.damping_ratio)
-            if (crossing.mode.damping_ratio - wanted_ratio) * (next_modes.mode.damping_ratio - wanted_ratio) <= 0.0:
-                crossings.append((gain, level, crossing))
+            continued = _follow(_with(law, name, level), tracked)
+            ratios.append(continued.mode.damping_ratio)
+            if (tracked.mode.damping_ratio - wanted_ratio) * (continued.mode.damping_ratio - wanted_ratio) <= 0.0:
+                crossings.append((gain, level, tracked))
                 break
-            gain, crossing = level, next_modes
+            gain, tracked = level, continued
     if not crossings:
         raise SolverError(
             f"mode {start.mode.name} has ζ = {min(ratios):.4g} to {max(ratios):.4g} at {name} = {low:g} to {high:g}: "
             f"expected {wanted_ratio:g} among them; ask for another mode, gain or range"
         )
-    first_gain, second_gain, crossing = min(crossings, key=lambda each: abs(np.log(each[0] / own_gain)))
-    return _refine(law, name, wanted_ratio, (first_gain, second_gain), crossing)
+    first_gain, second_gain, tracked = min(crossings, key=lambda each: abs(np.log(each[0] / own_gain)))
+    return _refine(law, name, wanted_ratio, (first_gain, second_gain), tracked)
 
 
 def _with(law: Any, name: str, gain: float) -> Any:

@@ -112,8 +112,8 @@ def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     dq = moving_frame(rng.standard_normal(flock.q.shape))
     dq *= size / float(np.linalg.norm(dq, axis=1).max())
     mismatches = [velocity_mismatch(item(flock, dq, 0.0 * dq, t)[1]) for item in (linear_motion, _run)]
-    floor_count = _count_above_floor(mismatches[0])
-    late_slice = slice(int(_LATE * floor_count), floor_count)
+    count_above = _count_above_floor(mismatches[0])
+    late_slice = slice(int(_LATE * count_above), count_above)
     if not slopes.size or late_slice.start == late_slice.stop:
         raise ArgumentError(
             f"mode {mode.name} is damped so much (ratio {mode.damping_ratio:.4g}) that K̃ is lost in the errors of a "
@@ -197,10 +197,10 @@ class LinearRange:
         deviation : float
             Share of the initial displacement, such as 0.1.
         """
-        exceeding_levels = np.flatnonzero(self.deviations > ensure_positive("deviation", deviation))
-        if not exceeding_levels.size:
+        exceeding_rows = np.flatnonzero(self.deviations > ensure_positive("deviation", deviation))
+        if not exceeding_rows.size:
             return float(self.amplitudes[-1])
-        k = int(exceeding_levels[0])
+        k = int(exceeding_rows[0])
         if k == 0:
             return 0.0
         pair = slice(k - 1, k + 1)

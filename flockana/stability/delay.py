@@ -78,7 +78,7 @@ class DelaySystem(ShortRepr):
     @property
     def highest(self) -> float:
         """Return a frequency above which no root crosses the imaginary axis, as s² dominates there."""
-        k, d = (sum(float(np.linalg.norm(component[i], 2)) for component in (self.prompt, self.late)) for i in (0, 1))
+        k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
@@ -98,13 +98,13 @@ class DelaySystem(ShortRepr):
         """Return the strongly connected parts; their roots together are all roots."""
         matrices, parts = (*self.prompt, *self.late), []
         for rows in strong_components(*matrices).indices:
-            k0, d0, k1, d1 = (component[np.ix_(rows, rows)] for component in matrices)
+            k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)
             kernel, cokernel = kernels(k0 + k1) if self.neutral else (np.zeros((len(rows), 0)),) * 2
             parts.append(DelaySystem((k0, d0), (k1, d1), neutral_roots(kernel, cokernel, d0 + d1, k1)))
-        if sum(component.neutral for component in parts) == self.neutral:
+        if sum(part.neutral for part in parts) == self.neutral:
             return iter(parts)
         return (
-            replace(component, neutral=self.neutral) for component in parts
+            replace(part, neutral=self.neutral) for part in parts
         )  # softer than rounding tells: any part may have them
 
 
@@ -142,11 +142,11 @@ def delayed_flock(flock: LinearFlock, delayed: str, carries: str, links: Any = N
     ensure_known("quantity that is late", carries, CARRIES)
     ensure_fits("K", flock.stiffness.shape, "ask of fewer agents")
     k, d = flock.stiffness.toarray(), flock.damping.toarray()
-    late_k, late_d = (late_part(component, flock.q.shape[1], delayed, links) for component in (k, d))
+    late_k, late_d = (late_part(matrix, flock.q.shape[1], delayed, links) for matrix in (k, d))
     late_k, late_d = late_k * (carries != "velocities"), late_d * (carries != "positions")
     zero = flock.second_order.invariant
-    neutral_basis = neutral_roots(zero.kernel, zero.cokernel, d, late_k)
-    return DelaySystem((k - late_k, d - late_d), (late_k, late_d), neutral_basis)
+    neutral_count = neutral_roots(zero.kernel, zero.cokernel, d, late_k)
+    return DelaySystem((k - late_k, d - late_d), (late_k, late_d), neutral_count)
 
 
 def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> FloatArray:
@@ -338,6 +338,6 @@ def _stable(system: DelaySystem) -> bool:
         (k0, d0), (k1, d1) = component.prompt, component.late
         is_stable.append(eigenvalues(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
     roots, errors = (np.concatenate(x) for x in zip(*is_stable, strict=True))
-    neutral_basis = np.abs(roots) <= errors
-    neutral_basis[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
-    return bool(np.all(roots.real[~neutral_basis] < -errors[~neutral_basis]))
+    is_neutral = np.abs(roots) <= errors
+    is_neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
+    return bool(np.all(roots.real[~is_neutral] < -errors[~is_neutral]))

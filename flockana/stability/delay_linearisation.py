@@ -115,8 +115,8 @@ class DelayLinearisation(ShortRepr):
             next((part for part in self.parts if (part.delay > 0.0) == is_late), blank) for is_late in (False, True)
         )
         zero = self.instant.second_order.invariant
-        neutral_basis = neutral_roots(zero.kernel, zero.cokernel, prompt.damping + late.damping, late.stiffness)
-        return DelaySystem(prompt[1:], late[1:], neutral_basis)
+        neutral_count = neutral_roots(zero.kernel, zero.cokernel, prompt.damping + late.damping, late.stiffness)
+        return DelaySystem(prompt[1:], late[1:], neutral_count)
 
     def delay_margin(self, *, progress: bool = False) -> DelayMargin:
         """Return the longest stable delay of the delayed part; for several delays see `scaled_margin`."""

@@ -83,11 +83,11 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) -> ComplexArray:
     """Return `rightmost_roots` for any number of delays; `neutral` roots at 0 are left out."""
     nodes, count = ensure_count("nodes", nodes), ensure_count("count", count)
-    groups = strong_components(*(delay_term for item in parts for delay_term in item[1:])).indices
+    groups = strong_components(*(part for item in parts for part in item[1:])).indices
     sub = [[LatePart(tau, k[np.ix_(rows, rows)], d[np.ix_(rows, rows)]) for tau, k, d in parts] for rows in groups]
-    zeros = [_neutral(delay_term) if neutral else 0 for delay_term in sub]
+    zeros = [_neutral(part) if neutral else 0 for part in sub]
     if sum(zeros) == neutral:
-        upper = [_of_group(delay_term, zero, nodes, count) for delay_term, zero in zip(sub, zeros, strict=True)]
+        upper = [_of_group(part, zero, nodes, count) for part, zero in zip(sub, zeros, strict=True)]
     else:  # motions softer than rounding tells: the smallest roots of the whole
         upper = [_of_group(list(parts), neutral, nodes, count)]
     roots = np.concatenate(upper)
@@ -175,12 +175,12 @@ def _refine(parts: Parts, s: complex, longest: float) -> complex | None:
     """Refine (v, s) with M(s) v = 0 by Newton's method from the singular vector at s; None without convergence."""
     start = s
     v = np.linalg.svd(characteristic(parts, s))[2][-1].conj()
-    left_vector = v.conj()
+    conjugate = v.conj()
     for _ in range(_STEPS):
         matrix, slope = characteristic(parts, s), _slope(parts, s) @ v
-        bordered_matrix = np.block([[matrix, slope[:, None]], [left_vector[None, :], np.zeros((1, 1))]])
+        bordered_matrix = np.block([[matrix, slope[:, None]], [conjugate[None, :], np.zeros((1, 1))]])
         try:
-            step = np.linalg.solve(bordered_matrix, np.append(-matrix @ v, 1.0 - left_vector @ v))
+            step = np.linalg.solve(bordered_matrix, np.append(-matrix @ v, 1.0 - conjugate @ v))
         except np.linalg.LinAlgError:  # a defective root: as near as it comes
             break
         v, s = v + step[:-1], s + complex(step[-1])

@@ -191,9 +191,9 @@ def _specified(problem: GainProblem, asked: Specifications, bounds: Any, least: 
 
     def cost(logs: FloatArray) -> float:
         trial = flock(logs)
-        margins = min(trial.room.values())
-        if least is None or margins < 0.0:
-            return -margins
+        margin = min(trial.room.values())
+        if least is None or margin < 0.0:
+            return -margin
         return -1.0 / (1.0 + trial.reached[least])  # below 0, where all is met, and rising with what it costs
 
     return flock(_minimise2(cost, low, high, count=6, tries=1, most=60, finest=2e-4))
@@ -224,15 +224,15 @@ def _minimise2(
 
     axis, grid_step = np.linspace(low, high, count), (high - low) / count
     grid = sorted((worth(np.array(pair)), *pair) for pair in product(axis.tolist(), axis.tolist()))[:tries]
-    best_gains = grid[0]
+    best_point = grid[0]
     for value, a, b in grid:
         simplex = np.clip([[a, b], [a - 0.2 * grid_step, b], [a, b + 0.4 * grid_step]], low, high)
         search_options: Any = {"xatol": finest * (high - low), "fatol": _GAINED * abs(value)}
         options: Any = {"initial_simplex": simplex, "maxfev": most, **search_options}
         box = [(low, high)] * 2
-        polished_state = minimize(worth, np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
-        best_gains = min(best_gains, (float(polished_state.fun), *np.clip(polished_state.x, low, high).tolist()))
-    return np.array(best_gains[1:])
+        solution = minimize(worth, np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
+        best_point = min(best_point, (float(solution.fun), *np.clip(solution.x, low, high).tolist()))
+    return np.array(best_point[1:])
 
 
 def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:

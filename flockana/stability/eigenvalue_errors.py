@@ -24,7 +24,7 @@ _APART = 1e-3  # from which share on the two parts of a complex eigenvector span
 def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, FloatArray]:
     """Return eigenvalues with error bounds, by strongly connected components, in the order of `eigen`."""
     parts = [eigen_of_one(matrix[np.ix_(rows, rows)], off) for rows in strong_components(matrix).indices]
-    values, errors = (np.concatenate([block[i] for block in parts] or [np.zeros(0)]) for i in (0, 2))
+    values, errors = (np.concatenate([part[i] for part in parts] or [np.zeros(0)]) for i in (0, 2))
     return values.astype(np.complex128), errors
 
 
@@ -64,7 +64,7 @@ def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Co
         return np.zeros(0, np.complex128), np.zeros((0, 0), np.complex128), np.zeros(0)
     balanced_matrix, _, _, units, _ = dgebal(matrix, scale=1)  # by powers of 2: no rounding
     eigen_solution: Any = eig(balanced_matrix, left=True, right=True)
-    values, left, right = (np.asarray(block, dtype=np.complex128) for block in eigen_solution)
+    values, left, right = (np.asarray(item, dtype=np.complex128) for item in eigen_solution)
     size, tight = float(np.linalg.norm(balanced_matrix)), _ROUNDINGS * EPS + off
     with np.errstate(divide="ignore"):
         value_errors = tight * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
@@ -79,8 +79,8 @@ def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) ->
     for k in np.flatnonzero((values.imag > 0.0) & (values.imag <= rounding)).tolist():
         turned = vectors[:, k] * np.exp(-0.5j * np.angle(np.sum(vectors[:, k] ** 2)))  # real part across the imaginary
         if np.linalg.norm(turned.imag) > _APART * np.linalg.norm(turned.real):
-            for j, block in ((k, turned.real), (k + 1, turned.imag)):
-                values[j], vectors[:, j] = values[k].real, block / np.linalg.norm(block)
+            for j, vector in ((k, turned.real), (k + 1, turned.imag)):
+                values[j], vectors[:, j] = values[k].real, vector / np.linalg.norm(vector)
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
@@ -89,8 +89,8 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
     from scipy.spatial import cKDTree
 
     plane = np.column_stack([values.real, values.imag])
-    close_indices = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
-    return np.where(close_indices > 1, size * tight ** (1.0 / close_indices), np.inf)
+    close_counts = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
+    return np.where(close_counts > 1, size * tight ** (1.0 / close_counts), np.inf)
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
@@ -109,8 +109,8 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
     for k, value in enumerate(values.tolist()):
         v = shapes[:, k] / np.linalg.norm(shapes[:, k])
         drag = damping @ v
-        remaining_part = float(np.linalg.norm(value * value * v + value * drag + stiffness @ v))
-        push = remaining_part + _ROUNDINGS * EPS * (rows[0] + abs(value) * rows[1] + abs(value) ** 2)
+        residual = float(np.linalg.norm(value * value * v + value * drag + stiffness @ v))
+        push = residual + _ROUNDINGS * EPS * (rows[0] + abs(value) * rows[1] + abs(value) ** 2)
         slope = abs(complex(v @ (2.0 * value * v + drag)))
         errors[k] = min(push / slope if slope > 0.0 else np.inf, float(np.sqrt(push)))
     return errors

@@ -66,8 +66,8 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     """
     rows: list[ComplexArray] = []
     neutral_count, levels = 0, _rising(values)
-    for scaled_law, tracked_modes in _followed(law, q, name, levels, follow=follow):
-        flock = law_blocks(scaled_law, tracked_modes, strict=follow)
+    for scaled_law, positions in _followed(law, q, name, levels, follow=follow):
+        flock = law_blocks(scaled_law, positions, strict=follow)
         roots = np.linalg.eigvals(flock.matrix()).astype(np.complex128)
         roots = roots[np.argsort(np.abs(roots), kind="stable")]
         count = flock.neutral.shape[1] + flock.drifting.shape[1]

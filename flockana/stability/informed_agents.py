@@ -119,8 +119,8 @@ def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int
         gramian = sum((each[i] for i in agents), np.zeros_like(each[0]))
         if criterion == "trace":
             return float(np.trace(gramian))
-        magnitudes = np.maximum(np.linalg.eigvalsh(gramian), 0.0)
-        return float(np.log1p(magnitudes / floor).sum()) if criterion == "log det" else float(magnitudes[0])
+        eigenvalues = np.maximum(np.linalg.eigvalsh(gramian), 0.0)
+        return float(np.log1p(eigenvalues / floor).sum()) if criterion == "log det" else float(eigenvalues[0])
 
     return value
 

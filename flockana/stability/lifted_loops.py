@@ -62,16 +62,16 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
 
     q = forward(np.array([[1.0, first_age, 0.5 * first_age**2, *np.zeros(inputs - 1)]]))
     p = forward(np.array([[0.0, 1.0, first_age, *np.zeros(inputs - 1)]]))
-    heard_states = np.zeros((due_count, len(full_matrix)))
+    input_rows = np.zeros((due_count, len(full_matrix)))
     for delay, k, d in parts:
         edge = np.minimum(starts, delay if delay > _WHOLE * period else 0.0)
-        squared_ages = 0.5 * ((delay - edge[:-1]) ** 2 - (delay - edge[1:]) ** 2)  # ∫ (τ − s) ds over each input's time
-        delayed_positions = q - delay * p + forward(np.array([[0.0, 0.0, *squared_ages]]))
+        far = 0.5 * ((delay - edge[:-1]) ** 2 - (delay - edge[1:]) ** 2)  # ∫ (τ − s) ds over each input's time
+        delayed_positions = q - delay * p + forward(np.array([[0.0, 0.0, *far]]))
         back_p = p - forward(np.array([[0.0, 0.0, *np.diff(edge)]]))
-        heard_states -= k @ delayed_positions + d @ back_p
+        input_rows -= k @ delayed_positions + d @ back_p
     held_rows = np.eye(due_count, len(full_matrix), 2 * due_count)
     full_matrix[:due_count], full_matrix[due_count : 2 * due_count] = q, p
-    full_matrix[2 * due_count : 3 * due_count] = np.where(due[:, None], heard_states, held_rows)
+    full_matrix[2 * due_count : 3 * due_count] = np.where(due[:, None], input_rows, held_rows)
     full_matrix[3 * due_count :, 2 * due_count : -due_count] = np.eye(due_count * (inputs - 1))
     return full_matrix
 
@@ -79,9 +79,9 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
 def moving_multipliers(parts: Sequence[LatePart], period: float, clock: FloatArray, neutral: int) -> ComplexArray:
     """Return the multipliers of `period_map` off the neutral motions, the largest first."""
     period_matrix = period_map(parts, period, clock)
-    neutral_motions = _motions(parts, len(period_matrix))
-    values: ComplexArray = np.linalg.eigvals(neutral_motions.T @ period_matrix @ neutral_motions).astype(np.complex128)
-    left = neutral - (len(period_matrix) - neutral_motions.shape[1])
+    moving_basis = _motions(parts, len(period_matrix))
+    values: ComplexArray = np.linalg.eigvals(moving_basis.T @ period_matrix @ moving_basis).astype(np.complex128)
+    left = neutral - (len(period_matrix) - moving_basis.shape[1])
     if left > 0:  # drifts with a deformation: what is left at 1
         values = np.delete(values, np.argsort(np.abs(values - 1.0), kind="stable")[:left])
     return values[np.lexsort((values.imag, -np.abs(values)))]
@@ -98,23 +98,23 @@ def _motions(parts: Sequence[LatePart], states: int) -> FloatArray:
     _, singular_values, rows = np.linalg.svd(drag, full_matrices=False)
     scale = float(np.abs(damping).max()) or 1.0
     drift = kernel @ rows[singular_values <= ZERO * scale].T
-    zero_rows, moving = np.zeros((states, kernel.shape[1])), np.zeros((states, drift.shape[1]))
-    zero_rows[: len(kernel)], moving[len(kernel) : 2 * len(kernel)] = kernel, drift
-    return complement(np.hstack([zero_rows, moving]))
+    rest_states, moving = np.zeros((states, kernel.shape[1])), np.zeros((states, drift.shape[1]))
+    rest_states[: len(kernel)], moving[len(kernel) : 2 * len(kernel)] = kernel, drift
+    return complement(np.hstack([rest_states, moving]))
 
 
 def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
     """Return the least argument at which a radius exceeds 1, by trials and halving; infinity without one."""
     from scipy.optimize import brentq
 
-    previous_root = None
+    last_trial = None
     for trial in trials.tolist():
         growth = radius(trial) - 1.0
         if growth > 0.0:
-            if previous_root is None:
+            if last_trial is None:
                 return 0.0
-            return float(brentq(lambda x: radius(x) - 1.0, previous_root, trial, xtol=1e-13 * trial, rtol=1e-12))
-        previous_root = trial
+            return float(brentq(lambda x: radius(x) - 1.0, last_trial, trial, xtol=1e-13 * trial, rtol=1e-12))
+        last_trial = trial
     return inf
 
 

@@ -303,11 +303,11 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
     if law.centre_decouples:
         return
     size = q.size
-    stiff, drag = (float(abs(matrix[size:, component]).max()) for component in (slice(0, size), slice(size, None)))
+    stiff, drag = (float(abs(matrix[size:, columns]).max()) for columns in (slice(0, size), slice(size, None)))
     time_scale = 1.0 / max(sqrt(stiff), drag) if stiff or drag else 1.0
     for later_time in (_LATER * time_scale, 10.0 * _LATER * time_scale, 100.0 * _LATER * time_scale):
         drift = law.jacobian(t + later_time, q + later_time * p, p, sparse=True) - matrix
-        changes = (abs(drift[size:, component]).max() for component in (slice(0, size), slice(size, None)))
+        changes = (abs(drift[size:, columns]).max() for columns in (slice(0, size), slice(size, None)))
         if any(change > _STEADY * scale for change, scale in zip(changes, (stiff, drag), strict=True)):
             raise ArgumentError(
                 f"the Jacobian of {law.title} changes along the motion of this state (within {later_time:.2g} "

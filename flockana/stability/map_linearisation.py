@@ -246,8 +246,8 @@ def stepped_equation(
 
     moved_matrices = moved_before(k, m), moved_before(damping, m)
     mass = eye_array(k.shape[0]) + dt * moved_matrices[1] + factor * dt * dt * moved_matrices[0]
-    solved_matrices: Any = (spsolve(mass.tocsc(), component.tocsc()) for component in (k, d + dt * moved_matrices[0]))
-    return tuple(csr_array(component) for component in solved_matrices)  # type: ignore[return-value]
+    solved_matrices: Any = (spsolve(mass.tocsc(), matrix.tocsc()) for matrix in (k, d + dt * moved_matrices[0]))
+    return tuple(csr_array(matrix) for matrix in solved_matrices)  # type: ignore[return-value]
 
 
 def moved_before(matrix: Any, m: int) -> Any:
@@ -276,8 +276,8 @@ def linearise_map(law: DiscreteLaw, flow: LinearFlock) -> MapLinearisation:
     motion_matrix, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
     a, b = motion_matrix + push @ flow.A[size:], push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
-        shift = -np.hstack([moved_before(component, m).toarray() for component in (stiffness, damping)])
-        a, b = (np.linalg.solve(np.eye(2 * size) - push @ shift, component) for component in (a - push @ shift, push))
+        shift = -np.hstack([moved_before(matrix, m).toarray() for matrix in (stiffness, damping)])
+        a, b = (np.linalg.solve(np.eye(2 * size) - push @ shift, matrix) for matrix in (a - push @ shift, push))
     equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
     return MapLinearisation(*rest, a, b, *names, equation)
 
@@ -312,7 +312,7 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
         """Return the next state in the moving frame, after `steps` steps."""
         parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
-        values = {key: (component * sizes[key]).reshape(shape) for (key, shape), component in parts}
+        values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
         drift, inner = steps * law.dt * p, {key: values[key] for key in memory}
         after = law.step(t + steps * law.dt, values["q"] + drift, values["p"], inner)
         return packed({"q": after[0] - drift - law.dt * p, "p": after[1]} | dict(after[3]))
@@ -328,19 +328,19 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
         )
     matrix, kink = central_differences(stepped, start, _WIDTH, ORDER_2)
     wide = central_differences(stepped, start, 2.0 * _WIDTH, ORDER_2)[0]
-    next_time = central_differences(lambda x: stepped(x, 97), start, _WIDTH, ORDER_2)[0]
+    later_matrix = central_differences(lambda x: stepped(x, 97), start, _WIDTH, ORDER_2)[0]
     size, kink = float(np.linalg.norm(matrix)), max(kink, float(np.abs(wide - matrix).max()))
     if kink > _KINK * size:
         raise ArgumentError(
             f"{name} has a kink or a jump at this state (slopes to either side differ by {kink:.2g}): expected a "
             "state within its zones and bounds, not at the edge of one"
         )
-    if np.abs(next_time - matrix).max() > _KINK * size:
+    if np.abs(later_matrix - matrix).max() > _KINK * size:
         raise ArgumentError(f"{name} changes further along this motion: expected one that meets no obstacle")
     units = np.repeat(list(sizes.values()), np.diff(ends))
     off = (float(np.linalg.norm(wide - matrix)) + len(start) * 4.0 * EPS / _WIDTH) / size
-    side_state = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]
-    names = (*labels("q", n, m), *labels("p", n, m), *side_state)
+    memory_names = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]
+    names = (*labels("q", n, m), *labels("p", n, m), *memory_names)
     a = matrix * units[:, None] / units
     return MapLinearisation(
         law, q, p, t, float(shift[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off

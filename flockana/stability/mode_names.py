@@ -29,7 +29,7 @@ def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
     """Return infinitesimal rotations about the centre, by axis, not normalised."""
     x, m = q - q.mean(axis=0), q.shape[1]
     names = ("rotation",) if m == 2 else ("rotation z", "rotation y", "rotation x")  # as `generators` has the planes
-    turns = [(name, (x @ rotation.T).ravel()) for name, rotation in zip(names, generators(m), strict=False)]
+    turns = [(name, (x @ generator.T).ravel()) for name, generator in zip(names, generators(m), strict=False)]
     return turns[::-1]
 
 

@@ -231,11 +231,11 @@ class SecondOrder:
         if down.size:
             heard = self.stiffness.tocsr()[down] + s * self.damping.tocsr()[down]
             try:
-                solve_block = splu(csc_array(heard[:, down] + eye_array(down.size) * (s * s))).solve(-(heard @ shape))
+                solution = splu(csc_array(heard[:, down] + eye_array(down.size) * (s * s))).solve(-(heard @ shape))
             except RuntimeError:  # singular to the last bit
-                solve_block = np.full(down.size, np.inf)
-            if np.abs(solve_block).max() < _HUGE:
-                shape[down] = solve_block
+                solution = np.full(down.size, np.inf)
+            if np.abs(solution).max() < _HUGE:
+                shape[down] = solution
             else:
                 self._follow_one_by_one(shape, s, k)
         return shape
@@ -270,8 +270,8 @@ class SecondOrder:
         full_matrix = np.vstack([np.eye(size, 2 * size, size) * pace, push])
         # A maps what is orthogonal to `left` into itself
         values, vectors, errors = eigen_of_one(turn("R", "N", turn("L", "T", full_matrix))[apart:, apart:])
-        parts = (np.vstack([np.zeros((apart, len(values))), component]) for component in (vectors.real, vectors.imag))
-        real, imaginary_part = (turn("L", "N", component)[:size] for component in parts)
+        parts = (np.vstack([np.zeros((apart, len(values))), part]) for part in (vectors.real, vectors.imag))
+        real, imaginary_part = (turn("L", "N", part)[:size] for part in parts)
         return values, real + 1j * imaginary_part, errors
 
     @cached_property
@@ -326,8 +326,8 @@ class SecondOrder:
         b = self._against(off, transposed=True)
         neutral = list(right)
         left = [np.vstack([self.damping.T @ cokernel, cokernel]), np.vstack([off + self.damping.T @ b, b])]
-        is_undriven = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
-        drifting = [name for name, is_slow in zip(names, is_undriven.tolist(), strict=True) if is_slow]
+        is_undamped = np.abs(drag).max(axis=0, initial=0.0) <= self.zero * columns**2
+        drifting = [name for name, slow in zip(names, is_undamped.tolist(), strict=True) if slow]
         zero = [Mode(0j, vector.reshape(self.q.shape), name) for name, vector in zip(names, kernel.T, strict=True)]
         chains = int(flat.sum())
         values: list[complex] = [0j] * (k + chains)
@@ -336,21 +336,21 @@ class SecondOrder:
             unit = translations(*self.q.shape)
             errors = self.split.errors
             free = np.abs(self.split.stiffness) <= errors[0]
-            is_slow = np.where(free & (np.abs(self.split.damping) <= errors[1]), 0.0, self.split.damping)
+            slow = np.where(free & (np.abs(self.split.damping) <= errors[1]), 0.0, self.split.damping)
             fields = [column.reshape(self.q.shape) for column in unit.T]
             labels = [f"translation {axis}" for axis in "xyz"[: len(fields)]]
             for stiff, drag_, name, shape in zip(
-                np.where(free, 0.0, self.split.stiffness).tolist(), is_slow.tolist(), labels, fields, strict=True
+                np.where(free, 0.0, self.split.stiffness).tolist(), slow.tolist(), labels, fields, strict=True
             ):
                 roots = _roots(stiff, drag_, errors)
                 values += roots
                 squares = (root for root in roots if root != 0.0 and root.imag >= 0.0)
                 translational += [Mode(root, shape, name, root_error(root, stiff, drag_, errors)) for root in squares]
-            alone = free & (is_slow == 0.0)
+            alone = free & (slow == 0.0)
             chains += int(alone.sum())
             drifting += [name for name, item in zip(labels, alone, strict=True) if item]
             zero = [*(Mode(0j, fields[c], labels[c]) for c in np.flatnonzero(free)), *zero]
-            kernel, cokernel = (np.hstack([unit[:, free], component]) for component in (kernel, cokernel))
+            kernel, cokernel = (np.hstack([unit[:, free], basis]) for basis in (kernel, cokernel))
             blank = np.zeros_like(unit)
             both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
             right, left = [*right, *both], [*left, *both]
@@ -387,7 +387,7 @@ def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> lis
     """Return both roots of λ² + damping λ + stiffness; zero first, double roots exactly double."""
     if stiffness == 0.0:
         return [0j, complex(0.0 - damping)]
-    squared_value = damping**2 - 4.0 * stiffness
-    spread = sqrt(0.0 if abs(squared_value) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else squared_value)
+    radicand = damping**2 - 4.0 * stiffness
+    spread = sqrt(0.0 if abs(radicand) <= 2.0 * abs(damping) * errors[1] + 4.0 * errors[0] else radicand)
     far_root = -0.5 * (damping + spread) if damping >= 0.0 else -0.5 * (damping - spread)
     return [far_root, stiffness / far_root]

@@ -76,6 +76,6 @@ def mode_motion(
     t = np.linspace(0.0, periods * duration, samples)
     scale = ensure_positive("amplitude", amplitude) / float(np.linalg.norm(np.real(mode.shape), axis=1).max())
     mode_wave = scale * np.exp(value * t)[:, None, None] * mode.shape
-    displacement_series = (np.ascontiguousarray(np.real(factor * mode_wave)) for factor in (1.0, value, value**2))
-    dq, dp, du = displacement_series
+    motion_series = (np.ascontiguousarray(np.real(factor * mode_wave)) for factor in (1.0, value, value**2))
+    dq, dp, du = motion_series
     return Trajectory(t, q + dq, dp, du, linearisation.law)

@@ -55,7 +55,7 @@ class _Step(NamedTuple):
 
         def apply(flat: FloatArray) -> FloatArray:
             x = flat.reshape(dimension, dimension)
-            return (mean @ x @ mean.T + variance * sum(component @ x @ component.T for component in self.heard)).ravel()
+            return (mean @ x @ mean.T + variance * sum(matrix @ x @ matrix.T for matrix in self.heard)).ravel()
 
         operator = LinearOperator((dimension * dimension, dimension * dimension), matvec=apply, dtype=np.float64)
         values = eigs(operator, k=1, v0=np.eye(dimension).ravel(), return_eigenvectors=False, tol=1e-10)
@@ -128,24 +128,24 @@ def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
         return _Step(free, tuple(push @ force for _, force in channels))
     acts = np.hstack([push[:, rows] for rows, _ in channels] or [np.zeros((len(free), 0))])
     held_rows = np.eye(acts.shape[1])
-    kept_rows, new, first_rows = np.block([[free, acts], [np.zeros((len(held_rows), len(free))), held_rows]]), [], 0
+    kept_rows, new, offset = np.block([[free, acts], [np.zeros((len(held_rows), len(free))), held_rows]]), [], 0
     for rows, force in channels:
-        own_held = held_rows[:, first_rows : first_rows + rows.size]
+        own_held = held_rows[:, offset : offset + rows.size]
         new.append(np.vstack([push[:, rows], own_held]) @ np.hstack([force[rows], -own_held.T]))
-        first_rows += rows.size
+        offset += rows.size
     return _Step(kept_rows, tuple(new))
 
 
 def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:
     """Return for each directed link the hearing agent's rows, and its coupling off neutral motions."""
-    component, (n, m) = flock.second_order.quotient, flock.q.shape
+    quotient, (n, m) = flock.second_order.quotient, flock.q.shape
     k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []
     is_linked = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)
     for i, j in np.argwhere(is_linked).tolist():
         parts = (late_part(matrix, m, "pairs", [(i, j)]) for matrix in (k, d))
-        full_matrix = -np.hstack(list(parts)) / np.repeat([component.pace, 1.0], n * m)
-        force = full_matrix @ component.basis
-        if np.abs(full_matrix - force @ component.basis.T).max() > _UNHELD * np.abs(full_matrix).max():
+        full_matrix = -np.hstack(list(parts)) / np.repeat([quotient.pace, 1.0], n * m)
+        force = full_matrix @ quotient.basis
+        if np.abs(full_matrix - force @ quotient.basis.T).max() > _UNHELD * np.abs(full_matrix).max():
             raise ArgumentError(
                 f"the link from agent {j} to {i} carries a force at this equilibrium: without it the flock moves away, "
                 'which no linear step tells; expected links at rest, or lost="agent" or "all"'

@@ -221,15 +221,15 @@ def _where_real(a: FloatArray, b: FloatArray, f: FloatArray) -> list[complex]:
     """Return the values S(jω) with Im S = 0, from zeros s² of 2 s f (s² − A²)⁻¹ b, and at s = 0."""
     from scipy.linalg import eigvals
 
-    rest_gain = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
-    squared_value = a @ a
-    full_matrix = np.block([[squared_value, b[:, None]], [f[None, :], np.zeros((1, 1))]])
+    rest_value = 1.0 - complex(f @ np.linalg.solve(a, b)) if len(a) else 1.0 + 0.0j
+    squared_matrix = a @ a
+    full_matrix = np.block([[squared_matrix, b[:, None]], [f[None, :], np.zeros((1, 1))]])
     mass = np.eye(len(full_matrix))
     mass[-1, -1] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         zeros = eigvals(full_matrix, mass)
     zeros = zeros[np.isfinite(zeros)]
-    return [rest_gain, *_on_the_axis(a, b, f, zeros, lambda s: s.imag, lambda slope: slope.imag)]
+    return [rest_value, *_on_the_axis(a, b, f, zeros, lambda s: s.imag, lambda slope: slope.imag)]
 
 
 def _on_the_axis(
@@ -242,8 +242,8 @@ def _on_the_axis(
         for _ in range(_STEPS):
             shifted_matrix = 1j * omega * identity - a
             answer = np.linalg.solve(shifted_matrix, b)
-            s, phase_slope = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted_matrix, answer))
-            step = value(s) / slope(phase_slope) if slope(phase_slope) else inf
+            s, loop_slope = 1.0 + complex(f @ answer), -1j * complex(f @ np.linalg.solve(shifted_matrix, answer))
+            step = value(s) / slope(loop_slope) if slope(loop_slope) else inf
             if abs(value(s)) <= _TOLERANCE * min(1.0, abs(s)) and abs(step) <= _TOLERANCE * omega:
                 frequencies.append(s)
                 break

@@ -143,10 +143,10 @@ def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, compl
 
 def _flip(k: float, d: float, factor: float) -> float:
     """Return the least h > 0 with 4 − 2hd + (1 − 2f)h²k = 0, infinite without one."""
-    a, squared_value = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
-    if squared_value < 0.0 or d + sqrt(squared_value) <= 0.0:
+    a, radicand = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
+    if radicand < 0.0 or d + sqrt(radicand) <= 0.0:
         return inf
-    return 4.0 / (d + sqrt(squared_value)) if a != 0.0 or d > 0.0 else inf
+    return 4.0 / (d + sqrt(radicand)) if a != 0.0 or d > 0.0 else inf
 
 
 def margin_of_flow(
@@ -199,11 +199,11 @@ def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -
     flip_period = min((mode.period for mode in flip_modes), default=inf)
     if factor >= 1.0:
         return inf, flip_modes
-    damping_limit = _least_damped(k, d) / (1.0 - factor)
-    if flip_period <= damping_limit:
+    period_limit = _least_damped(k, d) / (1.0 - factor)
+    if flip_period <= period_limit:
         return inf, flip_modes
-    shortest, first_index = _first_to_grow(flow, factor, stable_below=damping_limit)
-    return shortest, [*first_index, *flip_modes]
+    shortest, first_modes = _first_to_grow(flow, factor, stable_below=period_limit)
+    return shortest, [*first_modes, *flip_modes]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
@@ -287,8 +287,8 @@ def _first_to_grow(
 
 def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:
     """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: immediate entries."""
-    component, dimension = problem.quotient, problem.q.size
-    low, zero = component.basis[dimension:], np.zeros((len(component.A),) * 2)
+    quotient, dimension = problem.quotient, problem.q.size
+    low, zero = quotient.basis[dimension:], np.zeros((len(quotient.A),) * 2)
     stiffness = problem.stiffness.toarray()
     e1, e2 = low.T @ before[1] @ low, factor * low.T @ before[0] @ low
-    return Steps(e1, e2, e1 + component.A, e2 - low.T @ (factor * stiffness + before[0]) @ low + zero)
+    return Steps(e1, e2, e1 + quotient.A, e2 - low.T @ (factor * stiffness + before[0]) @ low + zero)

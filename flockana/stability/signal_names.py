@@ -72,9 +72,9 @@ def whole_system(flock: Any) -> control.StateSpace:
     ensure_fits("A", flock.A_sparse.shape, "use A_sparse and slowest_modes(...)")
     unit = translations(n, m)
     target, target_names = _target_inputs(flock)
-    link_lengths, length_names = _lengths(flock)
+    length_rows, length_names = _lengths(flock)
     drive_matrix = np.hstack([np.eye(n * m), target])
-    readings = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, link_lengths])
+    readings = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T, length_rows])
     names = (
         labels("q", n, m) + labels("p", n, m),
         labels("f", n, m) + target_names,
@@ -94,10 +94,10 @@ def structural_system(flock: Any) -> control.StateSpace:
     kept_size = (n - 1) * m
     lift_matrix = np.vstack([np.eye(kept_size), -np.tile(np.eye(m), (1, n - 1))])  # the last agent's deviation
     shape_projection = (np.eye(n * m) - unit @ unit.T)[:kept_size]
-    link_lengths, length_names = _lengths(flock)
+    length_rows, length_names = _lengths(flock)
     blocks = ((flock.stiffness[:kept_size] @ lift_matrix), (flock.damping[:kept_size] @ lift_matrix))
     names = (labels("x", n - 1, m) + labels("v", n - 1, m), labels("f", n, m), labels("x", n, m) + length_names)
-    return _system(blocks, shape_projection, np.vstack([lift_matrix, link_lengths @ lift_matrix]), names, "shape")
+    return _system(blocks, shape_projection, np.vstack([lift_matrix, length_rows @ lift_matrix]), names, "shape")
 
 
 def translational_system(flock: Any) -> control.StateSpace:

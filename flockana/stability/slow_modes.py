@@ -162,10 +162,10 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         dq = solve(-p - damping @ q)
         return off(np.concatenate([dq, q + shift * dq]))
 
-    operator, iteration_limit = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
+    operator, vector_limit = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
     start = off(np.random.default_rng(0).standard_normal(2 * size))  # fixed, so that results are reproducible
     try:
-        inverse_eigenvalues, vectors = eigs(operator, k=count, which="LM", v0=start, ncv=min(2 * size, iteration_limit))
+        inverse_eigenvalues, vectors = eigs(operator, k=count, which="LM", v0=start, ncv=min(2 * size, vector_limit))
     except ArpackError as error:
         raise SolverError(f"ARPACK found no {count} eigenvalues nearest to zero ({error}); ask for fewer") from error
     values = shift + 1.0 / inverse_eigenvalues

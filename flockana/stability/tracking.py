@@ -24,12 +24,12 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
     """Return the complex amplitude at ω and its error, by least squares on each coordinate of x."""
     # The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
-    elapsed_time = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
-    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), elapsed_time])
-    fit, _, _, magnitudes = np.linalg.lstsq(basis, x, rcond=None)
+    centred_time = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
+    basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), centred_time])
+    fit, _, _, singular_values = np.linalg.lstsq(basis, x, rcond=None)
     residual = x - basis @ fit
-    decay_verdicts = t.size >= _SAMPLES and magnitudes[-1] > _APART * magnitudes[0]
-    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if decay_verdicts else inf
+    is_decaying = t.size >= _SAMPLES and singular_values[-1] > _APART * singular_values[0]
+    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if is_decaying else inf
     return fit[0] - 1j * fit[1], error
 
 

@@ -80,15 +80,15 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
         0.5 * (_on_symmetric(f2, f2) - _on_symmetric(e2, e2)),
     ]
     roots = sorted(x / rate for x in _least_roots(parts))
-    previous_level = 0.0
+    last_midpoint = 0.0
     for low, high in pairwise([0.0, *roots, inf]):
-        midpoint = 2.0 * low if high == inf else 0.5 * high if low == 0.0 else float(np.sqrt(low * high))
-        midpoint = midpoint or 1.0 / rate
-        if steps.growth(midpoint) > 0.0:
-            period = _refined(steps, previous_level, midpoint) if previous_level else low
+        trial = 2.0 * low if high == inf else 0.5 * high if low == 0.0 else float(np.sqrt(low * high))
+        trial = trial or 1.0 / rate
+        if steps.growth(trial) > 0.0:
+            period = _refined(steps, last_midpoint, trial) if last_midpoint else low
             widths = [_resolved(steps, period, width) for width in (_NEAR, CLOSE)]
             return Growth(period if widths[0] else nan, period if widths[1] else 0.0)
-        previous_level = midpoint
+        last_midpoint = trial
     return Growth(inf, inf)
 
 
@@ -150,8 +150,8 @@ def _falls(steps: Steps, x: FloatArray, h: float, unit: float) -> list[FloatArra
     for first_block, second_block in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
         at = np.eye(len(x)) + h * (first_block + h * second_block)
         a, b = unit * (first_block + 2.0 * h * second_block), unit * unit * second_block
-        odd_part, even_part, last_value = at.T @ x @ a, at.T @ x @ b, a.T @ x @ b
-        midpoint = a.T @ x @ a + even_part + even_part.T
-        powers.append([at.T @ x @ at, odd_part + odd_part.T, midpoint, last_value + last_value.T, b.T @ x @ b])
+        odd_part, even_part, last_part = at.T @ x @ a, at.T @ x @ b, a.T @ x @ b
+        middle = a.T @ x @ a + even_part + even_part.T
+        powers.append([at.T @ x @ at, odd_part + odd_part.T, middle, last_part + last_part.T, b.T @ x @ b])
     fall = [e - f for e, f in zip(*powers, strict=True)]
     return fall[1:] if h == 0.0 else fall

@@ -29,8 +29,8 @@ def instant_law(law: Law) -> Law:
         return law
     inner_law = instant_law(law.law)
     if isinstance(law, Disturbed):
-        pushed_distance = law.force is not None or law.swing is not None or law.times is not None
-        return replace(law, law=inner_law, intensity=0.0) if pushed_distance else inner_law
+        is_pushed = law.force is not None or law.swing is not None or law.times is not None
+        return replace(law, law=inner_law, intensity=0.0) if is_pushed else inner_law
     if isinstance(law, Lossy):
         return _MeanLoss(inner_law, law.loss)
     if isinstance(law, _LOOPS):
@@ -88,32 +88,32 @@ def late_parts(law: Law, state: State) -> list[LatePart]:
         _, k, d = parts.get(delay, LatePart(delay, np.zeros_like(stiffness), np.zeros_like(damping)))
         parts[delay] = LatePart(delay, k + stiffness, d + damping)
 
-    share, bend_ratio, shift, is_neighbour = 1.0, np.eye(state[1].size), 0.0, None
+    share, slope_matrix, shift, heard = 1.0, np.eye(state[1].size), 0.0, None
     for item in law.wrappers if isinstance(law, Wrapper) else ():
         if isinstance(item, Lossy):
             share *= 1.0 - item.loss
         elif isinstance(item, Saturated):
-            bend_ratio = bend_ratio @ block_diag(*item.slopes(instant_law(item.law).flow(*state)[0]))
+            slope_matrix = slope_matrix @ block_diag(*item.slopes(instant_law(item.law).flow(*state)[0]))
         elif isinstance(item, Delayed) and item.late == "all":
-            shift, is_neighbour = shift + float(item.delay), None
+            shift, heard = shift + float(item.delay), None
         elif isinstance(item, Delayed):
-            is_neighbour = _Heard(shift + np.asarray(item.delay), item.late == "pairs")
+            heard = _Heard(shift + np.asarray(item.delay), item.late == "pairs")
     m = state[1].shape[1]
     pairs = _pair_terms(core, state)
-    add(shift, bend_ratio @ (by_position - pairs[0]), bend_ratio @ (by_velocity - pairs[1]))
-    pairs = [share * bend_ratio @ part for part in pairs]
-    if is_neighbour is None:
+    add(shift, slope_matrix @ (by_position - pairs[0]), slope_matrix @ (by_velocity - pairs[1]))
+    pairs = [share * slope_matrix @ part for part in pairs]
+    if heard is None:
         add(shift, *pairs)
-    elif is_neighbour.both:
-        add(float(is_neighbour.delay), *pairs)
+    elif heard.both:
+        add(float(heard.delay), *pairs)
     else:
-        _ensure_at_rest(state[2], is_neighbour)
-        neighbour_matrix = [late_part(part, m, "neighbours") for part in pairs]
-        add(shift, pairs[0] - neighbour_matrix[0], pairs[1] - neighbour_matrix[1])
-        lags = np.broadcast_to(is_neighbour.delay, (len(state[1]),) * 2)
+        _ensure_at_rest(state[2], heard)
+        late_matrices = [late_part(part, m, "neighbours") for part in pairs]
+        add(shift, pairs[0] - late_matrices[0], pairs[1] - late_matrices[1])
+        lags = np.broadcast_to(heard.delay, (len(state[1]),) * 2)
         lags = np.kron(lags, np.ones((m, m)))
         for delay in np.unique(lags).tolist():
-            add(delay, *(np.where(lags == delay, part, 0.0) for part in neighbour_matrix))
+            add(delay, *(np.where(lags == delay, part, 0.0) for part in late_matrices))
     used_parts = [part for part in parts.values() if part.stiffness.any() or part.damping.any() or part.delay == 0.0]
     return sorted(used_parts, key=lambda part: part.delay)
 
@@ -122,13 +122,13 @@ def _pair_terms(core: Law, state: State) -> list[FloatArray]:
     """Return K and D of the pair terms of a law; of all terms for other laws."""
     if not any(isinstance(term, PairTerm) for term in core.terms):
         full_blocks: Any = core.derivatives(*state)
-        return [-delay_term.toarray() for delay_term in full_blocks]
+        return [-block.toarray() for block in full_blocks]
     dimension = state[1].size
     total = [np.zeros((dimension, dimension)), np.zeros((dimension, dimension))]
     for term in core.terms:
         if isinstance(term, PairTerm):
             slopes: Any = term.derivatives(*state)
-            total = [delay_term - slope.toarray() for delay_term, slope in zip(total, slopes, strict=True)]
+            total = [block - slope.toarray() for block, slope in zip(total, slopes, strict=True)]
     return total
 
 

@@ -105,14 +105,14 @@ def kernel_of(stiffness: FloatArray, scales: FloatArray, zero: float, *, symmetr
 def joined_kernel(stiffness: Any, net: StrongComponents, parts: list[Kernel], zero: float) -> Kernel:
     """Return the kernels of a sparse K from those of its strongly connected components."""
     group_order, reverse_order = range(len(net)), range(len(net) - 1, -1, -1)
-    right = _continued(stiffness, net, [(block.right, block.left) for block in parts], group_order, zero)
-    left = _continued(stiffness.T.tocsr(), net, [(block.left, block.right) for block in parts], reverse_order, zero)
+    right = _continued(stiffness, net, [(part.right, part.left) for part in parts], group_order, zero)
+    left = _continued(stiffness.T.tocsr(), net, [(part.left, part.right) for part in parts], reverse_order, zero)
     if right.shape != left.shape:
         raise SolverError(
             f"K has {right.shape[1]} zero modes by its rows and {left.shape[1]} by its columns: its rank is in doubt "
             f"at {zero:.2g}; give `zero`, what counts as a zero mode"
         )
-    return Kernel(right, left, np.sort(np.concatenate([block.sizes for block in parts])))
+    return Kernel(right, left, np.sort(np.concatenate([part.sizes for part in parts])))
 
 
 def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, zero: float) -> FloatArray:

@@ -111,10 +111,10 @@ def condition_76_residual(m: int = 2) -> sp.Expr:
 
 def e2_identity(m: int = 2) -> EnergyIdentity:
     """Derive dH/dt of the printed H, which counts every pair twice and keeps an indefinite dV_alpha/dt."""
-    printed_value = theorem6_identity(m, copies=sp.Integer(2))
-    left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", printed_value.residual)
+    identity = theorem6_identity(m, copies=sp.Integer(2))
+    left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", identity.residual)
     name = r"E2: the printed $V_\alpha = \sum_i \sum_{j \neq i} \psi_\alpha$"
-    return replace(printed_value, name=name, steps=(*printed_value.steps, left))
+    return replace(identity, name=name, steps=(*identity.steps, left))
 
 
 def e2_counterexample() -> RisingEnergy:
@@ -124,7 +124,7 @@ def e2_counterexample() -> RisingEnergy:
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)
     q, p = (sp.Integer(0), sp.Integer(2)), (sp.Integer(0), -sp.Rational(1, 5))
     pair = GenericPair(1)
-    state = {s[0]: x for ends, component in ((pair.q, q), (pair.p, p)) for s, x in zip(ends, component, strict=True)}
+    state = {s[0]: x for ends, part in ((pair.q, q), (pair.p, p)) for s, x in zip(ends, part, strict=True)}
     state |= {pair.z: sigma_norm(q[1] - q[0], eps=alpha.eps), sp.Symbol("epsilon", positive=True): alpha.eps}
     drag = -gains.c2_gamma * sp.Add(*(speed**2 for speed in p))  # the gamma-agent's pull and potential cancel
 

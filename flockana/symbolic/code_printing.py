@@ -25,14 +25,14 @@ class Constants:
         if not expression.free_symbols & self.variables:
             return self._symbol_for(expression)
         if isinstance(expression, sp.Add | sp.Mul):
-            fixed = [arg for arg in expression.args if not arg.free_symbols & self.variables]
-            moving = [self.extract_constants(arg) for arg in expression.args if arg.free_symbols & self.variables]
+            fixed = [each for each in expression.args if not each.free_symbols & self.variables]
+            moving = [self.extract_constants(each) for each in expression.args if each.free_symbols & self.variables]
             return expression.func(self._symbol_for(expression.func(*fixed)), *moving)
         if isinstance(expression, sp.Piecewise):
             return expression.func(*((self.extract_constants(value), where) for value, where in expression.args))
         if not expression.args:
             return expression
-        return expression.func(*(self.extract_constants(arg) for arg in expression.args))
+        return expression.func(*(self.extract_constants(each) for each in expression.args))
 
     def _symbol_for(self, constant: sp.Expr) -> sp.Expr:
         if constant.is_Integer or (constant.is_Rational and constant.q in (2, 4)):
@@ -75,7 +75,7 @@ class FloatCode(PythonCodePrinter):
     def _print_Function(self, function: sp.Expr) -> str:  # noqa: N802  # sympy's name
         name = {"sin": "sine", "cos": "cosine"}.get(function.func.__name__, function.func.__name__)
         name = re.sub("(?<=[a-z])(?=[A-Z0-9])", "_", name).lower() if isinstance(function, Named) else name
-        return f"{name}({', '.join(self._print(arg) for arg in function.args)})"
+        return f"{name}({', '.join(self._print(argument) for argument in function.args)})"
 
     def _print_Pi(self, pi: sp.Expr) -> str:  # noqa: N802  # sympy's name
         return "pi"

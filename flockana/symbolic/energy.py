@@ -146,7 +146,7 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     energy = sums_over_pairs.hamiltonian(m, gains=gains, factor=kinetic_factor)
     rate = pair.lift(total)
     stated_form = pair.lift(stated_rate)
-    lifting_step = (
+    lift_steps = (
         Step("The energy, every pair once, with", energy),
         Step("the sigma-distance of a pair:", sums_over_pairs.sigma_distance(Q, m)),
         *steps,
@@ -159,7 +159,7 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
         Step(r"and $-c_2^\alpha\, p^T \hat L p$ is, with $\hat L$ the sum of its pairs' blocks,", stated_form),
     )
     residual = pair.lift(pair.tidy(total - stated_rate))
-    return EnergyIdentity("Algorithm 1: energy", energy, rate, stated_form, residual, lifting_step)
+    return EnergyIdentity("Algorithm 1: energy", energy, rate, stated_form, residual, lift_steps)
 
 
 def relative_feedback(x_i: sp.Matrix, v_i: sp.Matrix, gains: GainSymbols) -> tuple[sp.Matrix, sp.Matrix]:
@@ -197,7 +197,7 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     energy = sums_over_pairs.structural_hamiltonian(m, gains=gains, lambda_=lambda_)
     rate = pair.lift(total) + over_agents(agent.xreplace(names))
     stated_form = pair.lift(stated_rate) + over_agents(agent_claimed.xreplace(names))
-    lifting_step = (
+    lift_steps = (
         Step("The energy in the moving frame, with", energy),
         Step("the sigma-distance of a pair:", sums_over_pairs.sigma_distance(X, m)),
         *steps,
@@ -215,4 +215,4 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
     )
     agent_residual = over_agents(sp.expand(agent - agent_claimed).xreplace(names))
     residual = pair.lift(pair.tidy(total - stated_rate)) + agent_residual
-    return EnergyIdentity("Structural energy in the moving frame", energy, rate, stated_form, residual, lifting_step)
+    return EnergyIdentity("Structural energy in the moving frame", energy, rate, stated_form, residual, lift_steps)

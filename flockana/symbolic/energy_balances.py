@@ -103,19 +103,19 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
     leaders = [[vector(f"{name}_{number}", m) for number in "gh"] for name in ("q", "p", "a")]
     q_l, p_l, a_l = ([leader[number] for number in _GROUP] for leader in leaders)
     velocity_difference = [own_velocity - leader_velocity for own_velocity, leader_velocity in zip(p, p_l, strict=True)]
-    unit_matrix = [[int(a == b) for b in _GROUP] for a in _GROUP]
-    pairs, u, energy, dissipated_power = _between_agents(q, p, lambda i, j, _: K_2 * unit_matrix[i][j] * _weight(i, j))
+    same_group = [[int(a == b) for b in _GROUP] for a in _GROUP]
+    pairs, u, energy, power = _between_agents(q, p, lambda i, j, _: K_2 * same_group[i][j] * _weight(i, j))
     for i in range(_N):
         u[i] += int(feedforward) * a_l[i]
         energy += velocity_difference[i].dot(velocity_difference[i]) / 2
-        dissipated_power -= pairs[i].dot(p_l[i]) + (0 if feedforward else velocity_difference[i].dot(a_l[i]))
+        power -= pairs[i].dot(p_l[i]) + (0 if feedforward else velocity_difference[i].dot(a_l[i]))
         if i in _PINNED:
             u[i] -= PULL * (q[i] - q_l[i]) + MATCH * velocity_difference[i]
             energy += PULL * (q[i] - q_l[i]).dot(q[i] - q_l[i]) / 2
-            dissipated_power -= MATCH * velocity_difference[i].dot(velocity_difference[i])
+            power -= MATCH * velocity_difference[i].dot(velocity_difference[i])
     flow = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
     title = "Energy of the dead-zone law with leaders"
-    return energy_balance(title, energy, dissipated_power, *flow, of="The energy in the frames of the leaders,")
+    return energy_balance(title, energy, power, *flow, of="The energy in the frames of the leaders,")
 
 
 def copies_balance() -> Derivation:

@@ -94,7 +94,7 @@ def e1_counterexample() -> RisingEnergy:
 def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i."""
     pull = sp.expand(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)))
-    return sp.expand(sp.Add(*(sum_over(pull, component) for component in _PARTS)))
+    return sp.expand(sp.Add(*(sum_over(pull, part) for part in _PARTS)))
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
@@ -102,21 +102,21 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
     # means.
     total = sp.S.Zero
-    for component in _PARTS:
-        stress = sum_over(STRESS[_J], component)
-        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), component) / stress
+    for part in _PARTS:
+        stress = sum_over(STRESS[_J], part)
+        mean = sum_over(sp.expand(STRESS[_J] * (PLACE[_J] + shift)), part) / stress
         total += stress * (mean if printed else mean - (OWN + shift))
     return sp.expand(total)
 
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
     """Derive the friends' form of u_i^g; the printed form loses -S_i q_i and depends on the origin."""
-    true_value, stated_form = gradient_part(), friends_form(printed=printed)
-    friend_sum = friends_form(printed=printed, shift=SHIFT)
+    true_form, stated_form = gradient_part(), friends_form(printed=printed)
+    moved_form = friends_form(printed=printed, shift=SHIFT)
     steps = (
-        Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true_value),
+        Step(r"Part the neighbours of agent $i$ into $F^+$, $F^-$ and $F^0$ by the sign of $s_{ij}$:", true_form),
         Step("What is stated in the stress-weighted means of both:", stated_form),
-        Step(r"Move all agents by $w$; it becomes", friend_sum),
+        Step(r"Move all agents by $w$; it becomes", moved_form),
     )
-    residuals = (sp.expand(true_value - stated_form), sp.expand(friend_sum - stated_form))
+    residuals = (sp.expand(true_form - stated_form), sp.expand(moved_form - stated_form))
     return Derivation(r"Flock centring and collision avoidance, $u_i^g$", steps, stated_form, residuals)

@@ -214,8 +214,8 @@ def _cosine_range(x: arb) -> arb:
     range_ends = x.lower().cos().union(x.upper().cos())
     if not turns.contains_integer():
         return range_ends
-    connected_samples = round(float(turns.mid()))
-    return range_ends.union(arb(1 - 2 * (connected_samples % 2))).intersection(arb(0, 1))
+    whole = round(float(turns.mid()))
+    return range_ends.union(arb(1 - 2 * (whole % 2))).intersection(arb(0, 1))
 
 
 def _inside(x: Any) -> Any:
@@ -290,10 +290,10 @@ class _GermVisitor:
 
     def of(self, node: sp.Expr) -> Germ:
         if node not in self._known:
-            germ_node = self._of(node)
-            if not germ_node.factor.is_finite():
+            own_germ = self._of(node)
+            if not own_germ.factor.is_finite():
                 raise _UnknownError
-            self._known[node] = germ_node
+            self._known[node] = own_germ
         return self._known[node]
 
     def _of(self, node: sp.Expr) -> Germ:
@@ -302,9 +302,9 @@ class _GermVisitor:
         if self.variable not in node.free_symbols:
             return Germ(Fraction(0), _first(Enclosed(node, self.variable), arb(0)))
         if node.is_Add:
-            return self._sum([self.of(arg) for arg in node.args])
+            return self._sum([self.of(argument) for argument in node.args])
         if node.is_Mul:
-            powers, factors = zip(*(self.of(arg) for arg in node.args), strict=True)
+            powers, factors = zip(*(self.of(argument) for argument in node.args), strict=True)
             return Germ(sum(powers, Fraction(0)), prod(factors, start=arb(1)))
         if node.is_Pow and node.exp.is_Rational:
             return self._power(self.of(node.base), node.exp)

@@ -69,7 +69,7 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
     """Return the number of nodes of an expression, its height of exponentials, and its degree."""
     if value not in known:
-        rows = [expression_size(arg, known) for arg in value.args] or [(0, 0, 1)]
+        rows = [expression_size(argument, known) for argument in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)
         power_height, degree = (max(row[k] for row in rows) for k in (1, 2))
         if isinstance(value, sp.Pow) and value.exp.is_number:

@@ -120,12 +120,12 @@ def _float(x: fmpq) -> float:
 def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
     """Return faults visible in values and slopes near a point: a jump, pole, kink or missing value."""
     region_width, position = region.right - region.left, region.place(at)
-    near_end, far_end = region_width / 2**100, region_width / 2**50
+    near_step, far_step = region_width / 2**100, region_width / 2**50
     sides: list[list[list[arb] | None]] = []
-    witness = region.between(max(at - near_end, region.left), min(at + near_end, region.right))
+    witness = region.between(max(at - near_step, region.left), min(at + near_step, region.right))
     with precision(900, 2):
         for sign in (-1, 1):
-            points = [at + sign * step for step in (near_end, far_end)]
+            points = [at + sign * step for step in (near_step, far_step)]
             if region.left <= points[0] <= region.right:
                 sides.append([of.series(arb(point)) for point in points])
     if any(all(values is None for values in side) for side in sides):
@@ -239,9 +239,9 @@ def least_on(region: Region, scale: float) -> Least:
 
     def bound_part(left: fmpq, right: fmpq) -> None:
         nonlocal best, where
-        low, high, midpoint_series = _lowest(enclosed_expression, left, right)
+        low, high, position = _lowest(enclosed_expression, left, right)
         if high < best:
-            best, where = high, midpoint_series
+            best, where = high, position
         heapq.heappush(heap, (down(low) if low.is_finite() else -inf, next(number), left, right))
 
     with precision(_BITS, 3):

@@ -54,12 +54,12 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     stiffness = gains.c1_alpha * (weight * sp.eye(m) + 2 * slope * delta * delta.T)
     by_position = stiffness + 2 * gains.c2_alpha * consensus * velocity_difference * delta.T
     by_velocity = gains.c2_alpha * ADJACENCY(z) * sp.eye(m)
-    stated_form = (-by_position, by_position, -by_velocity, by_velocity)
+    stated_rates = (-by_position, by_position, -by_velocity, by_velocity)
     residuals = [
         sp.expand(entry)
         for force, sign in zip(pair.forces(gains), (1, -1), strict=True)
-        for end, stated_rate in zip((q_i, q_j, p_i, p_j), stated_form, strict=True)
-        for entry in _slopes(force, table, end, sigma_norm(delta), z) - sign * stated_rate
+        for end, stated_block in zip((q_i, q_j, p_i, p_j), stated_rates, strict=True)
+        for entry in _slopes(force, table, end, sigma_norm(delta), z) - sign * stated_block
     ]
     first_text = r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:"
     steps = (
@@ -80,11 +80,11 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
     root = sp.sqrt(1 + sp.Add(*(c**2 for c in x)))
     pull = sp.eye(m) / root - x * x.T / root**3 if bounded else sp.eye(m)
     by_position, by_velocity = -gains.c1_gamma * pull, -gains.c2_gamma * sp.eye(m)
-    stated_form = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
+    stated_pairs = ((q_i, by_position), (p_i, by_velocity), (q_r, -by_position), (p_r, -by_velocity))
     residuals = [
         sp.simplify(entry)
-        for end, stated_rate in stated_form
-        for entry in sp.ImmutableMatrix(force).jacobian(sp.Matrix(list(end))) - stated_rate
+        for end, stated_block in stated_pairs
+        for entry in sp.ImmutableMatrix(force).jacobian(sp.Matrix(list(end))) - stated_block
     ]
     steps = (
         Step(r"The pull to the $\gamma$-agent:", force),
@@ -116,18 +116,18 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
     table = {PHI_BETA: PHI_BETA_SLOPE, WEIGHT: WEIGHT_SLOPE}
     weight = PHI_BETA(z) / ROOT
     slope = (PHI_BETA_SLOPE(z) - EPS * PHI_BETA(z) / ROOT) / (2 * ROOT**2)
-    braking_slope = WEIGHT_SLOPE(z) / (2 * ROOT)
+    weight_slope = WEIGHT_SLOPE(z) / (2 * ROOT)
     identity = sp.eye(m) - obstacle.derivative
     by_position = -gains.c1_beta * (weight * identity + 2 * slope * gap * gap.T)
-    by_position += gains.c2_beta * (WEIGHT(z) * turn(obstacle) - 2 * braking_slope * velocity_difference * gap.T)
+    by_position += gains.c2_beta * (WEIGHT(z) * turn(obstacle) - 2 * weight_slope * velocity_difference * gap.T)
     by_velocity = -gains.c2_beta * WEIGHT(z) * identity
     functions = (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
     names = {f(z): sp.Symbol(f.__name__) for f in functions}  # then it is rational
     force = obstacle.force(gains)
     residuals = [
-        obstacle.reduce((entry - stated_rate).xreplace(names))
+        obstacle.reduce((entry - stated_entry).xreplace(names))
         for end, block in ((obstacle.x, by_position), (obstacle.p, by_velocity))
-        for entry, stated_rate in zip(_slopes(force, table, end, sigma_norm(gap), z), block, strict=True)
+        for entry, stated_entry in zip(_slopes(force, table, end, sigma_norm(gap), z), block, strict=True)
     ]
     steps = (
         Step(r"The gap to the closest point, $g = \hat q - q$:", gap),

@@ -23,10 +23,10 @@ class Named(sp.Function):
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the derivative by the first argument; the others are parameters."""
-        argument_range = sp.Dummy("at", real=True)
-        composed_form = self.func(argument_range, *self.args[1:]).composed
-        slope = sp.diff(composed_form, argument_range)
-        return (slope if composed_form.has(Named) else sp.simplify(slope)).subs(argument_range, self.args[0])
+        argument = sp.Dummy("at", real=True)
+        composed_form = self.func(argument, *self.args[1:]).composed
+        slope = sp.diff(composed_form, argument)
+        return (slope if composed_form.has(Named) else sp.simplify(slope)).subs(argument, self.args[0])
 
 
 def written(expression: sp.Expr) -> sp.Expr:
@@ -86,8 +86,8 @@ class BumpSlope(Named):
     @property
     def composed(self) -> sp.Expr:  # noqa: D102
         z, h = self.args
-        argument_range = sp.Dummy("at", positive=True)
-        slope = sp.diff(written(Taper(Place(argument_range, h))), argument_range).subs(argument_range, z)
+        argument = sp.Dummy("at", positive=True)
+        slope = sp.diff(written(Taper(Place(argument, h))), argument).subs(argument, z)
         return sp.Piecewise((0, sp.Or(z <= h, z >= 1)), (slope, True))
 
 

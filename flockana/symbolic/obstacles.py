@@ -127,8 +127,8 @@ def derive_braking(kind: str, m: int = 2) -> Braking:
     """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall."""
     generic_obstacle = GenericObstacle(kind, m)
     normal, p = generic_obstacle.normal, generic_obstacle.p
-    axial_part = normal.dot(p) ** 2 / normal.dot(normal)
-    geometric = (generic_obstacle.mu - 1) * (p.dot(p) - axial_part) - axial_part
+    axial_square = normal.dot(p) ** 2 / normal.dot(normal)
+    geometric = (generic_obstacle.mu - 1) * (p.dot(p) - axial_square) - axial_square
     residual = generic_obstacle.reduce(generic_obstacle.braking() - geometric)
     mu = sp.S.One if kind == "wall" else 1 / (1 + DEPTH)
     return Braking(kind, residual, (sp.factor((mu - 1) * TANGENT_SQUARE), -(NORMAL_SPEED**2)))

@@ -124,7 +124,7 @@ class _NumericFormula:
         forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
-        for formulas, law_text, (scale, slope), kinks in (
+        for formulas, part_text, (scale, slope), kinks in (
             (self._main_pieces, name, scales, "" if forces else "the force"),
             (self._weights, "the adjacency", (self.tallest, self.tallest / self.cut.end), ""),
         ):
@@ -133,12 +133,12 @@ class _NumericFormula:
                     width, is_clear = self._clear(region)
                     region = region._replace(left=width)
                     if not is_clear:
-                        text = f"whether {law_text} is smooth near contact is open"
+                        text = f"whether {part_text} is smooth near contact is open"
                         yield Fact("assumed", text, (0.0, self.place(width)), float(arb(width)))
-                for fact in smooth_on(region, law_text, scale, slope, kinks=kinks):
+                for fact in smooth_on(region, part_text, scale, slope, kinks=kinks):
                     is_last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
                     is_at_end = fact.status == "unmet" and is_last and "no limit" in fact.detail
-                    text = f"{law_text} has a pole at the range, s = {self.place(self.cut.end):g}"
+                    text = f"{part_text} has a pole at the range, s = {self.place(self.cut.end):g}"
                     yield Fact("unmet", text, fact.witness) if is_at_end else fact
 
     def _clear(self, region: Region) -> tuple[fmpq, bool]:
@@ -181,9 +181,9 @@ class _NumericFormula:
         text = f"open is whether {fault}"
         if zero is False:
             with precision(_BITS):
-                width_text = abs(_value(number.xreplace(self._numbers)))
-            text = f"{fault} by {float(width_text):.2g}, as by rounding of a parameter"
-            if width_text > _SMALL * scale:
+                fault_size = abs(_value(number.xreplace(self._numbers)))
+            text = f"{fault} by {float(fault_size):.2g}, as by rounding of a parameter"
+            if fault_size > _SMALL * scale:
                 status, text = "unmet", fault
         yield Fact(status, text, (place, place))
 
@@ -205,10 +205,10 @@ class _NumericFormula:
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
         """Yield ends of a region, except contact and range, at which the adjacency may vanish."""
-        for end, zero_place in zip(region.ends, (region.left, region.right), strict=True):
+        for end, end_place in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
-                position = self.place(zero_place)
+                position = self.place(end_place)
                 status: FactStatus = "unmet" if zero else "assumed"
                 yield Fact(status, f"the adjacency vanishes at s = {position:.6g}", (position, position))
 
@@ -243,9 +243,9 @@ class _NumericFormula:
         if self.cut.formula.forces:
             regions = list(self._regions(self._main_pieces))
             return least_of_integral(regions, self._point(self._declared("d"), 0), scale)
-        first_region, *region_minima = regions = list(self._regions(self._main_pieces))
+        first_region, *later_regions = regions = list(self._regions(self._main_pieces))
         contact_value, minimum, left = self._contact(first_region)
-        minima = [minimum, *(least_on(region, scale) for region in (first_region._replace(left=left), *region_minima))]
+        minima = [minimum, *(least_on(region, scale) for region in (first_region._replace(left=left), *later_regions))]
         low, high = min(item.low for item in minima), min(item.high for item in minima)
         return self._sharpened(regions, low, high), contact_value
 
@@ -302,8 +302,8 @@ class _NumericFormula:
             power = arb(rational(slope.power)) + 1
             if end is None or not power > 0:
                 return None
-            closed_form = slope.factor * (arb(width).log() * power).exp() / power
-            limit = end[0] - arb(0).union(closed_form)
+            change = slope.factor * (arb(width).log() * power).exp() / power
+            limit = end[0] - arb(0).union(change)
             return down(limit), up(limit)
 
 

@@ -165,7 +165,7 @@ class PiecewiseFormula:
         """Derived expressions between consecutive marks."""
         formula, parts = self.formula, []
         for midpoint in (0.5 * (left + right) for left, right in pairwise(self.marks)):
-            main_formula, weight = (self.chosen(component, midpoint) for component in (formula.main, formula.adjacency))
+            main_formula, weight = (self.chosen(part, midpoint) for part in (formula.main, formula.adjacency))
             parts.append(derive_piece(main_formula, weight, formula.distance, forces=formula.forces))
             _ensure_derived(parts[-1].slope, _CURVATURE)
         return tuple(parts)
@@ -179,7 +179,7 @@ class PiecewiseFormula:
             raise ArgumentError(f"no piece holds at {self.formula.distance} = {at:g}: end Piecewise with (0, True)")
         if not expression.args or not expression.has(sp.Piecewise):
             return expression
-        return expression.func(*(self.chosen(arg, at) for arg in expression.args))
+        return expression.func(*(self.chosen(argument, at) for argument in expression.args))
 
     def _holds(self, condition: Any, at: float) -> bool:
         sign = self.value((condition.lhs - condition.rhs).subs(self.formula.distance, sp.Rational(at)))
@@ -212,10 +212,10 @@ class PiecewiseFormula:
 def _compiled(expression: sp.Expr, y: sp.Symbol, symbols: tuple[sp.Symbol, ...]) -> Callable[..., Any]:
     """Return an expression as a function of y and of its parameters, for mpmath."""
     expression = expression.subs(ROOT, 1 + EPS * Z)
-    is_bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
+    bounded_form = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
     symbols_given = {symbol: sp.Dummy() for symbol in symbols}  # a parameter may be named like a function of mpmath
     compiled: Callable[..., Any] = sp.lambdify(
-        [y, *symbols_given.values()], is_bounded.xreplace(symbols_given), [_BOUNDED, "mpmath"], dummify=True
+        [y, *symbols_given.values()], bounded_form.xreplace(symbols_given), [_BOUNDED, "mpmath"], dummify=True
     )
     return compiled
 
@@ -267,5 +267,5 @@ def pair_derivation(formula: PairFormula) -> Derivation:
 
 def alpha_steps() -> tuple[Step, ...]:
     """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
-    first_text = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
-    return first_text, Step("and its adjacency", adjacency(Z))
+    first_step = Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z))
+    return first_step, Step("and its adjacency", adjacency(Z))

@@ -80,7 +80,7 @@ class _Potential:
         """Return residuals that must be 0: derivative less force, jumps, and the value at the zero."""
         inner_piece, middle_piece, outer_piece = self.pieces(zero_on_plateau)
         zero_piece = inner_piece if zero_on_plateau else middle_piece
-        computed_value = (
+        differences = (
             sp.diff(self.closed(Z), Z) - self.smooth(Z),
             sp.diff(inner_piece(Z), Z) - self.smooth(Z),
             sp.diff(middle_piece(Z), Z) - self.tapered(Z),
@@ -89,7 +89,7 @@ class _Potential:
             middle_piece(self.cutoff) - outer_piece(self.cutoff),
             zero_piece(self.zero),
         )
-        return tuple(sp.expand(residual) for residual in computed_value)
+        return tuple(sp.expand(residual) for residual in differences)
 
 
 @check_kinds

@@ -44,9 +44,9 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
 
     def terms(total: sp.Sum) -> sp.Expr:
         *inner, (index, low, high) = total.limits
-        rest_ratio = sp.Sum(total.function, *inner) if inner else total.function
-        item = (rest_ratio.subs(index, value) for value in range(low, high + 1))
-        return sp.Add(*(terms(term) if inner else term for term in item))
+        inner_sum = sp.Sum(total.function, *inner) if inner else total.function
+        addends = (inner_sum.subs(index, value) for value in range(low, high + 1))
+        return sp.Add(*(terms(term) if inner else term for term in addends))
 
     return generic.subs({N: n, M: m}).replace(lambda e: isinstance(e, sp.Sum), terms)
 

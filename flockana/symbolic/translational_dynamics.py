@@ -89,7 +89,7 @@ def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tupl
         even_part, odd_part = ((polynomial + sign * polynomial.subs(S, -S)) / 2 for sign in (1, -1))
         return sp.expand(sp.expand(even_part**2 - odd_part**2).subs(S, sp.I * sp.sqrt(square)))
 
-    return tuple(modulus(component) for component in sp.fraction(transfer_function(scale, gains=gains)))
+    return tuple(modulus(part) for part in sp.fraction(transfer_function(scale, gains=gains)))
 
 
 def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square: sp.Expr = SQUARE) -> sp.Expr:
@@ -128,8 +128,8 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     stated_form = -gains.c1_gamma * x_i - gains.c2_gamma * v_i
     gradient = pair_potential(x_i, x_j, gains=gains).diff(x_i)
     consensus = gains.c2_alpha * ADJACENCY(sigma_norm(x_j - x_i)) * (v_j - v_i)
-    state_differences = (*(on_i + force_on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
-    residuals = (*map(pair.tidy, state_differences), *(own_part - stated_form).expand())
+    differences = (*(on_i + force_on_j), *(on_i.xreplace(shift) - on_i), *(on_i + gradient - consensus))
+    residuals = (*map(pair.tidy, differences), *(own_part - stated_form).expand())
     f_ij, f_ji = sp.symbols("f_ij f_ji")
     relative = sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i)))
     steps = (

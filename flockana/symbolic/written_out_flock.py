@@ -95,8 +95,8 @@ class ConcreteFlock(Printed):
             u_i = sp.zeros(self.m, 1)
             if self.law == "algorithm2":
                 u_i += own_force(*own_p, *self.target, gains=self.gains)
-            for neighbour in agents[:i] + agents[i + 1 :]:
-                u_i += pair_force(*own_p, *neighbour, gains=self.gains)
+            for other in agents[:i] + agents[i + 1 :]:
+                u_i += pair_force(*own_p, *other, gains=self.gains)
             total.append(sp.ImmutableMatrix(u_i))
         return tuple(total)
 
@@ -112,7 +112,7 @@ class ConcreteFlock(Printed):
     @cached_property
     def rate(self) -> sp.Expr:
         """Time derivative of the energy along the flow, by the chain rule over all agents."""
-        q, p, u = ([s for rows in component for s in rows] for component in (self.q, self.p, self.acceleration))
+        q, p, u = ([s for rows in part for s in rows] for part in (self.q, self.p, self.acceleration))
         return along_flow(self.energy, q, p, u)
 
     @cached_property
@@ -262,7 +262,7 @@ def numeric_law(
     for name, symbols, given_value in zip(("q_r", "p_r"), flock.target, (q_r, p_r), strict=True):
         components = ensure_vector(name, np.zeros(m) if given_value is None else given_value, m)
         values |= {symbol: sp.Rational(float(x)) for symbol, x in zip(symbols, components, strict=True)}
-    state = [symbol for component in (flock.q, flock.p) for row in component for symbol in row]
+    state = [symbol for part in (flock.q, flock.p) for row in part for symbol in row]
     parameter_values = _numbers(alpha)
     accelerations = [u.xreplace(values) for row in flock.acceleration for u in row]
     expressions = [accelerations, flock.energy.xreplace(values), flock.rate.xreplace(values)]

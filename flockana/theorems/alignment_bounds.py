@@ -65,9 +65,9 @@ class AlignmentRate:
         power = self.weight.decay - 0.5
         if power <= 0.0:
             return inf
-        y, threshold = self.stretch * abs(start) / self.weight.length, float(beta(power, 0.5))
-        tail = 0.5 * threshold * float(betainc(power, 0.5, 1.0 / (1.0 + y * y)))
-        return self._unit * (tail if start >= 0.0 else threshold - tail)
+        y, full_beta = self.stretch * abs(start) / self.weight.length, float(beta(power, 0.5))
+        tail = 0.5 * full_beta * float(betainc(power, 0.5, 1.0 / (1.0 + y * y)))
+        return self._unit * (tail if start >= 0.0 else full_beta - tail)
 
     def reached(self, start: float, speed: float) -> float:
         """Return the x_M at which ∫φ from `start` equals the speed; infinite without one."""

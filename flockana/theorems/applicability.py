@@ -118,8 +118,8 @@ def _judge(item: Theorem, claim: Claim, shown: Hypothesis | None = None) -> tupl
             if entry.status == missing and not entry.on_motion:
                 return _row(item, claim.name, missing, entry, proof=claim.proof, by=claim.by)
     if shown is not None:
-        is_doubtful = "assumed" if shown.status == "assumed" else "needs a run"
-        return _row(item, claim.name, is_doubtful, shown, proof=claim.proof, by=claim.by)
+        doubt_text = "assumed" if shown.status == "assumed" else "needs a run"
+        return _row(item, claim.name, doubt_text, shown, proof=claim.proof, by=claim.by)
     is_known = not any(requirement.on_motion for requirement in claim.needs)
     proved, is_disproved = claim.status == "verified" and claim.proof, claim.status == "refuted" and claim.disproof
     status = "needs a run" if not is_known else "met" if proved else "disproved" if is_disproved else "needs a run"

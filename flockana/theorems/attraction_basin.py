@@ -29,8 +29,8 @@ def attraction(
         return basins.ALONE
     if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
         return basins.Basin()
-    is_global = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
-    if not (is_global or law.gains.c2_alpha > 0.0):
+    everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
+    if not (everywhere or law.gains.c2_alpha > 0.0):
         return basins.Basin()
     force, stiffness = _force(law, q), law.stiffness(q)
     curvature, stiffest = basins.curvatures(stiffness, rigid_motions(q))
@@ -39,8 +39,8 @@ def attraction(
         translations = np.tile(np.eye(q.shape[1]), (len(q), 1)) / sqrt(len(q))
         curvature, stiffest = basins.curvatures(stiffness, translations)
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
-    connected_claim = is_global or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
-    if distance + off == inf or not connected_claim:
+    is_connected = everywhere or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
+    if distance + off == inf or not is_connected:
         return basins.Basin(inf, 0.0, distance, curvature)
     windows = law.alpha.length * basins.WINDOWS
     leaving, lipschitz = basins.barrier(curvature, distance, windows, lambda w: lipschitz_within(law, q, w), off=off)
@@ -51,15 +51,15 @@ def attraction(
 def final_basin(seen: Observed) -> basins.Basin:
     """Return the basin near the last state of a run, with its error; cached with the run."""
     q, p, q_error, p_error = seen.end
-    error_bars, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
-    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=error_bars, p_off=p_off))
+    q_off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
+    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=q_off, p_off=p_off))
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
     """Return ‖∇U(x)‖ over all coordinates, plus a bound of its rounding."""
-    link_counts = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
+    most_links = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
-    rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (link_counts + 1.0) + 16.0 * EPS * pull
+    rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (most_links + 1.0) + 16.0 * EPS * pull
     return float(np.linalg.norm(structural_force(law, q))) + sqrt(q.size) * rounding
 
 

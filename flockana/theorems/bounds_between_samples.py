@@ -94,10 +94,10 @@ def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
         return sample_distances
     distances = []
     for _, points, path_error in polygons(seen.run):
-        is_separate = points[j] - points[i]
-        path_means = is_separate.mean(axis=1, keepdims=True)
-        path_means /= np.maximum(np.linalg.norm(path_means, axis=2, keepdims=True), np.finfo(float).tiny)
-        distances.append((np.sum(is_separate * path_means, axis=2).min(axis=1) - path_error[i] - path_error[j]).min())
+        displacement = points[j] - points[i]
+        directions = displacement.mean(axis=1, keepdims=True)
+        directions /= np.maximum(np.linalg.norm(directions, axis=2, keepdims=True), np.finfo(float).tiny)
+        distances.append((np.sum(displacement * directions, axis=2).min(axis=1) - path_error[i] - path_error[j]).min())
     interval_distances = seen.run.over_intervals(np.minimum, np.array(distances)) - 2.0 * seen.between_error
     low = max(min(float(interval_distances.min()), float(sample_distances.lo)), 0.0)
     return Enclosure(low, sample_distances.mid, sample_distances.hi)
@@ -212,8 +212,8 @@ def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)
         giant_size = run.n * float(run.metric("giant_share")[k])
         return round(number), round(number), round(giant_size), round(giant_size), count, 0
-    fewest, maximum = (np.bincount(components(run.n, link_mask)) for link_mask in (pairs[certain], pairs))
-    return fewest.size, maximum.size, int(fewest.max()), int(maximum.max()), count, len(pairs) - count
+    fewest, most = (np.bincount(components(run.n, linked)) for linked in (pairs[certain], pairs))
+    return fewest.size, most.size, int(fewest.max()), int(most.max()), count, len(pairs) - count
 
 
 def _nets(rows: list[tuple[float, ...]]) -> Nets:

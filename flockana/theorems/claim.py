@@ -123,8 +123,8 @@ class Claim(ShortRepr):
             raise ArgumentError(f"claim {self.name!r} has error = {self.error:g}: expected none below 0")
         if self.status not in ("verified", "refuted"):
             return
-        weak_claim = self.status == "refuted" or self.about != "run"
-        barred_statuses = {"unmet", "assumed"} if weak_claim else {"unmet"}
+        is_weak = self.status == "refuted" or self.about != "run"
+        barred_statuses = {"unmet", "assumed"} if is_weak else {"unmet"}
         if (need := next((need for need in self.needs if need.status in barred_statuses), None)) is not None:
             raise ArgumentError(
                 f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "

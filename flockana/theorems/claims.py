@@ -74,12 +74,12 @@ def conclude(
         The margin that decided, a scalar.
     """
     needs = tuple(needs)
-    status, how, is_contradicting = with_needs(by_numbers, needs, about), rigour, ""
+    status, how, contradicted = with_needs(by_numbers, needs, about), rigour, ""
     cited_names: tuple[str, ...] = ()
     proved: Status = "verified" if proof else "refuted"
     if (key := proof or disproof) and all(requirement.status == "met" for requirement in needs):
         if by_numbers in ("verified", "refuted") and by_numbers != proved:
-            status, is_contradicting = "inconclusive", key
+            status, contradicted = "inconclusive", key
             detail = f"{detail}; the numbers contradict the proof {key!r}: the run or the library is at fault"
         else:
             status, how, cited_names = proved, RIGOUR[key], CITES.get(key, ())
@@ -96,7 +96,7 @@ def conclude(
         detail=detail.lstrip("; "),
         needs=needs,
         about=about,
-        contradicts=is_contradicting,
+        contradicts=contradicted,
         cites=cited_names,
         **fields,
     )
@@ -210,9 +210,9 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
     """
     has_several = isinstance(residual, list | tuple)
     is_equal = all(row == 0 for row in residual) if has_several else bool(residual == 0)
-    computed_value = "residual 0" if is_equal else "a residual that is not 0"
+    computed_text = "residual 0" if is_equal else "a residual that is not 0"
     witness = [str(row) for row in residual] if has_several else str(residual)
-    return exact(name, is_equal, computed=computed_value, witness=witness, **fields)
+    return exact(name, is_equal, computed=computed_text, witness=witness, **fields)
 
 
 def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:

@@ -39,11 +39,11 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     error = seen.shape_error + seen.centre_error[:, None]
     sample_distances = Enclosure.around(lengths(run.q - place), error).max(axis=0)
     maximum = sample_distances.hi.copy()
-    origin_point = np.zeros(3)  # paths have three components in every dimension
-    origin_point[: run.m] = place
-    deviation = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
+    point = np.zeros(3)  # paths have three components in every dimension
+    point[: run.m] = place
+    error_sum = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
     for _, points, allowance in polygons(run):
-        maximum = np.maximum(maximum, lengths(points - origin_point).max(axis=1) + allowance + deviation)
+        maximum = np.maximum(maximum, lengths(points - point).max(axis=1) + allowance + error_sum)
     return Enclosure(sample_distances.lo, sample_distances.mid, maximum)
 
 

@@ -49,15 +49,15 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
     noise = _noise(seen, tolerances)
     if seen.doubt:
         return depths
-    deviation = float(2.0 * seen.shape_error.max())
+    pair_error = float(2.0 * seen.shape_error.max())
     path = seen.run.path.q
     for contact in contacts_of(seen.run, tolerances):
         displacement = path[:, contact.j] - path[:, contact.i]
         moving = np.flatnonzero((displacement != 0.0).any(axis=0))
         if moving.size == 1:
             depth = float(min(displacement[:, moving[0]].max(), -displacement[:, moving[0]].min()))
-            if depth > noise + deviation:
-                depths[contact.i, contact.j] = depth - deviation
+            if depth > noise + pair_error:
+                depths[contact.i, contact.j] = depth - pair_error
     return depths
 
 
@@ -77,11 +77,11 @@ def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
         if not np.isfinite(noise):
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
-        contact_limits = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
-        for i, j in pair_blocks(states[0][k], contact_limits + 2.0 * float(reach.max())):
-            path_rows = np.empty(i.size)
-            touching_pairs(points, reach, i, j, contact_limits, path_rows)
-            i, j = i[path_rows >= 0.0], j[path_rows >= 0.0]
+        contact_limit = noise + 2.0 * float((allowance if slack is None else allowance + slack[k]).max())
+        for i, j in pair_blocks(states[0][k], contact_limit + 2.0 * float(reach.max())):
+            hit_times = np.empty(i.size)
+            touching_pairs(points, reach, i, j, contact_limit, hit_times)
+            i, j = i[hit_times >= 0.0], j[hit_times >= 0.0]
             pairs[sample_indices[k]].update(zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist(), strict=True))
     return pairs
 
@@ -231,18 +231,18 @@ def pairs_at_one_instant(
     # than the contact distance at a sample, as coincident there.
     c_star, above = meeting(seen).c_star, above_least(seen, seen.energy)
     pair_limit, upper_count = np.floor(above.lo / c_star), np.floor(above.hi / c_star)
-    barrier_energy = np.array([len(pairs) for pairs in near(seen, tolerances)])
+    pair_counts = np.array([len(pairs) for pairs in near(seen, tolerances)])
     exactly = _at_one_place(seen.run.q)  # nothing else is certain at an instant
-    pair_margin = np.minimum(pair_limit[:-1], pair_limit[1:]) - barrier_energy
+    pair_margin = np.minimum(pair_limit[:-1], pair_limit[1:]) - pair_counts
     worst, broken = (int(np.argmin(pair_margin)) if pair_margin.size else 0), int(np.argmin(upper_count - exactly))
     high = float((upper_count - exactly)[broken]) + 0.5
     low = float(pair_margin.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
     refuted = high < 0.0 and not seen.doubt
     margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
-    return judged(name, margin, needs, proof=proof, computed=int(barrier_energy.max(initial=0))).described(
+    return judged(name, margin, needs, proof=proof, computed=int(pair_counts.max(initial=0))).described(
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
         witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(pair_limit[worst])},
-        detail=_instant_text(int(barrier_energy.max(initial=0)), float(pair_limit.min())),
+        detail=_instant_text(int(pair_counts.max(initial=0)), float(pair_limit.min())),
     )
 
 

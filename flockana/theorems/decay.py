@@ -111,8 +111,8 @@ def _terminal(seen: Observed) -> tuple[Linearisation | None, str]:
     if law.target is not None:
         law = replace(law, target=StaticTarget(law.target.position(float(seen.t[-1]))))
     try:
-        side_state = find_equilibrium(law, seen.end.q, method="descent", max_iter=_STEPS)
-        linear = linearise(law, side_state)
+        equilibrium = find_equilibrium(law, seen.end.q, method="descent", max_iter=_STEPS)
+        linear = linearise(law, equilibrium)
     except FlockanaError as error:
         return None, str(error)
     return linear, f"residual {linear.residual:.2g}, decay rate {linear.decay_rate:.4g}"
@@ -152,9 +152,9 @@ def where_a_run_ends(seen: Observed, tolerances: Tolerances) -> Checked:
     dies out at that mode's decay rate σ, K̃ at 2σ (Lyapunov's first method). Checked at the equilibrium that the run's
     last state is near to.
     """
-    name, known_run = "an equilibrium near the last state is stable", seen.accuracy_of_end
-    if known_run > _KNOWN * seen.scales.length:
-        requirement = Hypothesis(name, "assumed", detail=f"the last state is known to {known_run:.2g} only")
+    name, accuracy = "an equilibrium near the last state is stable", seen.accuracy_of_end
+    if accuracy > _KNOWN * seen.scales.length:
+        requirement = Hypothesis(name, "assumed", detail=f"the last state is known to {accuracy:.2g} only")
         return [requirement], [undecided(item, requirement.detail, [requirement]) for item in _NAMES]
     linear, reason_text = _terminal(seen)
     is_stable = linear is not None and bool(linear.modes) and linear.stable

@@ -77,10 +77,10 @@ def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
 def _stays(seen: Observed, case: _Case) -> Claim:
     """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
-    radius, start_distance = unit * float(basin.radius), unit * float(basin.distance)
+    radius, separation = unit * float(basin.radius), unit * float(basin.distance)
     claim = _nearer(seen, case, "stays", 0, radius)
     return claim.described(
-        stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {start_distance:.4g}",
+        stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {separation:.4g}",
         detail=f"proved by the Lyapunov function of the basin; at the samples at most {claim.computed:.3g} away",
     )
 
@@ -117,8 +117,8 @@ def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float) 
     distance = unit * max(map(float, distances))
     error = float(np.linalg.norm(seen.shape_error[sample_indices], axis=1).max())
     margin = Enclosure(allowed - distance - error, allowed - distance, np.maximum(allowed, allowed - distance))
-    sample_claim: Status = "verified" if margin.lo > 0.0 else "inconclusive"
-    return conclude(name, sample_claim, margin, about="all", proof=_PROOF, computed=distance)
+    sample_status: Status = "verified" if margin.lo > 0.0 else "inconclusive"
+    return conclude(name, sample_status, margin, about="all", proof=_PROOF, computed=distance)
 
 
 @run_theorem(

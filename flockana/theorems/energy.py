@@ -60,13 +60,13 @@ def cancelling(run: Trajectory) -> FloatArray:
     if law.moving or (law.target is None and not law.obstacles):
         return np.zeros(len(p))
     speed = lengths(p)
-    dimension: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
+    magnitude: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
     if law.target is not None:
         any_p_r = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
         q_r, p_r, rate = (np.array(item)[:, None] for item in zip(*any_p_r, strict=True))
-        dimension += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
-        dimension += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
-    return dimension
+        magnitude += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
+        magnitude += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
+    return magnitude
 
 
 def _damps_only(run: Trajectory) -> bool:
@@ -128,8 +128,8 @@ def never_rises(
     share = share[since:stop]
     worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
     claim = judged(name, share, needs, proof=proof)
-    signed_forces = formula and (one_sign or not cancels(seen.run).any())  # by a formula of squares
-    if claim.status == "verified" and claim.rigour == "numeric" and not signed_forces:
+    is_signed = formula and (one_sign or not cancels(seen.run).any())  # by a formula of squares
+    if claim.status == "verified" and claim.rigour == "numeric" and not is_signed:
         end_text += "; between samples nothing bounds it, and no formula decides its sign"
         claim = replace(claim, status="inconclusive")
     return claim.described(
@@ -232,9 +232,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     """
     if is_own(seen.law):
         return _own_terms(seen, tolerances)
-    dissipation_claim, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
+    needs, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
     balance_claim = balance(seen, [*smooth_where_needed(seen), *rates], tolerances, proof=proof)
-    return [*dissipation_claim, *rates], [never_rises(seen, dissipation_claim, proof=proof), balance_claim]
+    return [*needs, *rates], [never_rises(seen, needs, proof=proof), balance_claim]
 
 
 STEPS = {

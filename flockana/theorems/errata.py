@@ -86,8 +86,8 @@ def _read_table(path: Path) -> Iterator[Erratum]:
         cells = [cell.strip() for cell in line.split("|")]
         if len(cells) != _COLUMNS:
             raise ArgumentError(f"{cells[0]}: {len(cells)} columns, expected {_COLUMNS}")
-        name, printer, where, printed_value, correct_form, right, right_is, sort, in_paper = cells
-        claims = (printed_value, _claim(correct_form), right, _claim(right_is))
+        name, printer, where, printed, is_, right, right_is, sort, in_paper = cells
+        claims = (printed, _claim(is_), right, _claim(right_is))
         numbers = tuple(references.removeprefix("#").split())
         yield Erratum(name, printer, where, *claims, sort, in_paper, numbers)  # type: ignore[arg-type]  # checked by itself
 

@@ -54,8 +54,8 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
         return (missed,), item.vacuous_claims(missed)
     flow = _of_law(seen, law)
     requirements, _ = item.check(flow, tolerances)
-    step_claims = claims_on_steps()[item.id][1](flow)
-    return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, step_claims, list(requirements), tolerances))
+    start_index = claims_on_steps()[item.id][1](flow)
+    return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, start_index, list(requirements), tolerances))
 
 
 def _of_law(seen: Observed, law: FixedSteps) -> Observed:

@@ -47,8 +47,8 @@ def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
 
 def _between(t: FloatArray) -> FloatArray:
     """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
-    midpoint, half_width = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
-    halves = np.stack([midpoint - half_width, midpoint + half_width], axis=1)
+    midpoints, half_width = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
+    halves = np.stack([midpoints - half_width, midpoints + half_width], axis=1)
     return halves[:, :, None] + half_width[:, None, None] * _NODES
 
 

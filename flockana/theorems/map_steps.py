@@ -112,13 +112,13 @@ def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, 
     for first in range(0, len(times), law.steps_at_once):
         rows = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
         count = min(law.steps_at_once, len(times) - first)
-        *samples, next_state = law.visit(times[first : first + count], q, p, memory, np.union1d(rows, [count]))
-        q, p, memory = samples[0][-1], samples[1][-1], {name: each[-1].copy() for name, each in next_state.items()}
+        *samples, next_memory = law.visit(times[first : first + count], q, p, memory, np.union1d(rows, [count]))
+        q, p, memory = samples[0][-1], samples[1][-1], {name: each[-1].copy() for name, each in next_memory.items()}
         blocks.append(
-            [*(each[: len(rows)] for each in samples), {name: each[: len(rows)] for name, each in next_state.items()}]
+            [*(each[: len(rows)] for each in samples), {name: each[: len(rows)] for name, each in next_memory.items()}]
         )
-    joined_claim = [np.concatenate([block[k] for block in blocks]) for k in range(3)]
-    return (*joined_claim, {name: np.concatenate([block[3][name] for block in blocks]) for name in memory})
+    joined_parts = [np.concatenate([block[k] for block in blocks]) for k in range(3)]
+    return (*joined_parts, {name: np.concatenate([block[3][name] for block in blocks]) for name in memory})
 
 
 def _known_errors(t: FloatArray, q: FloatArray, p: FloatArray, length: float = 1.0, speed: float = 1.0) -> Errors:

@@ -23,8 +23,8 @@ def describe_groups(groups: list[list[int]]) -> str:
     """Return in words the root of a net, or the groups that hear nobody outside."""
     if len(groups) == 1:
         return f"root {groups[0][0]}"
-    listing = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])
-    return f"{len(groups)} groups hear nobody outside: {' and '.join(listing)}"
+    texts = (", ".join(map(str, group[:_SHOWN])) + (" ..." if len(group) > _SHOWN else "") for group in groups[:2])
+    return f"{len(groups)} groups hear nobody outside: {' and '.join(texts)}"
 
 
 def has_root(weights: Any) -> Hypothesis:

@@ -164,17 +164,17 @@ class Observed(ResultCache):
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
         """Return an observable over time, enclosed by its difference between the two runs."""
-        best_series, length_claim = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
-        if self.doubt or len(best_series) != len(length_claim):
+        best_series, other_series = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
+        if self.doubt or len(best_series) != len(other_series):
             return Enclosure.around(best_series, np.inf)
         with np.errstate(invalid="ignore"):
-            difference = DOUBT * np.abs(best_series - length_claim)
+            difference = DOUBT * np.abs(best_series - other_series)
         if self.is_map:
             difference[self.known :] = np.inf
         else:
             unit = self.run.scales.time
-            first_index = np.searchsorted(self.t, self.t - unit)
-            difference = largest_over(difference, first_index, np.searchsorted(self.t, self.t + unit, side="right"))
+            starts = np.searchsorted(self.t, self.t - unit)
+            difference = largest_over(difference, starts, np.searchsorted(self.t, self.t + unit, side="right"))
             if self.begins_exactly:
                 difference[0] = 0.0
         return Enclosure.around(best_series, difference + floor)
@@ -253,9 +253,9 @@ class Observed(ResultCache):
         """Return the number of known samples before the first unknown one; 0 if they span less than a law time."""
         unknown = np.flatnonzero(~np.asarray(known))
         count = int(unknown[0]) if unknown.size else len(self.t)
-        complete_recording = count == len(self.t) and count > 1
+        is_complete = count == len(self.t) and count > 1
         is_long_enough = count > 1 and self.t[count - 1] - self.t[0] >= self.run.scales.time
-        return count if complete_recording or is_long_enough else 0
+        return count if is_complete or is_long_enough else 0
 
     def until(self, count: int) -> str:
         """Return in words the time up to which the first `count` samples reach."""

@@ -32,7 +32,7 @@ def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, w
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
     """Return a claim by the share of starts with a property; None entries are undecided."""
-    count, case_count, unknown = sum(map(bool, holds)), len(holds), sum(hold is None for hold in holds)
+    count, case_count, unknown = sum(map(bool, holds)), len(holds), sum(answer is None for answer in holds)
     low, high = interval(count, case_count, undecided=unknown)
     text = f", undecided in {unknown}" if unknown else ""
     return judged(

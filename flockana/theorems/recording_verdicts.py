@@ -78,14 +78,14 @@ class ObservedRecording(Observed):
 
     def _allowed(self) -> tuple[Trajectory, ...]:
         run, rng = self.run, np.random.default_rng(0)
-        position_offset = (self.shape_error + self.centre_error[:, None])[:, :, None]
+        position_error = (self.shape_error + self.centre_error[:, None])[:, :, None]
         off_p = (self.speed_error + self.drift_error[:, None])[:, :, None]
         recorded_run = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
         directions = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
         directions.append((_unit(run.u), _unit(centred(run.p))))
-        if not (np.isfinite(position_offset).all() and np.isfinite(off_p).all()):
+        if not (np.isfinite(position_error).all() and np.isfinite(off_p).all()):
             return (recorded_run,)
-        signed_nudges = [(sign * position_offset * a, sign * off_p * b) for a, b in directions for sign in (1.0, -1.0)]
+        signed_nudges = [(sign * position_error * a, sign * off_p * b) for a, b in directions for sign in (1.0, -1.0)]
         return (recorded_run, *(replace(run, q=run.q + x, p=run.p + v, between=None) for x, v in signed_nudges))
 
 
@@ -156,8 +156,8 @@ class RecordingEvidence(Evidence):
         doubt = "" if len(run.t) > 1 else "one sample shows no motion"
         observation = ObservedRecording(run, run, run, errors, doubt, place=float(position_error[-1].max()))
         status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
-        stated_value = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
-        return _weighed(with_resolution(*item.examine(observation, tolerances), observation), rec, stated_value)
+        stated_claim = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
+        return _weighed(with_resolution(*item.examine(observation, tolerances), observation), rec, stated_claim)
 
 
 def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:

@@ -54,10 +54,10 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
     error, magnitude = 0.0, np.abs(energy)
     if alpha is not None:
         steepest = 1.01 * alpha.strength  # force of a pair: how much its potential moves with its distance
-        obstacle_energy = deepest_of(alpha)
-        error += gains.c1_alpha * pairs * (_POTENTIAL * obstacle_energy + 8.0 * EPS * steepest * (alpha.range + reach))
+        well_depth = deepest_of(alpha)
+        error += gains.c1_alpha * pairs * (_POTENTIAL * well_depth + 8.0 * EPS * steepest * (alpha.range + reach))
         if not isinstance(alpha, AlphaInteraction):
-            magnitude = magnitude + 2.0 * gains.c1_alpha * pairs * obstacle_energy
+            magnitude = magnitude + 2.0 * gains.c1_alpha * pairs * well_depth
     error += pull * (n + 8) * EPS * reach**2
     for _ in law.obstacles:
         maximum, steepest = float(law.beta.psi_beta(0.0)), 2.0 / sqrt(law.beta.eps)

@@ -146,8 +146,8 @@ def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatA
 
 def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
     """Return half widths from the difference of two runs at their common times."""
-    leader_targets = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
-    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in leader_targets)
+    differences = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
+    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in differences)
     return Errors(again.t, shape, speed, centre, drift)
 
 
@@ -172,10 +172,10 @@ def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:
     first, stop = np.asarray(first), np.minimum(stop, len(values))
     first = np.minimum(first, stop - 1)
     level = np.floor(np.log2(stop - first)).astype(int)
-    largest, table, dimension = np.empty((len(first), *values.shape[1:])), values, 1
+    largest, table, window = np.empty((len(first), *values.shape[1:])), values, 1
     for k in range(int(level.max(initial=0)) + 1):
         level_rows = np.flatnonzero(level == k)
-        largest[level_rows] = np.maximum(table[first[level_rows]], table[stop[level_rows] - dimension])
-        table = np.maximum(table[:-dimension], table[dimension:]) if len(table) > dimension else table
-        dimension *= 2
+        largest[level_rows] = np.maximum(table[first[level_rows]], table[stop[level_rows] - window])
+        table = np.maximum(table[:-window], table[window:]) if len(table) > window else table
+        window *= 2
     return largest

@@ -83,8 +83,8 @@ def _allowed_by_lengths(run: Trajectory, feature: Feature, step: FloatArray, pla
     fast_pairs = np.flatnonzero(path_lengths > width)
     rates = _in_blocks if feature.function.edges is not None or len(run.q[0]) <= _FEW else _one_by_one
     worst = rates(run, feature.function, fast_pairs, step, place)
-    moving_pairs = fast_pairs[worst > 0.0]
-    step_limits[moving_pairs] = np.maximum(RESOLVED / np.sqrt(worst[worst > 0.0]), short[moving_pairs])
+    limited_rows = fast_pairs[worst > 0.0]
+    step_limits[limited_rows] = np.maximum(RESOLVED / np.sqrt(worst[worst > 0.0]), short[limited_rows])
     return step_limits
 
 
@@ -115,8 +115,8 @@ def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray
     block_length = max(1, _BLOCK // max(1, len(i)))
     for start_index in range(0, len(at) if len(i) else 0, block_length):
         rows = at[start_index : start_index + block_length]
-        item = [_control_points(run, k) for k in rows.tolist()]
-        points, allowance = np.array([entry[0] for entry in item]), np.array([entry[2] for entry in item])
+        entries = [_control_points(run, k) for k in rows.tolist()]
+        points, allowance = np.array([entry[0] for entry in entries]), np.array([entry[2] for entry in entries])
         time, step_lengths = span[rows, None], step[rows, None]
         worst[start_index : start_index + block_length] = _largest(
             function, points[:, j] - points[:, i], allowance[:, i] + allowance[:, j], time, step_lengths, place, n
@@ -155,16 +155,16 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
 def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any) -> tuple[FloatArray, FloatArray]:
     """Return ω² of each pair over an interval, from relative control points, and its distance change."""
     assert of.function is not None
-    sides, link_ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
-    midpoint, table = 0.5 * link_ends.sum(axis=-1), _table(of.function)
+    sides, ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
+    midpoints, table = 0.5 * ends.sum(axis=-1), _table(of.function)
     edges = table[0]
-    first_index = np.clip(np.searchsorted(edges, midpoint - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
-    last_index = np.clip(np.searchsorted(edges, midpoint + 0.5 * sides, side="left") - 1, first_index, len(edges) - 2)
-    force, adjacency = (maximum[first_index, last_index] for maximum in table[1:])
+    first_cells = np.clip(np.searchsorted(edges, midpoints - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)
+    last_cells = np.clip(np.searchsorted(edges, midpoints + 0.5 * sides, side="left") - 1, first_cells, len(edges) - 2)
+    force, adjacency = (maxima[first_cells, last_cells] for maxima in table[1:])
     speed = 2.0 * sides / time
     with np.errstate(invalid="ignore"):  # an unknown slope without a gain or a motion moves nothing
         parts = np.nan_to_num([of.stiffness * force, of.damping * adjacency * speed], nan=0.0, posinf=np.inf)
-    is_outside = midpoint - 0.5 * sides >= of.function.range
+    is_outside = midpoints - 0.5 * sides >= of.function.range
     return np.where(is_outside, 0.0, 2.0 * parts.sum(axis=0)), sides
 
 
@@ -189,9 +189,9 @@ def unresolved(run: Trajectory, place: float) -> str:
     if unknown := unknown_parts(law):
         return f"how fast {unknown[0]} changes is not known, and so whether steps resolve it"
     demand = demand_of(run, place)
-    if not (unmet_hypothesis := demand.missed).size:
+    if not (missed := demand.missed).size:
         return ""
-    k = int(unmet_hypothesis[np.argmin(demand.longest[unmet_hypothesis])])
+    k = int(missed[np.argmin(demand.longest[missed])])
     feature = law.features()[demand.part[k]]
     where = f"at t = {demand.t[k]:.4g} a pair is at distances where"
     if feature.of == "time":

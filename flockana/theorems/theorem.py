@@ -161,12 +161,12 @@ class Theorem:
         claims: list[Claim] = []
         if unmet(hypotheses) is None:
             with np.errstate(over="ignore", invalid="ignore"):  # of runs that end beyond all numbers
-                more_claims, stated_value = (check or self.check)(*case)
-                hypotheses, claims = [*hypotheses, *more_claims], list(stated_value)
+                more_needs, new_claims = (check or self.check)(*case)
+                hypotheses, claims = [*hypotheses, *more_needs], list(new_claims)
         if (missed := unmet(hypotheses)) is not None:
             words = {"name": missed.name, "detail": missed.detail, "unmet": does_not_hold(missed.name)}
             text, names = self.reason.format(**words).removesuffix(": "), {claim.name for claim in claims}
-            missing_claims = (name for name in self.claims if name not in names)
-            claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in missing_claims]
+            missing_names = (name for name in self.claims if name not in names)
+            claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in missing_names]
         owners = (self.by(claim.name) if claim.by == "source" else claim.by for claim in claims)
         return tuple(hypotheses), tuple(replace(claim, by=author) for claim, author in zip(claims, owners, strict=True))

@@ -83,8 +83,8 @@ class Leaders(Term):
         q_l, p_l, a_l = self.led(t)
         velocity_difference, power = p - p_l, 0.0
         for group in self.members:
-            leader_forces, dissipation = self.pair.forces(q[group], p[group], stiffness=0.0, damping=self.damping)
-            u[group] += leader_forces
+            match_forces, dissipation = self.pair.forces(q[group], p[group], stiffness=0.0, damping=self.damping)
+            u[group] += match_forces
             power -= self.damping * dissipation
         u -= self._pins * (self.pull * (q - q_l) + self.drag * velocity_difference)
         power -= self.drag * float(np.sum(self._pins * velocity_difference * velocity_difference))

@@ -86,8 +86,8 @@ class Navigation(Term):
         form, path = self._form, self.target.harmonic
         if form is None or path is None or path.omega:  # only at rest or on a line it is exact to the last bit
             (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
-            zero_velocity = np.zeros_like(rate)
-            t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, zero_velocity, zero_velocity, p_r]), factor=0.0))
+            zeros = np.zeros_like(rate)
+            t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, zeros, zeros, p_r]), factor=0.0))
         return form.on_agents(t, q, p, u)
 
     def _along(self, path: Harmonic) -> TermKernel:

@@ -57,10 +57,10 @@ def with_joined_axes(
         if lacking := [name for name in names if name not in joined]:
             raise ArgumentError(f"{where} has no array {lacking[0]!r}: expected one of {', '.join(map(str, arrays))}")
         parts = [real_array(joined.pop(name), kind, where) for name in names]
-        if len({segment.shape for segment in parts}) > 1:
+        if len({part.shape for part in parts}) > 1:
             raise ArgumentError(f"{where}: {', '.join(names)} have other shapes than each other: expected one")
         joined[kind] = np.concatenate(
-            [turned(segment, order, name, where) for segment, name in zip(parts, names, strict=True)], axis=2
+            [turned(part, order, name, where) for part, name in zip(parts, names, strict=True)], axis=2
         )
         texts[kind] = ", ".join(map(repr, names))
     return joined, texts
@@ -87,8 +87,8 @@ def is_smoother_along_second(q: Any) -> bool:
     x = np.ma.masked_invalid(q)
     rounding = 1e-9 * np.ma.abs(x).max()
     shape = x - x.mean(axis=0) - x.mean(axis=1)[:, None]
-    magnitudes = [[np.ma.abs(y[1:] - y[:-1]).mean(), np.ma.abs(y[:, 1:] - y[:, :-1]).mean()] for y in (x, shape)]
-    return all(_SMOOTHER * second_variation < first > rounding for first, second_variation in magnitudes)
+    variations = [[np.ma.abs(y[1:] - y[:-1]).mean(), np.ma.abs(y[:, 1:] - y[:, :-1]).mean()] for y in (x, shape)]
+    return all(_SMOOTHER * second_variation < first > rounding for first, second_variation in variations)
 
 
 def real_array(value: Any, kind: str, where: str) -> Any:

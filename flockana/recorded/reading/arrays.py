@@ -59,35 +59,35 @@ def named_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p, u and read_as from arrays by name, or from the columns of a long table."""
     arrays = _without_shells(arrays)
-    stated_value = {} if columns is None else dict(columns)
-    if (frame := _long_table(arrays, stated_value, dt)) is not None:
+    stated_columns = {} if columns is None else dict(columns)
+    if (frame := _long_table(arrays, stated_columns, dt)) is not None:
         frame.attrs["where"] = where
-        return table_arrays(frame, stated_value or None, dt, clock, m, jitter)
+        return table_arrays(frame, stated_columns or None, dt, clock, m, jitter)
     order = None if axes is None else order_of(axes)
-    arrays, joined_arrays = with_joined_axes(arrays, stated_value, order, where)
-    stated_value = {kind: name for kind, name in stated_value.items() if kind not in joined_arrays}
-    lower = {str(name).lower(): name for name in arrays if name not in stated_value.values()}
+    arrays, joined_names = with_joined_axes(arrays, stated_columns, order, where)
+    stated_columns = {kind: name for kind, name in stated_columns.items() if kind not in joined_names}
+    lower = {str(name).lower(): name for name in arrays if name not in stated_columns.values()}
     filed, reading_remarks = dict[str, Any](), []
     for kind, names in _NAMES.items():
         spellings = [lower[item] for item in names if item in lower]
-        if kind not in stated_value and len(spellings) > 1:
+        if kind not in stated_columns and len(spellings) > 1:
             raise ArgumentError(
                 f"{where}: {', '.join(map(repr, spellings))} may each be {kind}: expected columns={{{kind!r}: ...}}"
             )
-        name = stated_value.get(kind, spellings[0] if spellings else None)
-        if kind in stated_value and name not in list(arrays):
+        name = stated_columns.get(kind, spellings[0] if spellings else None)
+        if kind in stated_columns and name not in list(arrays):
             raise ArgumentError(f"{where} has no array {name!r}: expected one of {', '.join(map(str, arrays))}")
         if name is not None:
             filed[kind] = real_array(arrays[name], kind, where)
             by_default = " as (time, agent, axis)" if filed[kind].ndim == 3 and order is None else ""
-            reading_remarks.append(f"{kind} from {joined_arrays.get(name, repr(name))} {filed[kind].shape}{by_default}")
+            reading_remarks.append(f"{kind} from {joined_names.get(name, repr(name))} {filed[kind].shape}{by_default}")
     listing = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in filed:
         raise ArgumentError(
             f'{where} holds {listing}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
     if order is not None:
-        filed |= {k: turned(filed[k], order, k, where) for k in "qpu" if k in filed and k not in joined_arrays}
+        filed |= {k: turned(filed[k], order, k, where) for k in "qpu" if k in filed and k not in joined_names}
         reading_remarks.append(f"axes in the order {', '.join(('time', 'agent', 'axis')[k] for k in order)}")
     q = filed["q"]
     if q.ndim != 3:
@@ -100,16 +100,16 @@ def named_arrays(
         raise ArgumentError(f"{where} holds {listing} and no times: expected t, or dt=, the interval between samples")
     if "t" in filed and dt is not None:
         raise ArgumentError(f"{where} has times, and dt = {dt:g} is given: expected one of them; leave dt= out")
-    magnitudes = {x: np.size(array) if rank(array) else 0 for x, array in arrays.items()}
-    frame = next((x for x in arrays if is_frame(words_of(x)[0]) and magnitudes[x] == len(q)), None)
+    counts = {x: np.size(array) if rank(array) else 0 for x, array in arrays.items()}
+    frame = next((x for x in arrays if is_frame(words_of(x)[0]) and counts[x] == len(q)), None)
     count = np.arange(len(q)) if frame is None else real_array(arrays[frame], "frame", where)
     t = (filed["t"] if "t" in filed else (step or 0.0) * count).reshape(-1)  # MATLAB has no vectors
     if "t" not in filed:
         reading_remarks.append(f"t from {'the samples' if frame is None else repr(frame)} {rate or 'times dt'}")
     if len(t) != len(q):
-        orders = [] if joined_arrays else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
+        orders = [] if joined_names else possible_orders(q, [k for k in (1, 2) if q.shape[k] == len(t)])
         hint = f"; expected (T, n, m), or axes={' or axes='.join(orders or ['...'])}, which decides"
-        hint = '; expected one row for each time, or axes="agent time"' if joined_arrays and order is None else hint
+        hint = '; expected one row for each time, or axes="agent time"' if joined_names and order is None else hint
         raise ArgumentError(f"{where}: {len(t)} times and q of shape {q.shape}{hint}")
     if q.shape[2] > 3:
         raise ArgumentError(
@@ -117,13 +117,13 @@ def named_arrays(
             'axes=, such as axes=("time", "axis", "agent")'
         )
     if order is None and ("t" not in filed or q.shape[0] == q.shape[1]) and is_smoother_along_second(q):
-        choice = '"agent time"' if joined_arrays else " or axes=".join(possible_orders(q, [1, 0]))
+        choice = '"agent time"' if joined_names else " or axes=".join(possible_orders(q, [1, 0]))
         raise ArgumentError(
             f"{where}: q of shape {q.shape} changes little along its second axis, and much along the first, which may "
             f"be the time or the agent: expected axes={choice}, which decides"
         )
-    read = {stated_value.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
-    unused_names = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and magnitudes[x] > 1]
+    read = {stated_columns.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
+    unused_names = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and counts[x] > 1]
     reading_remarks += [f"not read: {', '.join(unused_names)}"] if unused_names else []
     if m is not None and m not in range(1, q.shape[2] + 1):
         raise ArgumentError(f"m = {m!r}: expected 1 to {q.shape[2]}, of which {where} has positions")
@@ -214,10 +214,10 @@ def _long_table(arrays: Mapping[str, Any], given: Mapping[str, Any], dt: float |
         return None
     agents = "id" in given or any(is_agent(words_of(name)[0]) for name in columns)
     position_names = [name for name in plain_arrays if coordinate(*words_of(name)) is not None]
-    is_number_only = bool(position_names) and {*position_names} <= {*columns}  # all numbers are of one agent
+    is_one_agent = bool(position_names) and {*position_names} <= {*columns}  # all numbers are of one agent
     times = any(is_time(words_of(name)[0]) or is_frame(words_of(name)[0]) for name in columns)
-    times = times or bool({"t", "frame"} & given.keys()) or (is_number_only and dt is not None)
-    if not ((agents or is_number_only) and times) or any(x.ndim > 2 for x in plain_arrays.values()):
+    times = times or bool({"t", "frame"} & given.keys()) or (is_one_agent and dt is not None)
+    if not ((agents or is_one_agent) and times) or any(x.ndim > 2 for x in plain_arrays.values()):
         return None
     return pd.DataFrame(columns)
 

@@ -148,9 +148,9 @@ def _two_readings(where: str, names: Sequence[Any], one: str, other: str, remedy
 
 def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> tuple[Any, list[str]]:
     """Return the time column, or columns of seconds and nanoseconds, and ignored receipt times."""
-    name_words = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
-    nanosecond_names = [name for name in names if name_words[name] and name_words[name][0] in _NANO]
-    whole_names = [name for name in names if name_words[name] and name_words[name][0] in _WHOLE]
+    last_words = {name: re.sub(r"[^a-z]", " ", str(name).lower()).split()[-1:] for name in names}
+    nanosecond_names = [name for name in names if last_words[name] and last_words[name][0] in _NANO]
+    whole_names = [name for name in names if last_words[name] and last_words[name][0] in _WHOLE]
     if len(nanosecond_names) == len(whole_names) == 1:
         return (whole_names[0], nanosecond_names[0]), []
     times = [x for x in names if is_time(described[x][0])]
@@ -280,12 +280,12 @@ def _are_pairs(placed: Mapping[tuple[str, ...], Kinds]) -> bool:
 
 def _alike(agents: Mapping[str, Kinds], where: str, shown: str) -> dict[str, dict[str, list[str]]]:
     """Return the columns of each agent in the order of axes; raise on differing columns."""
-    axes_by_name = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
-    counts = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in axes_by_name.items()}
+    agent_columns = {name: ordered_axes(kinds, where, shown) for name, kinds in agents.items()}
+    counts = {name: {kind: len(columns) for kind, columns in kinds.items()} for name, kinds in agent_columns.items()}
     first_name = next(iter(counts))
     if (other_name := next((name for name in counts if counts[name] != counts[first_name]), None)) is not None:
         raise ArgumentError(f"{where} has other columns for agent {other_name} than for {first_name}: expected alike")
-    return axes_by_name
+    return agent_columns
 
 
 def _no_positions(names: Sequence[Any], groups: Mapping[Any, Kinds], where: str, shown: str) -> ArgumentError:

@@ -23,23 +23,23 @@ def without_missing(arrays: Mapping[str, Any], missing: Any, where: str) -> dict
     """Return t, q, p, u with gaps where a vector is a number that stands for 'not seen'; raise where one looks so."""
     shape = np.shape(arrays["q"])
     vectors = {k: np.array(arrays[k], dtype=np.float64) for k in "qpu" if k in arrays and np.shape(arrays[k]) == shape}
-    stated_value = ensure_numbers("missing", [] if missing is None else missing, "numbers that stand for 'not seen'")
+    markers = ensure_numbers("missing", [] if missing is None else missing, "numbers that stand for 'not seen'")
     notes = []
-    for value in stated_value.reshape(-1).tolist():
+    for value in markers.reshape(-1).tolist():
         gone = _places(vectors["q"], value, "q")
         for kind, x in vectors.items():
             x[gone | _places(x, value, kind)] = np.nan
         notes.append(f"{gone.sum()} positions that are {value:g} are gaps")
-    for kind, x in vectors.items() if stated_value.size or missing is None else ():
+    for kind, x in vectors.items() if markers.size or missing is None else ():
         known = x[~np.isnan(x).any(axis=2)]
         endpoints = [*known.min(axis=0, initial=0.0).tolist(), *known.max(axis=0, initial=0.0).tolist()]
-        for value in (fromkey for fromkey in dict.fromkeys((*_SMALL, *_PLAIN, *endpoints)) if (x == fromkey).any()):
+        for value in (number for number in dict.fromkeys((*_SMALL, *_PLAIN, *endpoints)) if (x == number).any()):
             if _looks_missing(x, gone := _places(x, value, kind), value, kind):
                 k, i = (int(j) for j in np.argwhere(gone)[0])
-                first_item = f"agent {(arrays.get('ids') or range(shape[1]))[i]} at t = {np.ravel(arrays['t'])[k]:g}"
+                first_text = f"agent {(arrays.get('ids') or range(shape[1]))[i]} at t = {np.ravel(arrays['t'])[k]:g}"
                 low, high, text = np.nanmin(x[~gone]), np.nanmax(x[~gone]), repr(value).removesuffix(".0")
                 raise ArgumentError(
-                    f"{where}: {kind} is {text} at {gone.sum()} places ({first_item} first), and from {low:.4g} to "
+                    f"{where}: {kind} is {text} at {gone.sum()} places ({first_text} first), and from {low:.4g} to "
                     f"{high:.4g} elsewhere: this may stand for agents that were not seen, or be a {MEANINGS[kind]}: "
                     f"expected missing={text}, or missing=() if nothing is missing, which decides"
                 )
@@ -65,8 +65,8 @@ def _varying(x: FloatArray) -> _Mask:
 def _places(x: FloatArray, value: float, kind: str) -> _Mask:
     """Return which vectors are a value: positions along all axes that vary, or any along one where it is far off."""
     far, is_variable = _beyond(x, value, 1.0) & (value not in _SMALL), _varying(x)
-    is_global = (x == value)[:, :, is_variable].all(axis=2) & (kind == "q" and bool(is_variable.any()))
-    result: _Mask = (x == value)[:, :, far].any(axis=2) | is_global
+    in_all_axes = (x == value)[:, :, is_variable].all(axis=2) & (kind == "q" and bool(is_variable.any()))
+    result: _Mask = (x == value)[:, :, far].any(axis=2) | in_all_axes
     return result
 
 
@@ -75,8 +75,8 @@ def _looks_missing(x: FloatArray, gone: _Mask, value: float, kind: str) -> bool:
     count, is_variable, left = gone.sum(), _varying(x), gone[1:] != gone[:-1]
     plain = value in _PLAIN or abs(value) >= _HUGE
     if value not in _SMALL and (far := _beyond(x, value, 1.0 if plain else _FAR)).any():
-        unique_entries = len(x) > 1 and plain and far[is_variable].all() and is_variable.sum() > 1
-        return bool((count > 1 or unique_entries) and (plain or left.sum() > 1))
+        is_decisive = len(x) > 1 and plain and far[is_variable].all() and is_variable.sum() > 1
+        return bool((count > 1 or is_decisive) and (plain or left.sum() > 1))
     if kind != "q" or not (plain or value in _SMALL):
         return False
     out = bool(_beyond(x, value, 0.0)[is_variable].all())

@@ -31,8 +31,8 @@ def table_arrays(
     if not len(frame):
         raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
     if not frame.columns.is_unique:
-        repeated_names = frame.columns[frame.columns.duplicated()][0]
-        raise ArgumentError(f"{where}: the column {repeated_names!r} is given twice; expected each once")
+        repeated_name = frame.columns[frame.columns.duplicated()][0]
+        raise ArgumentError(f"{where}: the column {repeated_name!r} is given twice; expected each once")
     layout = layout_of(list(frame), where, columns if isinstance(columns, Mapping) else None)
     if layout.time is not None and dt is not None:
         raise ArgumentError(
@@ -62,10 +62,10 @@ def table_arrays(
             _ensure_one_agent(frame, layout, where)
         t = _counted(frame, t, dt, layout, where)
         if len(np.unique(t)) < len(t):
-            other_columns = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
+            columns_text = ", ".join(repr(str(x)) for x in frame.columns if x not in (layout.time, layout.frame))
             raise ArgumentError(
                 f"{where} has several rows at one time and no column id: expected the agent of each row; name it by "
-                f'columns={{"id": ...}}, one of {other_columns}'
+                f'columns={{"id": ...}}, one of {columns_text}'
             )
         arrays = _wide(frame, {"0": layout.long}, t)
     for kind, factor in factors.items():
@@ -78,10 +78,10 @@ def _ensure_one_agent(frame: Any, layout: Layout, where: str) -> None:
     read = {x for names in layout.long.values() for x in names}
     for name in (x for x in frame.columns if x not in read and frame[x].dtype.kind not in "fbc"):
         if 1 < frame[name].nunique() <= len(frame) // 2:
-            is_decided = f'columns={{"id": {name!r}}}, or columns={{"q": {list(layout.long["q"])}}}'
+            column_text = f'columns={{"id": {name!r}}}, or columns={{"q": {list(layout.long["q"])}}}'
             raise ArgumentError(
                 f"{where} has no times, and {name!r} repeats: it may name the agent of each row, or all rows are of "
-                f"one agent: expected {is_decided}, which decides"
+                f"one agent: expected {column_text}, which decides"
             )
 
 
@@ -137,9 +137,9 @@ def _described(layout: Layout, dt: float | None) -> list[str]:
     elif not layout.wide:
         texts.append("one agent")
     if layout.wide:
-        first_axis, kinds = next(iter(layout.wide.items()))
+        first_agent, kinds = next(iter(layout.wide.items()))
         description = " and ".join(f"{kind} from {named(columns)}" for kind, columns in kinds.items())
-        texts.append(f"{len(layout.wide)} agents, each with columns: {description} of agent {first_axis}")
+        texts.append(f"{len(layout.wide)} agents, each with columns: {description} of agent {first_agent}")
     return texts + [f"{kind} from {named(columns)}" for kind, columns in layout.long.items()]
 
 
@@ -268,8 +268,8 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
 def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
     """Return the times with equal stamps for one instant, by default stamps that differ by rounding."""
     stamps = np.unique(t)
-    magnitude = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
-    reach = magnitude if jitter is None else ensure_nonnegative("jitter", jitter)
+    rounding = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
+    reach = rounding if jitter is None else ensure_nonnegative("jitter", jitter)
     group = np.cumsum(np.diff(stamps, prepend=stamps[0]) > reach)
     if group[-1] == len(stamps) - 1:
         return t, ""

@@ -88,11 +88,11 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
 def _below_comments(data: bytes, named: bool) -> tuple[bytes, int]:
     """Return a table without comment lines (#), of which the last may be the header, and their number."""
     lines = data.split(b"\n", 100)
-    first_line = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
-    cells = re.split(r"[\t,;\s]+", lines[first_line].decode("utf-8").strip())
-    if first_line and not named and all(_is_number(cell.strip('"')) for cell in cells):
-        first_line = max(k for k in range(first_line) if lines[k].strip())
-    return data.split(b"\n", first_line)[first_line], first_line
+    line_index = next((k for k, line in enumerate(lines) if line.strip() and not line.startswith(b"#")), 0)
+    cells = re.split(r"[\t,;\s]+", lines[line_index].decode("utf-8").strip())
+    if line_index and not named and all(_is_number(cell.strip('"')) for cell in cells):
+        line_index = max(k for k in range(line_index) if lines[k].strip())
+    return data.split(b"\n", line_index)[line_index], line_index
 
 
 def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
@@ -106,8 +106,8 @@ def _cleaned(data: bytes, delimiter: str) -> tuple[bytes, list[str]]:
         if not any(texts) or any(_is_number(text) and text not in _GAPS for text in texts):
             break
         skipped += 1
-    is_later = [cell for line in lines[skipped : skipped + 1] for cell in line.decode("utf-8").split(delimiter)]
-    if skipped and any(_is_number(cell.strip(' "')) and cell.strip() not in _GAPS for cell in is_later):
+    later_cells = [cell for line in lines[skipped : skipped + 1] for cell in line.decode("utf-8").split(delimiter)]
+    if skipped and any(_is_number(cell.strip(' "')) and cell.strip() not in _GAPS for cell in later_cells):
         rest = b"\n" * skipped + b"\n".join(lines[skipped:])
         notes.append(f"{skipped} more lines of a header are left out")
     return head + b"\n" + rest, notes
@@ -185,19 +185,19 @@ def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path, abo
     line_ends = line_ends if byte_values[-1] == _NEWLINE else np.append(line_ends, len(byte_values))
     starts = np.concatenate([[0], line_ends[:-1] + 1])
     cells = np.diff(np.searchsorted(np.flatnonzero(byte_values == delimiter), np.append(starts, len(byte_values)))) + 1
-    is_invalid, mark, long_lines = np.flatnonzero((cells != width) & (line_ends > starts)), bytes([delimiter]), False
-    for k in is_invalid.tolist():
+    bad_rows, mark, has_long = np.flatnonzero((cells != width) & (line_ends > starts)), bytes([delimiter]), False
+    for k in bad_rows.tolist():
         text = data[starts[k] : line_ends[k]]
         excess = mark * int(cells[k] - width)
         if cells[k] > width and text.rstrip(b" ").endswith(excess):
-            long_lines = True
+            has_long = True
         elif text.strip():
             raise FileError(
                 f"{path}, line {k + 1 + above}: {cells[k]} values, expected {width} as in the header: "
                 f"{text.strip()[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off, or do lines above the table "
                 "describe it? leave those out by pandas.read_csv(file, skiprows=...), and read the frame"
             )
-    if not long_lines:
+    if not has_long:
         return data
     lines = data.split(b"\n")
     return b"\n".join(x.rstrip(b" ")[: -(x.count(mark) - width + 1)] if x.count(mark) >= width else x for x in lines)

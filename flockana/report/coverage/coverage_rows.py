@@ -107,10 +107,10 @@ def _row(line: str) -> Row:
     cells = _cells(line)
     if len(cells) != len(_COLUMNS):
         raise ArgumentError(f"{len(cells)} columns, expected {len(_COLUMNS)}: {', '.join(_COLUMNS)}")
-    rows_place, what, standing, test_names, remark = cells
+    place, what, standing, test_names, remark = cells
     split_texts = (text.partition(":") for text in test_names.split())
     references = tuple(Reference(kind, name) for kind, _, name in split_texts)
-    return Row(rows_place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
+    return Row(place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
 
 
 def _cells(line: str) -> tuple[str, ...]:

@@ -52,8 +52,8 @@ def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int |
     """Return the exact sign of w + 2K ℓ^α x^(1−α)/(1−α), floats taken as rationals; None if unknown."""
     import sympy as sp
 
-    strength, length_symbol, alpha, start, speed = map(sp.Rational, (*factor, x, w))
-    value = speed + 2 * strength * length_symbol**alpha * start ** (1 - alpha) / (1 - alpha)
+    strength, length, alpha, start, speed = map(sp.Rational, (*factor, x, w))
+    value = speed + 2 * strength * length**alpha * start ** (1 - alpha) / (1 - alpha)
     return 0 if value.is_zero else 1 if value.is_positive else -1 if value.is_negative else None
 
 

@@ -77,15 +77,15 @@ class CuckerDong(Law):
         return np.asarray(np.einsum("ijc,ijc->ij", delta, delta))
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
-        squared_value, spread = self._squares(q), float(np.sqrt(np.sum((p - p.mean(axis=0)) ** 2)))
-        weights = self.weight.adjacency(np.sqrt(squared_value))
+        squares, spread = self._squares(q), float(np.sqrt(np.sum((p - p.mean(axis=0)) ** 2)))
+        weights = self.weight.adjacency(np.sqrt(squares))
         with np.errstate(divide="ignore"):
-            push = spread * self.repulsion * self.distance**3 / (squared_value - self.distance**2) ** 2
+            push = spread * self.repulsion * self.distance**3 / (squares - self.distance**2) ** 2
         u = weights @ p - weights.sum(axis=1)[:, None] * p + push.sum(axis=1)[:, None] * q - push @ q
         return u, float("nan")
 
     def functional(self, q: FloatArray, p: FloatArray) -> float:
         """Return V + ½ Σ_{i<j} k δ³/(s_ij² − δ²), which never rises while all distances exceed δ."""
-        squared_value = self._squares(q)[np.triu_indices(len(q), 1)]
-        store = 0.5 * self.repulsion * self.distance**3 * float(np.sum(1.0 / (squared_value - self.distance**2)))
+        squares = self._squares(q)[np.triu_indices(len(q), 1)]
+        store = 0.5 * self.repulsion * self.distance**3 * float(np.sum(1.0 / (squares - self.distance**2)))
         return float(np.sqrt(np.sum((p - p.mean(axis=0)) ** 2))) + store

@@ -28,15 +28,15 @@ def _steps() -> tuple[tuple[str, str, DiscreteLaw, FloatArray], ...]:
     """Return name, source, map, and equilibrium (or a start for finding one) of each source's map."""
     rest = StaticTarget((0.0, 0.0))
     msn = Algorithm2(_MSN, _MSN_GAINS, rest)
-    explicit_map = MSNDiscretisation(msn, 0.009, in_place=False)
+    at_once = MSNDiscretisation(msn, 0.009, in_place=False)
     first_law, second_law = Algorithm1(_NOTEBOOK_1, _UNIT), Algorithm2(_NOTEBOOK_2, _UNIT, rest)
     tree = MinimalFlocking(edges=_TREE, spacing=2.0)
     tree_positions = hexagonal_spiral(4, 1.0)[[1, 0, 2, 3]]
-    few, medium_lattice, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
+    few, large_lattice, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
     return (
-        ("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", explicit_map, few),
+        ("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
         ("msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few),
-        ("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", explicit_map, medium_lattice),
+        ("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, large_lattice),
         ("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first_law, 0.05), _NOTEBOOK_1.d * small),
         ("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second_law, 0.1), _NOTEBOOK_2.d * small),
         ("minimal", "bearing-distance paper, minimal model on a tree of 4", tree.discrete(0.1), 2.0 * tree_positions),

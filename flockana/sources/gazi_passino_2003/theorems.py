@@ -69,7 +69,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     weak_claim = condition("b <= a", ratio <= 1.0, 1.0 - ratio, text, remedy="lower the repulsion b or raise a")
     strong = condition("b > a", ratio > 1.0, ratio - 1.0, text, remedy="raise the repulsion b or lower a")
     wide = float(np.ptp(seen.run.q[0], axis=0).max())
-    count_claim = condition("not all agents start at one place", wide > 0.0, wide, remedy="move one agent")
+    apart_claim = condition("not all agents start at one place", wide > 0.0, wide, remedy="move one agent")
     rest = sqrt(law.c * log(ratio)) if ratio > 1.0 else 0.0
     return [], [
         _centroid(seen, size, tolerances),
@@ -78,5 +78,5 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         _limit("sharp", seen, [], f"in the end ‖q_i - q_c‖ <= {n - 1}/{n} of that, {bound:.6g}"),
         _rate(seen, size, bound),
         _limit("collapse", seen, [weak_claim], "all tend to their centroid"),
-        _limit("apart", seen, [strong, count_claim], f"the lim sup of the largest distance is at least {rest:.6g}"),
+        _limit("apart", seen, [strong, apart_claim], f"the lim sup of the largest distance is at least {rest:.6g}"),
     ]

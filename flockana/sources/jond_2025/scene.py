@@ -15,7 +15,7 @@ from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 def perceived_edges(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
     """Return the world of the minimal model: its perceived edges."""
     data = [law.edge_data(run.q[k]) for k in (frames if law.edges is None else frames[:1])]
-    return World(edges=tuple(np.column_stack([data_row.tail, data_row.head]).astype(np.int64) for data_row in data))
+    return World(edges=tuple(np.column_stack([sample.tail, sample.head]).astype(np.int64) for sample in data))
 
 
 def zone_surroundings(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:

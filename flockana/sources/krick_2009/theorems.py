@@ -55,8 +55,8 @@ def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: T
 def _off_line(seen: Observed) -> Enclosure:
     """Return the largest distance from the line of the start over time, in the frame of the centroid."""
     z = seen.run.q - seen.run.q.mean(axis=1, keepdims=True)
-    first_state = z[0]
-    direction = first_state[np.linalg.norm(first_state, axis=1).argmax()]
+    start_q = z[0]
+    direction = start_q[np.linalg.norm(start_q, axis=1).argmax()]
     direction = direction / (float(np.linalg.norm(direction)) or 1.0)
     transverse_part = z - (z @ direction)[..., None] * direction
     return Enclosure.around(np.linalg.norm(transverse_part, axis=2).max(axis=1), seen.shape_error.max(axis=1))
@@ -79,7 +79,7 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     no agent ever is farther than ‖e‖/σ from its start.
     """
     law, q = seen.law, seen.run.q
-    near_margin, e, sigma = _near(law, q[0])
+    near_claim, e, sigma = _near(law, q[0])
     deviation = Enclosure.around(np.linalg.norm(q.mean(axis=1) - q[0].mean(axis=0), axis=1), seen.centre_error)
     distances = np.linalg.norm(q - q[0], axis=2).max(axis=1)
     distances = Enclosure.around(distances, seen.shape_error.max(axis=1) + seen.centre_error).clip(0.0)
@@ -90,12 +90,12 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
         _share("centroid", "the centroid stays", seen, deviation, tolerances),
         limit_claim("rest", [], proof=_PROOF, computed=left).described(stated="velocities tend to 0", detail=end_text),
         _share("collinear", "agents stay on their line", seen, _off_line(seen), tolerances),
-        limit_claim("formation", [near_margin], proof=_PROOF, computed=left).described(
+        limit_claim("formation", [near_claim], proof=_PROOF, computed=left).described(
             stated=f"all lengths tend to d at the rate {0.5 * law.gain * sigma**2:.6g}", detail=end_text
         ),
         judged(
             "nearby", (limit - distances) / float(np.max(law.lengths)) if np.isfinite(limit) else Enclosure.of(0.0),
-            [near_margin], proof=_PROOF,
+            [near_claim], proof=_PROOF,
         ).described(
             computed=float(distances.mid.max()),
             stated=f"no agent is farther than {limit:.6g} from its start",

@@ -205,10 +205,10 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
     def jumps(self) -> tuple[Jump, ...]:
         """Return the discontinuities of the source's F = dψ/dρ: at r, and without a ramp at d₁ and d₂."""
         jumps = []
-        for name, place_text in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
-            lower_value, above = _FORCE(np.nextafter(place_text, [0.0, inf]), self.par).tolist()
-            if place_text <= self.r and not np.isclose(lower_value, above, rtol=1e-9, atol=1e-9 * self.contact_force):
-                jumps.append(Jump(name, place_text, lower_value, above))
+        for name, distance in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
+            value_below, above = _FORCE(np.nextafter(distance, [0.0, inf]), self.par).tolist()
+            if distance <= self.r and not np.isclose(value_below, above, rtol=1e-9, atol=1e-9 * self.contact_force):
+                jumps.append(Jump(name, distance, value_below, above))
         return tuple(jumps)
 
     def least_distance(self, energy: float) -> float:

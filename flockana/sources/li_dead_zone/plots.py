@@ -51,8 +51,8 @@ def dead_zone_energies(trajectory: Trajectory, ax: Any) -> None:
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")
     ax.plot(trajectory.t, trajectory.energy(), color=BLUE, linestyle="-", label="H̄, every pair, ψ constant beyond r")
-    printed_value = metrics.literal_energy.values
-    ax.plot(trajectory.t, printed_value, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
+    printed_energy = metrics.literal_energy.values
+    ax.plot(trajectory.t, printed_energy, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
 
 
 @draw_sample.register(LedDeadZoneFlocking)

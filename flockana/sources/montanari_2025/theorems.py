@@ -42,12 +42,12 @@ def _ratio_error(design: GainDesign) -> float:
     """Return the error of the ratio of two rates, from the rounding of their eigenvalues."""
     # At the best gains roots coalesce, and a rate depends on them as a root: where they are found to 2e-9, it is to
     # 1e-4.
-    slow_agents = []
+    error_ratios = []
     for gains in (design.homogeneous, design.heterogeneous):
         values, errors = eigenvalues(design.problem.matrix(gains))
         k = int(np.argmax(values.real))
-        slow_agents.append(float(errors[k]) / abs(float(values[k].real)))
-    return design.ratio * (sum(slow_agents) + _CUSP)
+        error_ratios.append(float(errors[k]) / abs(float(values[k].real)))
+    return design.ratio * (sum(error_ratios) + _CUSP)
 
 
 @erratum(

@@ -72,11 +72,11 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     start never agrees. Where the root is an agent who hears nobody all come to it: a leader.
     """
     floor = min(min(np.diag(np.array(net))) for net in seen.law.nets)
-    share_claim = condition("each agent keeps a share of its own place", floor > 0.0, floor, f"least w_ii = {floor:g}")
+    share_need = condition("each agent keeps a share of its own place", floor > 0.0, floor, f"least w_ii = {floor:g}")
     windows, rootless_claim = windows_rooted(seen.law)
     some_claim = judged("some-start", Enclosure.of(0.0), [rootless_claim], about="all", proof=_PROOF)
     return [], [
-        _agreement(seen, [share_claim, windows]),
+        _agreement(seen, [share_need, windows]),
         _hull(seen, []),
         vacuous("some-start", rootless_claim)
         if rootless_claim.status == "unmet"

@@ -26,8 +26,8 @@ def _checked(seen: Observed, power: float, name: str) -> Checked:
     x, v = _series(seen, "q", seen.shape_error), _series(seen, "p", seen.speed_error)
     steps = np.diff(seen.t)
     step_distance = float((fastest_between(seen) * steps).max(initial=0.0))  # half an interval at twice the fastest
-    range_excess = Enclosure(float(x.lo.max()), float(x.mid.max()), float(x.hi.max()) + step_distance)
-    guarantee = Guarantee(seen, rate, x, range_excess, v, _PROOF, ("d_X{}", "d_V{}"))
+    widest = Enclosure(float(x.lo.max()), float(x.mid.max()), float(x.hi.max()) + step_distance)
+    guarantee = Guarantee(seen, rate, x, widest, v, _PROOF, ("d_X{}", "d_V{}"))
     return guarantee.claims([guarantee.hypothesis(name)], limit="flock")
 
 

@@ -55,13 +55,13 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
         runs.reverse()
     near = [r.closest_approach() for r in runs]
     plain, pushed = (item.distance for item in near)
-    rounding_width = sum(item.distance - item.lower for item in near) + findings.ROUNDING * float(np.abs(run.q).max())
+    error_bound = sum(item.distance - item.lower for item in near) + findings.ROUNDING * float(np.abs(run.q).max())
     end_distance = float(np.linalg.norm(runs[0].q[-1] - runs[1].q[-1], axis=1).max())
     detail = (
         f"{len(contact_times)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} "
         f"without the push and {pushed:.3g} with it, and final positions differ by up to {end_distance:.3g}"
     )
-    return findings.finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=rounding_width)
+    return findings.finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=error_bound)
 
 
 @findings.report("follows", "agents take on the γ-agent's velocity")
@@ -145,8 +145,8 @@ def _scenario(
 ) -> Scenario:
     generator, references = np.random.default_rng(seed), ("notebook-r2", "olfati-saber-2006")
     q, p = generator.uniform(0.0, 13.0, (n, 2)), generator.standard_normal((n, 2))
-    judged, integration_text, span = findings.in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
-    return Scenario(name, *text, law, q, p, span, seed, expected, judged, integration_text, references, shipped=shipped)
+    judged, run_options, span = findings.in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
+    return Scenario(name, *text, law, q, p, span, seed, expected, judged, run_options, references, shipped=shipped)
 
 
 def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:

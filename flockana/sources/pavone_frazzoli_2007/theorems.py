@@ -34,20 +34,20 @@ def _motion(seen: Observed, tolerances: Tolerances) -> list[Claim]:
     motion = np.fft.ifft(np.fft.fft(z[0] - z[0].mean()) * np.exp(np.outer(seen.t - seen.t[0], law.eigenvalues(seen.n))))
     magnitude = float(max(np.abs(motion).max(), np.abs(z[0] - z[0].mean()).max())) or 1.0
     rounding = 64.0 * seen.n * EPS * float(np.abs(z).max() + law.gain * (seen.t[-1] - seen.t[0]) * magnitude)
-    deviation = {
+    deviations = {
         "centroid": Enclosure.around(np.abs(z.mean(axis=1) - z[0].mean()), seen.centre_error + rounding),
         "motion": Enclosure.around(
             np.abs(z - z.mean(axis=1, keepdims=True) - motion).max(axis=1), seen.shape_error.max(axis=1) + rounding
         ),
     }
-    stated_value = {"centroid": "the centroid stays", "motion": "the motion is Σ_j c_j e^{λ_j t} v_j, c of the start"}
+    stated_texts = {"centroid": "the centroid stays", "motion": "the motion is Σ_j c_j e^{λ_j t} v_j, c of the start"}
     claims = []
-    for name, series in deviation.items():
+    for name, series in deviations.items():
         share = series.clip(0.0) / magnitude
         k = int(share.mid.argmax())
         claims.append(
             judged(name, tolerances.energy - share, proof=_PROOF, computed=float(share.mid[k])).described(
-                stated=f"{stated_value[name]}, to {tolerances.energy:g} of the size",
+                stated=f"{stated_texts[name]}, to {tolerances.energy:g} of the size",
                 witness={"time": float(seen.t[k])},
                 detail=f"off by {share.mid[k]:.2g} of the size at most",
             )

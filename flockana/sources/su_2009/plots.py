@@ -48,9 +48,9 @@ def informed_shares(
     share = runs["followers"].transpose("informed", "seed").values
     x = np.asarray(runs["informed"].values, dtype=np.float64) / agents
     is_finite = np.isfinite(share)  # a run that failed has none
-    counts, status_name = (share > majority).sum(axis=1), is_finite.sum(axis=1)
-    low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, status_name, level=_CONFIDENCE))
-    success_shares = counts / np.maximum(status_name, 1)
+    counts, run_counts = (share > majority).sum(axis=1), is_finite.sum(axis=1)
+    low, high = (np.atleast_1d(end) for end in clopper_pearson(counts, run_counts, level=_CONFIDENCE))
+    success_shares = counts / np.maximum(run_counts, 1)
     axes = ensure_axes(ax)
     for position, row in zip(x, share, strict=True):
         axes.plot(np.full(row.shape, position), row, ".", color=MUTED, alpha=0.5, zorder=1)

@@ -115,7 +115,7 @@ def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: A
     """Return (∂u/∂q, ∂u/∂p) of the forces along given edges, sparse."""
     (n, m), delta = q.shape, q[j] - q[i]
     stress, _, slope, _ = potential.inner(np.einsum("kc,kc->k", delta, delta))
-    weight_slope = 2.0 * slope[:, None, None] * delta[:, :, None] * delta[:, None, :]
-    stiffness_terms = stress[:, None, None] * np.eye(m) + weight_slope
+    slope_terms = 2.0 * slope[:, None, None] * delta[:, :, None] * delta[:, None, :]
+    stiffness_terms = stress[:, None, None] * np.eye(m) + slope_terms
     drag = np.broadcast_to(damping * np.eye(m), stiffness_terms.shape)
     return -pair_matrix(i, j, stiffness_terms, n), -pair_matrix(i, j, drag, n)

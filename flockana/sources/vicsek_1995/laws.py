@@ -168,9 +168,9 @@ class HeadingAveraging(DiscreteLaw):
         from scipy.sparse import coo_array
 
         near_pairs = np.column_stack(pair_list(q, _SEARCH * self.range))
-        range_excess = np.abs(np.linalg.norm(q[near_pairs[:, 1]] - q[near_pairs[:, 0]], axis=1) - self.range)
-        if near_pairs.size and range_excess.min() <= (_SEARCH - 1.0) * self.range:
-            i, j = near_pairs[int(np.argmin(range_excess))]
+        range_gaps = np.abs(np.linalg.norm(q[near_pairs[:, 1]] - q[near_pairs[:, 0]], axis=1) - self.range)
+        if near_pairs.size and range_gaps.min() <= (_SEARCH - 1.0) * self.range:
+            i, j = near_pairs[int(np.argmin(range_gaps))]
             raise ArgumentError(f"agents {i} and {j} are at the edge of each other's circle: the map jumps there")
         n, pairs = len(q), self.links(q)
         rows = np.concatenate([np.arange(n), pairs[:, 0], pairs[:, 1]])

@@ -75,20 +75,20 @@ class SafetyFilter(WrappingLaw):
         x, v = q[i] - q[j], p[i] - p[j]
         r = np.linalg.norm(x, axis=1)
         with np.errstate(invalid="ignore"):  # at one place there is no way apart
-            axial_part = x / r[:, None]
-        speed = np.sum(axial_part * v, axis=1)
+            directions = x / r[:, None]
+        speed = np.sum(directions * v, axis=1)
         s = np.sqrt(2.0 * c * np.maximum(r - self.distance, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):  # below h = 0 they brake as at it
             rate = np.where((s > 0.0) & (speed > -s), c * speed / s, -c)
             turning_rate = np.maximum(np.sum(v * v, axis=1) - speed**2, 0.0) / r
         h = s + speed
-        return h, axial_part, -self.gain * h**3 - rate - turning_rate
+        return h, directions, -self.gain * h**3 - rate - turning_rate
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = self.law.flow(t, q, p)[0]
         i, j = np.triu_indices(len(q), 1)
-        _, along, lowest_value = self.barriers(q, p)
-        lack = lowest_value - np.sum(along * (u[i] - u[j]), axis=1)
+        _, along, lower_bounds = self.barriers(q, p)
+        lack = lower_bounds - np.sum(along * (u[i] - u[j]), axis=1)
         if (lack <= 0.0).all():
             return u, float("nan")
         if np.isnan(lack).any():  # two agents at one place

@@ -89,13 +89,13 @@ class FiniteTimeAlignment(Law):
         from scipy.sparse import csr_array
 
         i, j = self._ends()
-        velocity_difference = np.abs(p[j] - p[i]) / self.speed
-        if self.exponent < 1.0 and (equal_pairs := np.argwhere(velocity_difference == 0.0)).size:
-            one, other = self.links[equal_pairs[0, 0]]
+        speed_ratios = np.abs(p[j] - p[i]) / self.speed
+        if self.exponent < 1.0 and (zero_entries := np.argwhere(speed_ratios == 0.0)).size:
+            one, other = self.links[zero_entries[0, 0]]
             raise ArgumentError(
                 f"FiniteTimeAlignment has no derivative at this state: the linked agents {one} and {other} have an "
                 f"equal component of velocity, where the slope of |x|^{self.exponent:g} is infinite; expected "
                 "velocities that differ along each link in each component, or exponent=1"
             )
-        slope = self.gain * self.exponent * velocity_difference ** (self.exponent - 1.0)
+        slope = self.gain * self.exponent * speed_ratios ** (self.exponent - 1.0)
         return csr_array((q.size, q.size)), -pair_matrix(i, j, slope[:, :, None] * np.eye(q.shape[1]), len(q))

@@ -26,8 +26,8 @@ def _rate(law: FiniteTimeAlignment, n: int) -> Enclosure:
     for i, j in law.links:
         laplacian[i, j] = laplacian[j, i] = -1.0
     laplacian -= np.diag(laplacian.sum(axis=1))
-    second_eigenvalue = np.linalg.eigvalsh(laplacian)
-    rate = Enclosure.around(float(second_eigenvalue[1]), 16.0 * n * EPS * float(second_eigenvalue[-1]))
+    eigenvalues = np.linalg.eigvalsh(laplacian)
+    rate = Enclosure.around(float(eigenvalues[1]), 16.0 * n * EPS * float(eigenvalues[-1]))
     factor = law.gain * law.speed ** (1.0 - law.exponent)  # (b^(1/power))^power
     return rate.rising(lambda value: np.maximum(value, 0.0) ** power).scaled_out(16.0 * EPS) * factor
 

@@ -29,9 +29,9 @@ def longest_link(seen: Observed) -> Enclosure:
         return Enclosure.of(0.0)
     sample_distances = seen.distances(link_ends[:, 0], link_ends[:, 1]).max()
     bound = float(sample_distances.hi)
-    for _, points, deviation in polygons(seen.run):
+    for _, points, path_error in polygons(seen.run):
         link_lengths = lengths(points[link_ends[:, 1]] - points[link_ends[:, 0]]).max(axis=1)
-        bound = max(bound, float((link_lengths + 2.0 * np.max(deviation)).max(initial=0.0)))
+        bound = max(bound, float((link_lengths + 2.0 * np.max(path_error)).max(initial=0.0)))
     error = 2.0 * float(seen.between_error.max(initial=0.0)) + ROUNDING * float(np.abs(seen.run.q).max())
     return Enclosure(sample_distances.lo, sample_distances.mid, bound + error + 64.0 * EPS * seen.law.r)
 

@@ -65,13 +65,13 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     rest = psi.beyond_enclosed(x[0])
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
     slow_claim = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
-    fast_claim = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
+    fast_need = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
     far, smallest, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
-    bound_claims = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
+    bound_text = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
     parts = f"their relative speed is {end:.6g} at the end and never below {smallest:.6g}"
     match_text = "the two match, and their distance tends to a known one"
     return needs, [
         _invariant(seen, psi, x, w, needs, tolerances),
-        _side("bounded", slow_claim, needs, float(x.mid[-1]), match_text, bound_claims),
-        _side("parts", fast_claim, needs, end, "the two never match and separate", parts),
+        _side("bounded", slow_claim, needs, float(x.mid[-1]), match_text, bound_text),
+        _side("parts", fast_need, needs, end, "the two never match and separate", parts),
     ]

@@ -30,11 +30,11 @@ def _velocity_is_true(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Compare the copies with d'' = −(k + k₁) d − (b + k₂) d' for the distance d from their mean."""
     copies, t = run.law.copies, float(run.t[-1] - run.t[0])
-    position, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
+    offsets, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
     k, b = copies.position_coupling, copies.velocity_coupling  # f_r = 0
-    predicted = position + speed * t
+    predicted = offsets + speed * t
     if k > 0.0:  # critically damped, b² = 4k
-        predicted = (position + (speed + 0.5 * b * position) * t) * np.exp(-0.5 * b * t)
+        predicted = (offsets + (speed + 0.5 * b * offsets) * t) * np.exp(-0.5 * b * t)
     centre = copies.state(float(run.t[-1]))[0]
     centre = centre - centre.mean(axis=0)
     off, size = float(np.abs(centre - predicted).max()), run.scales.length
@@ -47,8 +47,8 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the centre of mass follows the mean of the copies as a critically damped system."""
     law = run.law
-    positions, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
-    away, slip = run.q[0].mean(axis=0) - positions, run.p[0].mean(axis=0) - speeds
+    position, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
+    away, slip = run.q[0].mean(axis=0) - position, run.p[0].mean(axis=0) - speeds
     rate, t = 0.5 * float(law.gains.c2_gamma), float(run.t[-1] - run.t[0])
     predicted_value = (away + (slip + rate * away) * t) * np.exp(-rate * t)
     offset = run.q[-1].mean(axis=0) - law.copies.state(float(run.t[-1]))[0].mean(axis=0)
@@ -92,18 +92,18 @@ def _system() -> Builder:
 def _peers(name: str, title: str, *, coupling: float) -> Builder:
     """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
     damping = 2.0 * np.sqrt(coupling)
-    coupling_gains = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
+    coupling_text = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
     source_text = (
         "Ours, on Fig. 7 (a virtual leader against peer-to-peer copies of the γ-agent): eight agents near a "
         "lattice, each with a copy of the γ-agent of its own, f_r = 0, all copies from (10, 0) at (2, 0), but for "
         "-4 across the way in one half of the flock and +4 in the other; default gains. "
-        + (coupling_gains if coupling else "The copies are not coupled, and part.")
+        + (coupling_text if coupling else "The copies are not coupled, and part.")
     )
     end = report("together", "the flock stays one")(connected) if coupling else _TWO_HALVES
     reports = (_copies_as_predicted, end, _centre_follows, _balanced)
-    position, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
+    positions, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
     couplings = {"position_coupling": coupling, "velocity_coupling": damping}
-    law = PeerToPeer(Copies(position, speed, Spring((0.0, 0.0), 0.0), **couplings))
+    law = PeerToPeer(Copies(positions, speed, Spring((0.0, 0.0), 0.0), **couplings))
     return entry(name, title, source_text, law, _start, 25.0, verified("source"), reports, references=OURS)
 
 

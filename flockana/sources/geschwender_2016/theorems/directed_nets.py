@@ -23,11 +23,11 @@ def _undirected() -> Claim:
     generator, target = np.random.default_rng(0), LinearTarget((0.0, 0.0), (1.0, 0.0))
     q, p = generator.uniform(-20.0, 20.0, (40, 2)), generator.normal(0.0, 1.0, (40, 2))
     laws = Algorithm1(), Algorithm2(target=target), Algorithm3(target=target, obstacles=(Sphere((40.0, 0.0), 5.0),))
-    entries = []
+    deviations = []
     for law in laws:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
-        entries.append(float(np.abs(u - again).max() / np.abs(u).max()))
-    off = float(np.max(entries))
+        deviations.append(float(np.abs(u - again).max() / np.abs(u).max()))
+    off = float(np.max(deviations))
     text = f"40 agents with one range for all: the input differs from that of Algorithms 1 to 3 by {off:.1g}"
     return of_state("undirected", _ROUNDING - off, 0.0).described(
         computed=off, stated=f"the same input to {_ROUNDING:g} of the largest", witness={"agents": 40}, detail=text

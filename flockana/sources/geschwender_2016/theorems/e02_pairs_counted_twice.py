@@ -16,16 +16,16 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     # two agents too close that approach further, a sphere beside them, the γ-agent at rest between them
     law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
     observation = observed(law, [[0.0, 0.0], [4.0, 0.0]], [[5.0, 0.0], [-5.0, 0.0]], (0.0, 1.0))
-    stated_value = "dH/dt = -c2α pᵀL̂p + c2β ΣΣ b ⟨p, p̂ - p⟩ - c2γ Σ⟨p, p - p_r⟩"
+    stated_text = "dH/dt = -c2α pᵀL̂p + c2β ΣΣ b ⟨p, p̂ - p⟩ - c2γ Σ⟨p, p - p_r⟩"
     return [
         equal("printed", e2_identity(m=2).residual, disproof=PROOF).described(
-            stated=f"{stated_value} for V_α = Σ_i Σ_(j≠i) ψ_α",
+            stated=f"{stated_text} for V_α = Σ_i Σ_(j≠i) ψ_α",
             detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt remains, which has no definite sign",
         ),
         state_claim(e2_counterexample()),
         run_claim(observation, pair_energy, "two agents beside a sphere"),
         equal("corrected", theorem6_identity(m=2).residual, proof=PROOF).described(
-            stated=f"{stated_value} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
+            stated=f"{stated_text} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
             detail="with every pair once the identity is exact, for every n and any walls and spheres",
         ),
     ]

@@ -47,8 +47,8 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     # ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
     z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
-    deviation = (z - alpha.d_alpha) ** 2
-    ratio, error = alpha.psi_alpha(z) / deviation, 1e-13 * alpha.c_star / float(deviation.min())
+    square = (z - alpha.d_alpha) ** 2
+    ratio, error = alpha.psi_alpha(z) / square, 1e-13 * alpha.c_star / float(square.min())
     slope = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
     return of_state("printed", slope, error, about="all", proof="collisions", computed=slope).described(
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",

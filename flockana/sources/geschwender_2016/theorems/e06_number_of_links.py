@@ -27,7 +27,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     table = link_counts()
     exceeding = [n for n, (count, printed, _) in table.items() if count > printed]
     count, printed, _ = min((table[n] for n in range(3, _MOST + 1)), key=lambda row: row[1] - row[0])
-    deviation = [n for n, (count, _, sharp_bound) in table.items() if count != sharp_bound]
+    failures = [n for n, (count, _, sharp_bound) in table.items() if count != sharp_bound]
     return [
         by_count("printed", len(exceeding), about="all", disproof=_PROOF, computed=table[2][0]).described(
             stated=table[2][1], witness={"n": exceeding}, detail="two agents at distance d have 1 link; 3n - 6 is 0"
@@ -38,10 +38,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
             witness={"n with 3n - 6 links": [n for n in range(3, _MOST + 1) if table[n][0] == table[n][1]]},
             detail=f"hexagonal spirals of 3 to {_MOST} agents have at most 3n - 6 links, and that many only if n = 3",
         ),
-        by_count("sharp", len(deviation), proof=_PROOF).described(
+        by_count("sharp", len(failures), proof=_PROOF).described(
             computed={n: (count, sharp_bound) for n, (count, _, sharp_bound) in table.items()},
             stated="floor(3n - sqrt(12n - 3)) links",
-            witness={"n": deviation},
+            witness={"n": failures},
             detail=f"hexagonal spirals of 1 to {_MOST} agents have Harborth's number of links, every one",
         ),
     ]

@@ -20,10 +20,10 @@ def _components(*sizes: int) -> FloatArray:
 
 def _share(name: str, share: float, count: int, of: int, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a given number of a total."""
-    stated_value = f"{count / of:g}" if of == 100 else f"{count}/{of}"
+    stated_text = f"{count / of:g}" if of == 100 else f"{count}/{of}"
     proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
     claim = by_count(name, abs(round(of * share) - count), **proof)
-    return claim.described(computed=share, stated=stated_value, witness=witness, detail=detail)
+    return claim.described(computed=share, stated=stated_text, witness=witness, detail=detail)
 
 
 @erratum("E7", expected={"refuted": "printed", "verified": "corrected connectivity-1 connectivity-2 share-2"})

@@ -14,8 +14,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
 
     z, h = sp.Symbol("z", positive=True), sp.Symbol("h", positive=True)
     indicator = bump(z, h=sp.Integer(1))
-    side_state = sp.Symbol("t", positive=True)  # constant on either side, so its values there are the one-sided limits
-    jump = indicator.subs(z, 1 - side_state) - indicator.subs(z, 1 + side_state)
+    offset = sp.Symbol("t", positive=True)  # constant on either side, so its values there are the one-sided limits
+    jump = indicator.subs(z, 1 - offset) - indicator.subs(z, 1 + offset)
     falling_bump = taper(z, h=h)
     end_values = [sp.simplify(f.subs(z, end)) for end in (h, 1) for f in (falling_bump, falling_bump.diff(z))]
     return [

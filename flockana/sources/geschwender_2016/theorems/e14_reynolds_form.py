@@ -64,13 +64,13 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     from flockana.symbolic.errata import reynolds_form
 
-    printed_value, true_value = reynolds_form(printed=True), reynolds_form()
+    printed_form, true_form = reynolds_form(printed=True), reynolds_form()
     return [
-        equal("printed", list(printed_value.residuals), stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻").described(
+        equal("printed", list(printed_form.residuals), stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻").described(
             detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w"
         ),
         _example(),
-        equal("corrected", list(true_value.residuals)).described(
+        equal("corrected", list(true_form.residuals)).described(
             stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
             detail="for any numbers of positive and negative friends, by sympy",
         ),

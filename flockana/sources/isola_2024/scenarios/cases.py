@@ -63,20 +63,20 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     """Return the expected statuses of a case; maps have reports only, as the theorems are about flows."""
-    source_claims = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
+    statuses = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
     if printed and case >= 3:  # the map's orbits part after some 300 steps
-        return source_claims | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
+        return statuses | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
     if not printed:
-        source_claims |= verified("energy")
+        statuses |= verified("energy")
     of_the_map = verified if printed else refuted  # in place it adds energy, and has outliers; the flow does not
     if case == 1:
         reports = refuted("source") | verified("source:fragments") | of_the_map("source:top-speed")
         reports |= verified("source:connectivity") | refuted("source:connectivity-as-typeset")
-        return source_claims | ({} if printed else vacuous("os-1")) | reports
+        return statuses | ({} if printed else vacuous("os-1")) | reports
     if case == 2:
         iv = vacuous("os-3:i", "os-3:ii", "os-3:iii")
         iv |= verified("os-3", "os-3:iv-printed")  # (iv) needs no damping by the γ-agent
-        return source_claims | ({} if printed else iv)
+        return statuses | ({} if printed else iv)
     source = refuted("source") | of_the_map("source:spikes") | verified("source:connected")
     source |= verified("source:less-connected") if case == 3 else {}
     source |= verified("source:amplitude" if case == 3 else "source:circle") | refuted("source:separated")
@@ -84,7 +84,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     theorems = inconclusive("os-3") | verified("os-3:i") | inconclusive("os-3:ii")
     theorems |= verified("os-3:iii", "os-3:iv-printed") | refuted("E12")
     theorems |= verified("E12:predicted", "E12:consistent") | refuted("E12:printed")
-    return source_claims | ({} if printed else theorems) | source
+    return statuses | ({} if printed else theorems) | source
 
 
 def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: float = 0.0) -> Scenario:

@@ -138,8 +138,8 @@ def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _anticlockwise(run: Trajectory, tolerances: Tolerances) -> Claim:
     late_run = run.window(0.5 * float(run.t[-1]), float(run.t[-1]))
     x, v = late_run.q.mean(axis=1) - np.array(CENTRE), late_run.p.mean(axis=1)
-    turning_rates = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1))
-    worst = float(turning_rates.min())
+    sines = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1))
+    worst = float(sines.min())
     text = f"sine of the angle from radius to velocity of the centre of mass is {worst:.2f} or more in the second half"
     return finding(worst, text, computed=worst, stated="> 0")
 

@@ -19,8 +19,8 @@ def _step(factor: float) -> tuple[float, float]:
     law = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((_Q_R,)))
     q, p = np.array([[_Q]]), np.array([[_P]])
     next_positions, _, u, _ = MSNDiscretisation(law, dt=_DT, position_factor=factor).step(0.0, q, p, {})
-    swept_distance = float(u[0, 0]) * _DT**2
-    return float(next_positions[0, 0]) - (_Q + _P * _DT + 0.5 * swept_distance), swept_distance
+    swept = float(u[0, 0]) * _DT**2
+    return float(next_positions[0, 0]) - (_Q + _P * _DT + 0.5 * swept), swept
 
 
 def _symbolic_excess(v: str) -> tuple[str, bool]:
@@ -52,14 +52,14 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     is v dt + ½ u dt²; the printed one is v dt + (3/2) u dt², an excess of u dt².
     """
     # One step under a constant u: exactly by algebra, and on the map itself.
-    measured_step, swept = _step(PRINTED)
+    excess, swept = _step(PRINTED)
     return [
         _by_algebra("printed", "end", PRINTED, disproof=_PROOF),
         _by_algebra("corrected", "start", CONSTANT_ACCELERATION, proof=_PROOF),
-        of_map("excess", tolerances.agreement * abs(swept) - abs(measured_step - swept), 8.0 * EPS * _Q_R).described(
-            computed=measured_step,
+        of_map("excess", tolerances.agreement * abs(swept) - abs(excess - swept), 8.0 * EPS * _Q_R).described(
+            computed=excess,
             stated=swept,
             witness=f"one agent, u = {swept / _DT**2:g}, dt = {_DT:g}",
-            detail=f"one printed step of the map goes {measured_step:.6g} too far, where u dt² = {swept:.6g}",
+            detail=f"one printed step of the map goes {excess:.6g} too far, where u dt² = {swept:.6g}",
         ),
     ]

@@ -77,17 +77,17 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     assert isinstance(path, SineTarget | CircleTarget)
     omega, gains = 2.0 * pi * path.frequency, law.gains
     consistent = observed(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
-    stated_ratio, true = measured_ratio(seen), measured_ratio(consistent)
+    handed_ratio, true = measured_ratio(seen), measured_ratio(consistent)
     is_slow_circle = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
     detail = f"with the p_r that was handed over, {factor:g} dq_r/dt"
     return needs, [
-        _agrees("predicted", stated_ratio, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
+        _agrees("predicted", handed_ratio, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
         _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
         judged("printed", 1.0 - true, needs, disproof="tracking-gain" if is_slow_circle else None).described(
             computed=float(true.mid),
             stated="the ratio is below 1 because the γ-agent turns",
-            witness={"handed p_r": float(stated_ratio.mid), "true p_r": float(true.mid)},
+            witness={"handed p_r": float(handed_ratio.mid), "true p_r": float(true.mid)},
             detail=f"the same turning γ-agent with its true p_r is followed at {true.mid:.4f} of its size; with the "
-            f"p_r that was handed over, at {stated_ratio.mid:.4f}",
+            f"p_r that was handed over, at {handed_ratio.mid:.4f}",
         ),
     ]

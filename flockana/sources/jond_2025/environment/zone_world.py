@@ -179,4 +179,4 @@ class ZoneWorld(ShortRepr):
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
     """Return the concatenated rows of all parts, and the start index of each part."""
-    return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(component) for component in parts)])
+    return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

@@ -180,7 +180,7 @@ def _check_sums(name: str, value: Table) -> None:
     if value == 0.0:
         raise ArgumentError(f"{name} {remedy}")
     if isinstance(value, tuple):
-        neighbour_weights = np.array(value) * (1.0 - np.eye(len(value)))
-        is_empty = neighbour_weights.sum(axis=1) == 0.0
+        other_weights = np.array(value) * (1.0 - np.eye(len(value)))
+        is_empty = other_weights.sum(axis=1) == 0.0
         if is_empty.any() and len(value) > 1:
             raise ArgumentError(f"{name}[{int(np.argmax(is_empty))}] {remedy}")

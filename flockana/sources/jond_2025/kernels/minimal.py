@@ -49,11 +49,11 @@ def _directed(q, first, second, square):
 
 def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Return (head, tail) of every directed edge: agent head[e] perceives agent tail[e] within its own radius."""
-    reach, squared_value = float(radius.max()) * _SLACK, radius * radius
-    parts = [_directed(q, i, j, squared_value) for i, j in pair_blocks(q, reach)]
+    reach, squared_radii = float(radius.max()) * _SLACK, radius * radius
+    parts = [_directed(q, i, j, squared_radii) for i, j in pair_blocks(q, reach)]
     if len(parts) == 1:
         return parts[0]
-    return np.concatenate([component[0] for component in parts]), np.concatenate([component[1] for component in parts])
+    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 @kernel
@@ -103,17 +103,17 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
 
 def perceived_forces(q: FloatArray, p: FloatArray, edges: EqualEdges, u: FloatArray) -> None:
     """Add to u the sum of `edge_forces` over `perceived_edges` of equal weights, without listing the edges."""
-    radius, spacing, common_ranges, mu, sigma, normalised_weights = edges
-    reach, squared_value, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
+    radius, spacing, is_shared, mu, sigma, is_normalised = edges
+    reach, squared_radii, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
     parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
-    if common_ranges or normalised_weights:
+    if is_shared or is_normalised:
         for i, j in parts:
-            _count(q, i, j, squared_value, count)
-    total = sigma * count if normalised_weights else np.ones(len(q))
+            _count(q, i, j, squared_radii, count)
+    total = sigma * count if is_normalised else np.ones(len(q))
     align_weights = np.divide(sigma, total, out=np.zeros(len(q)), where=total > 0.0)
-    rho = spacing * count if common_ranges else spacing
+    rho = spacing * count if is_shared else spacing
     for i, j in parts:
-        _pull(q, p, i, j, squared_value, mu, rho, align_weights, u)
+        _pull(q, p, i, j, squared_radii, mu, rho, align_weights, u)
 
 
 @kernel
@@ -167,17 +167,17 @@ def _pull_all(x, v, square, mu, rho, align, s2, w, u):
 @kernel
 def _many_steps(x, v, square, edges, dt, steps):
     m, n = x.shape
-    _, spacing, common_ranges, mu, sigma, normalised_weights = edges
+    _, spacing, is_shared, mu, sigma, is_normalised = edges
     qs, ps, us = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     count, s2, w, u = np.empty(n), np.empty(n), np.empty(n), np.empty((m, n))
     rho, align_weights = spacing.copy(), np.full(n, sigma)
     for k in range(steps):
-        if common_ranges or normalised_weights:
+        if is_shared or is_normalised:
             _numbers(x, square, s2, count)
         for i in range(n):
-            if common_ranges:
+            if is_shared:
                 rho[i] = spacing[i] * count[i]
-            if normalised_weights:
+            if is_normalised:
                 total = sigma * count[i]
                 align_weights[i] = sigma / total if total > 0.0 else 0.0
         _pull_all(x, v, square, mu, rho, align_weights, s2, w, u)
@@ -195,7 +195,7 @@ def semi_implicit_steps(
     """Return semi-implicit Euler steps of few agents: q, p after each and u before, (steps, n, m)."""
     reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter
-    squared_value = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
+    squared_radii = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
     x, v = q.T.copy(), p.T.copy()
-    stepped_law: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, squared_value, edges, dt, steps)
-    return stepped_law
+    step_series: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, squared_radii, edges, dt, steps)
+    return step_series

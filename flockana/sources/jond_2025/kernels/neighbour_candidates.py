@@ -51,8 +51,8 @@ def gather(i, q, reach, cells, near):
         return n
     count, c, squared_reach = 0, cells.cell[i], reach * reach * _SLACK
     for row in range(-cells.rows.size, cells.rows.size + 1):
-        first_cell = 0 if row == 0 else cells.rows[row - 1] if row > 0 else -cells.rows[-row - 1]
-        for k in range(cells.start[c + first_cell - 1], cells.start[c + first_cell + 2]):
+        offset = 0 if row == 0 else cells.rows[row - 1] if row > 0 else -cells.rows[-row - 1]
+        for k in range(cells.start[c + offset - 1], cells.start[c + offset + 2]):
             j, d2 = cells.order[k], 0.0
             for axis in range(m):
                 d2 += (q[j, axis] - q[i, axis]) ** 2

@@ -186,7 +186,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
 @kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one push term for each wall within the zone, or for the nearest wall."""
-    buffer, nearest, is_close = choices.obstacle_zone == 1, choices.walls == 1, inf
+    buffer, nearest, least_distance = choices.obstacle_zone == 1, choices.walls == 1, inf
     axis, force = -1, 0.0
     for k in range(x.size):
         for side in range(2):
@@ -202,7 +202,7 @@ def _walls(x, h, moving, depth, half, c, box, choices, out):
             term = push(abs(distance), c, is_outside, choices) * wall_direction
             if not nearest:
                 out[k] += term
-            elif distance < is_close:
-                is_close, axis, force = distance, k, term
+            elif distance < least_distance:
+                least_distance, axis, force = distance, k, term
     if axis >= 0:
         out[axis] += force

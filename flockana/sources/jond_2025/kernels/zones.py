@@ -143,7 +143,7 @@ def _neighbours(i, near, flock, step, rules, out):
     """
     q, p, a, zones, settings = flock.q, flock.p, flock.reach[i], rules.zones, rules.settings
     m, bearing = q.shape[1], rules.choices.form == 1
-    r, c, nearest, chance_weight = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
+    r, c, nearest, has_noise = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
     total_c, total_a = 0.0, 0.0
     for j in near:
         if j == i:
@@ -154,7 +154,7 @@ def _neighbours(i, near, flock, step, rules, out):
             continue
         if d <= c:
             w = _weight(zones.separation, i, j) * (d - c)
-            if chance_weight:
+            if has_noise:
                 w *= _noise_factor(settings, step, i, j, SEPARATION)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
@@ -163,7 +163,7 @@ def _neighbours(i, near, flock, step, rules, out):
         if d < nearest:
             nearest = d
         w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
-        if chance_weight:
+        if has_noise:
             w_c *= _noise_factor(settings, step, i, j, COHESION)
             w_a *= _noise_factor(settings, step, i, j, ALIGNMENT)
         total_c += w_c
@@ -239,20 +239,20 @@ def behave(i, near, flock, step, rules, out):
     moving = _length(heading[i]) > 0.0
     c = zones.c[i]
     depth = altitude(speed, zones.r[i], c, zones.a[i], settings, choices)
-    obstacle_term = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
-    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, obstacle_term, world, choices, out[OBSTACLE])
+    force_end = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
+    obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, force_end, world, choices, out[OBSTACLE])
     w_o = zones.obstacle[i] * _noise_factor(settings, step, i, 0, OBSTACLE)
     w_s = zones.speed[i] * _noise_factor(settings, step, i, 0, SPEED)
     own2 = 0.0
     for k in range(m):
         out[OBSTACLE, k] *= w_o
-        other_terms = (
+        other_sum = (
             out[COHESION, k] + out[ALIGNMENT, k] + out[SEPARATION, k] + out[STRATEGIC, k] + out[OBSTACLE, k]
         )  # (16)
         if choices.own_velocity == 2:  # (17)
-            estimate[i, k] += settings.dt * other_terms
+            estimate[i, k] += settings.dt * other_sum
         else:
-            estimate[i, k] = p[i, k] + (settings.dt * other_terms if choices.own_velocity == 1 else 0.0)
+            estimate[i, k] = p[i, k] + (settings.dt * other_sum if choices.own_velocity == 1 else 0.0)
         own2 += estimate[i, k] ** 2
     if own2 > 0.0:
         for k in range(m):
@@ -304,12 +304,12 @@ def _move_aliens(alien, q, dt, world):
                 least_square, prey_index = d2, i
         if prey_index < 0 or least_square == 0.0:
             continue
-        pace_step = dt * world.pace[e] / sqrt(least_square)
+        way_share = dt * world.pace[e] / sqrt(least_square)
         for k in range(m):
-            alien[e, k] += pace_step * (q[prey_index, k] - alien[e, k])
-        first_index, last_edge = world.territory_starts[e], world.territory_starts[e + 1]
-        if last_edge > first_index:
-            gx, gy, is_inside = to_boundary(alien[e, 0], alien[e, 1], world.territory, first_index, last_edge)
+            alien[e, k] += way_share * (q[prey_index, k] - alien[e, k])
+        first_index, edge_stop = world.territory_starts[e], world.territory_starts[e + 1]
+        if edge_stop > first_index:
+            gx, gy, is_inside = to_boundary(alien[e, 0], alien[e, 1], world.territory, first_index, edge_stop)
             if not is_inside:
                 alien[e, 0] += gx
                 alien[e, 1] += gy

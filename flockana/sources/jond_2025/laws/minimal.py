@@ -103,8 +103,8 @@ class MinimalFlocking(Law):
     def scales(self) -> Scales:
         """Length and time scales: longest spacing or perception radius, time of the stiffest spring or of alignment."""
         length_scale = float(np.max(self.radius if self.spacing is None else self.spacing))
-        sight_range = float(np.max(self.sigma))
-        rate = max(float(np.sqrt(np.max(self.mu))), float(sight_range > 0.0) if self.normalised else sight_range)
+        sigma_max = float(np.max(self.sigma))
+        rate = max(float(np.sqrt(np.max(self.mu))), float(sigma_max > 0.0) if self.normalised else sigma_max)
         return Scales(length_scale, 1.0 / rate if rate > 0.0 else 1.0)
 
     functions = ()  # neighbours are chosen by radii of agents
@@ -227,9 +227,9 @@ class MinimalFlocking(Law):
         """Return the parameters of a law with equal weights."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
-        link_lengths = np.full(n, 1.0 if spacing is None else spacing)
+        spacings = np.full(n, 1.0 if spacing is None else spacing)
         mu, sigma = float(self.mu), float(self.sigma)  # type: ignore[arg-type]  # numbers, as all weights are equal
-        return kernel.EqualEdges(radius, link_lengths, self.spacing is None, mu, sigma, self.normalised)
+        return kernel.EqualEdges(radius, spacings, self.spacing is None, mu, sigma, self.normalised)
 
     def block(self, solver: Any) -> Block | None:
         """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used."""
@@ -239,7 +239,7 @@ class MinimalFlocking(Law):
         def steps(times: FloatArray, q: FloatArray, p: FloatArray, wanted: IndexArray) -> Any:
             if not self.steps_many(len(q)):
                 return None
-            return tuple(component[wanted - 1] for component in self.semi_implicit(q, p, solver.dt, len(times)))
+            return tuple(part[wanted - 1] for part in self.semi_implicit(q, p, solver.dt, len(times)))
 
         return steps
 
@@ -283,8 +283,8 @@ class MinimalFlocking(Law):
 
     def _net_series(self, q: FloatArray) -> dict[str, Any]:
         """Return connectivity of the perception graph and share of its largest component over time."""
-        labels = [components(q.shape[1], np.column_stack(self.edge_data(label)[:2])) for label in q]
-        parts, largest = (np.array([f(np.bincount(label)) for label in labels], float) for f in (np.size, np.max))
+        labels = [components(q.shape[1], np.column_stack(self.edge_data(item)[:2])) for item in q]
+        parts, largest = (np.array([f(np.bincount(item)) for item in labels], float) for f in (np.size, np.max))
         n = q.shape[1]
         return {
             "connectivity": ("C = rank(L)/(n − 1), directions forgotten", (n - parts) / max(n - 1, 1)),
@@ -315,12 +315,12 @@ class MinimalFlocking(Law):
         ratio, identity = rho[:, None, None] / distance, np.eye(m)
         stiffness = mu[:, None, None] * ((1.0 - ratio) * identity + ratio * bearing * bearing.transpose(0, 2, 1))
         rows, columns = (m * head[:, None] + np.arange(m))[:, :, None], (m * tail[:, None] + np.arange(m))[:, None, :]
-        block_rows = (m * head[:, None] + np.arange(m))[:, None, :]
+        own_columns = (m * head[:, None] + np.arange(m))[:, None, :]
 
         def summed(blocks: FloatArray) -> Any:
             """Return Σ over edges of a block at (i, j) and its negative at (i, i)."""
             entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
-            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, block_rows)]
+            at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, own_columns)]
             indices = np.concatenate(at[:2]), np.concatenate(at[2:])
             return coo_array((entries, indices), shape=(n * m, n * m)).tocsr()
 

@@ -221,8 +221,8 @@ class ZoneFlocking(DiscreteLaw):
 
     def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
         """Return the memory without unneeded parts."""
-        requirements = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
-        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if requirements[name]}
+        is_needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
+        return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if is_needed[name]}
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one step (Algorithm 1 of the paper), unchecked.
@@ -232,8 +232,8 @@ class ZoneFlocking(DiscreteLaw):
         memory : mapping of str to ndarray
             ``heading``, ``estimate`` and, if there are aliens, ``alien``; as `start` gives it.
         """
-        q, p, u, next_state = self.iterate(t, q, p, memory, 1)
-        return q[0], p[0], u[0], {name: values[0] for name, values in next_state.items()}
+        q, p, u, next_memory = self.iterate(t, q, p, memory, 1)
+        return q[0], p[0], u[0], {name: values[0] for name, values in next_memory.items()}
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         flock, first = self._state(q, p, memory)

@@ -60,7 +60,7 @@ def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _flock(m: int, *, printed: bool) -> Builder:
     law = MinimalFlocking() if printed else MinimalFlocking(**j11.RECOMMENDED)
     duration = j11.DURATION[m] if printed else j11.LONGER
-    run_options = (
+    description = (
         f"r = 10 m, β = 1/r, σ = μ = 1, {duration:g} s in steps of 0.1 s"
         if printed
         else f"Ours: r = 15 m, one spacing of 5 m, μ = 0.4, velocity differences summed with σ = 0.1, {duration:g} s"
@@ -75,7 +75,7 @@ def _flock(m: int, *, printed: bool) -> Builder:
     name = f"minimal-{m}d{'-printed' if printed else ''}"
     title = f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}"
     source_text = (
-        f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {run_options}. "
+        f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {description}. "
         "Velocity first, then position, all agents at once; the seed is ours."
     )
     reports = in_source_units(lambda: law.scales, (_cohesive, _collision_free, _aligned, _stable))

@@ -68,17 +68,17 @@ def _walled(run: Trajectory, tolerances: Tolerances) -> Claim:
 @report("hazards", "each agent keeps the distance from an alien that its own weight gives")
 def _distance_from_alien(run: Trajectory, tolerances: Tolerances) -> Claim:
     gaps = lengths(run.q[:, : len(_HAZARD)] - run.extra["alien"][:, :1]).min(axis=0)
-    stated_value = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
-    deviation = float(np.abs(gaps - stated_value).max()) / _SEEN
+    stated_gaps = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
+    deviation = float(np.abs(gaps - stated_gaps).max()) / _SEEN
     text = f"agents with w^ss = 12, 15, 20 keep {', '.join(f'{gap:.3f}' for gap in gaps)} m from the alien, as s - v^d "
-    return finding(_AS_FAR - deviation, text + "w^ga/w^ss has it", computed=gaps.tolist(), stated=stated_value.tolist())
+    return finding(_AS_FAR - deviation, text + "w^ga/w^ss has it", computed=gaps.tolist(), stated=stated_gaps.tolist())
 
 
 @report("gives-way", "of two agents that meet, the one with the larger weight for the other gives way")
 def _right_of_way(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that after a head-on meeting both agents follow the one with the smaller weight for the other."""
     end = run.p[-1, len(_HAZARD) :, 0].reshape(-1, 2)
-    order_signs = np.array([1.0 if first_zone < second_zone else -1.0 for first_zone, second_zone in _GIVES_WAY])
+    order_signs = np.array([1.0 if first < second_weight else -1.0 for first, second_weight in _GIVES_WAY])
     slowest = float((end * order_signs[:, None]).min()) / _SPEED
     text = "; ".join(
         f"w^ls = {w[0]:g}, {w[1]:g}: both at {v[0]:.3g}, {v[1]:.3g}" for w, v in zip(_GIVES_WAY, end, strict=True)
@@ -125,9 +125,9 @@ def _head_on(seed: int) -> Start:
 def _own_weights() -> ZoneFlocking:
     n = len(_HAZARD) + 2 * len(_GIVES_WAY)
     separation = np.full((n, n), 5.0)
-    for k, (first_zone, second_zone) in enumerate(_GIVES_WAY):
+    for k, (first_weight, second_weight) in enumerate(_GIVES_WAY):
         i = len(_HAZARD) + 2 * k
-        separation[i, i + 1], separation[i + 1, i] = first_zone, second_zone
+        separation[i, i + 1], separation[i + 1, i] = first_weight, second_weight
     aliens = (Alien((0.0, 0.0), detection=1e-3),)
     weights = ZoneWeights(
         separation=tuple(map(tuple, separation.tolist())),

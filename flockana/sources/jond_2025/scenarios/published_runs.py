@@ -70,8 +70,8 @@ def _radius(run: Trajectory, tolerances: Tolerances) -> Claim:
     r = _late(run, run.metric("cohesion_radius"), 5.0)
     ratio = float(r.max() / r.min())
     text = f"from t = 5 on the cohesive radius lies between {r.min():.3g} and {r.max():.3g}"
-    stated_value = f"stable (by a factor of {tolerances.cohesion:g})"
-    return finding(tolerances.cohesion - ratio, text, computed=ratio, stated=stated_value)
+    stated_text = f"stable (by a factor of {tolerances.cohesion:g})"
+    return finding(tolerances.cohesion - ratio, text, computed=ratio, stated=stated_text)
 
 
 @report("speed", "the mean speed is close to the desired 3 m/s")
@@ -117,10 +117,10 @@ def _reunites(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("range", "distances reach up to 10 m when the flock is cohesive")
 def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
-    connected_samples = component_counts(run) == 1
-    if not connected_samples.any():
+    is_connected = component_counts(run) == 1
+    if not is_connected.any():
         return finding(float("nan"), "the flock is never cohesive", stated="up to 10 when cohesive")
-    spans = diameters(run.q[connected_samples])
+    spans = diameters(run.q[is_connected])
     text = f"while the flock is one component its largest distance is {spans.min():.3g} to {spans.max():.3g}"
     maximum = float(spans.max())
     return finding(10.0 - maximum, text, computed=maximum, stated="up to 10 when cohesive")
@@ -236,9 +236,9 @@ def zone_entry(
 
 def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Builder:
     """Return the run of a paper section in a given reading, both by name."""
-    place_text, position_error, end, reports, instants = _SECTIONS[name[5:7]]
+    place_text, place_note, end, reports, instants = _SECTIONS[name[5:7]]
     description, text, draw, seeds, settings = _READINGS[name[7:]]
-    title, source_text = f"{place_text}, {description}", f"{PRINTED}{parameters}. {text}{position_error}"
+    title, source_text = f"{place_text}, {description}", f"{PRINTED}{parameters}. {text}{place_note}"
     entry_options: dict[str, Any] = {"seeds": seeds, "settings": settings, "instants": instants}
     return zone_entry(name, title, source_text, law, draw, end, expected, reports, **entry_options)
 

@@ -51,23 +51,23 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     law, q, p = random_forest(_TREES, _SEED)
     seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END))
-    length_axes, trees = np.linalg.norm(edge_vectors(seen.end.q, law.edges or ()), axis=1), _trees(seen)
+    edge_lengths, trees = np.linalg.norm(edge_vectors(seen.end.q, law.edges or ()), axis=1), _trees(seen)
     certificates = [settles(*tree) for tree in trees]
     settled_count, keeping = sum(item.certain for item in certificates), [kept(*tree) for tree in trees]
-    vanished, (fewest, maximum) = sum(not kept_energy > 0.0 for kept_energy in keeping), interval(settled_count, _TREES)
+    vanished, (fewest, maximum) = sum(not kept_ratio > 0.0 for kept_ratio in keeping), interval(settled_count, _TREES)
     case = {"trees": _TREES, "agents": f"2 to {_MOST_AGENTS}", "seed": _SEED, "t": _END}
     return [
         judged("printed", Enclosure.of(-max(keeping)), about="all", disproof="bearing-distance-printed").described(
             computed={"trees whose edges might all vanish": vanished},
             stated="|x_e| -> 0 on every edge of every spanning tree",
-            witness=case | {"shortest edge at the end": float(length_axes.min())},
+            witness=case | {"shortest edge at the end": float(edge_lengths.min())},
             detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge longer than 0 permanently; the "
-            f"shortest of all is {length_axes.min():.8g} αr at the end",
+            f"shortest of all is {edge_lengths.min():.8g} αr at the end",
         ),
         limit_claim("corrected", [], [min(certificates, key=lambda certificate: certificate.margin)]).described(
             computed={"trees": settled_count, "interval": [fewest, maximum]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
-            witness=case | {"largest length error": float(np.abs(length_axes - 1.0).max())},
+            witness=case | {"largest length error": float(np.abs(edge_lengths - 1.0).max())},
             detail=f"{settled_count} of {_TREES} random trees tend to edges of length αr and equal velocities; share "
             f"at least {fewest:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),

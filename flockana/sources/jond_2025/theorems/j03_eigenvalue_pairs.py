@@ -36,13 +36,13 @@ def _pairing(mu: float) -> tuple[float, float]:
     from scipy.optimize import linear_sum_assignment
 
     stiffness, damping = path_matrices(mu)
-    true_value = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
+    eigenvalues = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -damping]]))
     least_error = np.inf
     for gammas in permutations(np.linalg.eigvals(stiffness)):
         pairs = zip(np.linalg.eigvals(damping), gammas, strict=True)
-        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - true_value)
+        gap = np.abs(np.concatenate([np.roots([1.0, m, g]) for m, g in pairs])[:, None] - eigenvalues)
         least_error = min(least_error, float(gap[linear_sum_assignment(gap)].max()))
-    return least_error, float(true_value.real.max())
+    return least_error, float(eigenvalues.real.max())
 
 
 @erratum("J3", expected={"refuted": "printed hurwitz", "verified": "trees"})

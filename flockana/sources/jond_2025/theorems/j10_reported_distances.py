@@ -21,13 +21,13 @@ def _least_coordination(run: Trajectory) -> float:
 def _weights_cancel() -> Claim:
     """Return the claim that uniform weights of cohesion and alignment cancel in the means (3) and (4)."""
     worst = 0.0
-    printed_value, other = (
+    printed_law, other = (
         ZoneFlocking.printed(weights=ZoneWeights(cohesion=c, alignment=a, cohesion_gain=1.0, alignment_gain=1.0))
         for c, a in ((0.75, 0.25), (40.0, 7.0))
     )
     for seed in range(random_starts.SEEDS):
         q, p = random_starts.zone_start(seed)
-        forces, other_forces = (law.behaviours(q, p) for law in (printed_value, other))
+        forces, other_forces = (law.behaviours(q, p) for law in (printed_law, other))
         pairs = [(forces[name], other_forces[name]) for name in ("cohesion", "alignment")]
         worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
     return of_state("weights", worst - _SAME, _ROUNDING, computed=worst).described(
@@ -50,7 +50,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     printed = [_least_coordination(run) for run in random_starts.runs_from_random_starts(ZoneFlocking.printed())]
     mended_law = ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
-    mended_runs = [_least_coordination(run) for run in random_starts.runs_from_random_starts(mended_law)]
+    mended_values = [_least_coordination(run) for run in random_starts.runs_from_random_starts(mended_law)]
     recommended_runs = random_starts.runs_from_random_starts(ZoneFlocking(), random_starts.separated_start)
     C = [_least_coordination(run) for run in recommended_runs]
     D = [min(map(min_distance, run.q)) for run in recommended_runs]
@@ -63,10 +63,10 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
         ).described(witness={"least C from 2 s on, by seed": printed}),
         mostly(
             "unordered-still",
-            [c < _IN_ORDER for c in mended_runs],
+            [c < _IN_ORDER for c in mended_values],
             f"C falls below {_IN_ORDER:g} after {_FROM:g} s, with J7 and J8 corrected and the printed weights,",
             "C does not reach 1 within 2 s with J7 and J8 corrected",
-        ).described(witness={"least C from 2 s on, by seed": mended_runs}),
+        ).described(witness={"least C from 2 s on, by seed": mended_values}),
         _weights_cancel(),
         mostly(
             "recommended",

@@ -68,12 +68,12 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     align, and in the plane they fall apart: the desired spacing, as many metres as an agent has neighbours, differs
     from agent to agent and jumps. With one constant spacing and mutual forces they do.
     """
-    printed_value = {m: _ends(MinimalFlocking(), m, DURATION[m], _SEEDS) for m in (2, 3)}
-    cohesive_2d_text = f"2-D as printed: one component at the end ({np.median(printed_value[2][:, 1]):g} in the median)"
+    printed_ends = {m: _ends(MinimalFlocking(), m, DURATION[m], _SEEDS) for m in (2, 3)}
+    cohesive_2d_text = f"2-D as printed: one component at the end ({np.median(printed_ends[2][:, 1]):g} in the median)"
     return [
-        *(_aligned(m, printed_value[m][:, 0]) for m in (2, 3)),
-        always("cohesive-2d", printed_value[2][:, 1] == 1, cohesive_2d_text, "cohesive at the end").described(
-            witness={"components by seed": printed_value[2][:, 1].astype(int).tolist()}
+        *(_aligned(m, printed_ends[m][:, 0]) for m in (2, 3)),
+        always("cohesive-2d", printed_ends[2][:, 1] == 1, cohesive_2d_text, "cohesive at the end").described(
+            witness={"components by seed": printed_ends[2][:, 1].astype(int).tolist()}
         ),
         *(_recommended(m) for m in DURATION),
     ]

@@ -73,23 +73,23 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     damp the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes to
     c - v^d w^ga/w from it. At the printed 5, 5, 3, 3 that is 0 at a wall, and two agents pass through each other.
     """
-    outward, inward, outer_force = _inside("literal")
+    outward, inward, outer_distance = _inside("literal")
     mended_outward, mended_inward, mended_beyond = _inside("outward")
     error, stand_offs = _stand_offs()
     at_wall, (_, least_gap) = _at_wall(5.0, 5.0), _head_on(_separation_only(5.0, 5.0))
     force, c = 5.0 * _RADII.reach[1], _RADII.reach[1]  # w^oa c and c: the scales of force and length
     printed_value, clearance = max(outward, inward) / force, min(at_wall, least_gap) / c
-    mended_force = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
+    mended_ratio = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
     return [
         of_state("printed", printed_value, _ROUNDING, disproof="stand-off").described(
             computed={"outward force in an obstacle": outward, "inward force beyond a wall": inward},
             stated="(8) repels an agent from an obstacle and from a wall",
             witness={"in an obstacle": (10.5, 0.3), "beyond the wall x = 50": (50.1, 25.0)}
-            | {"beyond it after 3 s": outer_force},
+            | {"beyond it after 3 s": outer_distance},
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
-            f"beyond a wall, and after 3 s the agent is {outer_force:.3g} m beyond it",
+            f"beyond a wall, and after 3 s the agent is {outer_distance:.3g} m beyond it",
         ),
-        of_map("corrected", mended_force, _ROUNDING).described(
+        of_map("corrected", mended_ratio, _ROUNDING).described(
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",

@@ -68,16 +68,16 @@ def _clamped() -> Claim:
 def _reaching() -> Claim:
     """Return the claim that an agent brakes just within its altitude and not just beyond, at every speed."""
     law = _law("speed", "reaching")
-    wrong_rows, rows = [], {}
+    deviations, rows = [], {}
     for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
         reach = _R + (_A - _R) * min(1.0, speed / _V_MAX)
-        inner_distance, outer_distance = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
+        inner_distance, outer_force = (_braking(law, (1.0 + side * _NEAR) * reach, speed) for side in (-1.0, 1.0))
         expected = _NEAR * reach / _C  # of w (h − d) over w c
-        wrong_rows += [abs(inner_distance / expected - 1.0), abs(outer_distance) / expected]
+        deviations += [abs(inner_distance / expected - 1.0), abs(outer_force) / expected]
         rows[speed] = reach
     return of_state(
         "reaching",
-        1e-6 - float(np.max(wrong_rows)),
+        1e-6 - float(np.max(deviations)),
         1e-8,  # relative: of a difference of positions, a thousandth of their distance
         computed=rows,
         stated="an agent at speed v reacts from h = r + (a - r) v/v^max on",

@@ -24,22 +24,22 @@ def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, Float
     q, p = np.array([[0.0, 0.0], [0.0, _APART]]), np.column_stack([speeds, [0.0, 0.0]])
     run = law.iterate(0.0, q, p, law.start(q, p), _STEPS)[1][:, :, 0]
     matrix = np.array([[-_GAIN - drive_gains[0], _GAIN], [_GAIN, -_GAIN - drive_gains[1]]])
-    predicted_value, x = [], np.array(speeds)
+    predictions, x = [], np.array(speeds)
     for _ in range(_STEPS):
         x = x + law.dt * (matrix @ x + _DESIRED * np.array(drive_gains))
-        predicted_value.append(x)
-    return run, np.array(predicted_value)
+        predictions.append(x)
+    return run, np.array(predictions)
 
 
 def _informed_or_not() -> list[Claim]:
-    informed_speed, predicted_value = _pair(1, (1.0, 1.0))
-    deviation = float(np.abs(informed_speed - predicted_value).max()) / _DESIRED
-    left = float(np.abs(informed_speed[-1] - _DESIRED).max()) / _DESIRED
+    informed_speeds, predicted_speed = _pair(1, (1.0, 1.0))
+    deviation = float(np.abs(informed_speeds - predicted_speed).max()) / _DESIRED
+    left = float(np.abs(informed_speeds[-1] - _DESIRED).max()) / _DESIRED
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
         of_map("one-informed", _SAME - float(np.maximum(deviation, left)), _ROUNDING).described(
-            computed=informed_speed[-1].tolist(),
+            computed=informed_speeds[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
             detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "

@@ -36,8 +36,8 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed
     reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer.
     """
-    (hunt_step, reaction_step, near), (second_hunt_step, prompt_step, far) = _meeting(_SHORT), _meeting(_DETECTION)
-    delay, none = reaction_step - hunt_step, prompt_step - second_hunt_step
+    (hunt_time, reaction_time, near), (second_hunt_time, prompt_step, far) = _meeting(_SHORT), _meeting(_DETECTION)
+    delay, none = reaction_time - hunt_time, prompt_step - second_hunt_time
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
     return [
         of_map("delay", 1.75 * step - abs(delay - predicted), _ROUNDING, computed=delay, stated=predicted).described(

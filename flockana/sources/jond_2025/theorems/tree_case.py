@@ -51,8 +51,8 @@ class TreeCase:
         bearing = np.divide(x, distance, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=distance > 0.0)
         placed: FloatArray = np.zeros_like(x, shape=q.shape)
         for e, near, far in self.walk:
-            direction = self.rho[e] * bearing[e]  # from the head of the edge to its tail
-            placed[far] = placed[near] - direction if self.links[e] == (near, far) else placed[near] + direction
+            offset = self.rho[e] * bearing[e]  # from the head of the edge to its tail
+            placed[far] = placed[near] - offset if self.links[e] == (near, far) else placed[near] + offset
         return placed
 
     def edge_system(self, q: FloatArray) -> FloatArray:
@@ -99,8 +99,8 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     radius = 4.0 * max(abs(b) + sqrt(abs(c)) for b, c in factors)  # far outside all roots, where nothing cancels
     points = radius * np.exp(2j * np.pi * np.arange(len(A) + 1) / (len(A) + 1))
     determinants = np.array([np.linalg.slogdet(s * np.eye(len(A)) - A) for s in points])
-    stated_value = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
-    return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated_value) - 1.0).max())
+    stated_logs = np.array([np.sum([np.log(s * s + b * s + c) for b, c in factors]) for s in points])
+    return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated_logs) - 1.0).max())
 
 
 def minimal_law(seen: Observed) -> Hypothesis:

@@ -56,8 +56,8 @@ def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
         felt_accelerations[child] = inf
         if shares[e] < 1.0:
             theta = sqrt(shares[e])
-            P, growth_limit = 2.0 * maximum / a, max(1.0, theta / (1.0 - theta))
-            stretch = 4.0 * maximum / sqrt(mu) + 2.0 * (growth_limit + a * a / mu) * P + 2.0 * W / mu
+            P, bend = 2.0 * maximum / a, max(1.0, theta / (1.0 - theta))
+            stretch = 4.0 * maximum / sqrt(mu) + 2.0 * (bend + a * a / mu) * P + 2.0 * W / mu
             felt_accelerations[child] = 2.0 * (mu * stretch + a * a * P)
     return shares
 
@@ -65,8 +65,8 @@ def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
 def settles(case: TreeCase, end: End) -> Certificate:
     """Return a certificate that all edges reach their desired lengths and velocity differences decay."""
     share = float(edge_shares(case, end).max())
-    end_text = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
-    text = f"{end_text}: edges have at most {share:.2g} of the energy needed"
+    edge_text = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
+    text = f"{edge_text}: edges have at most {share:.2g} of the energy needed"
     return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
 
 

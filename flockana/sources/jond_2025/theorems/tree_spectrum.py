@@ -74,8 +74,8 @@ def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, 
     # is not clear which are.
     largest = float(np.abs(values).max())
     rounding = 64.0 * len(values) * EPS
-    zero, has_gap = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest
-    if not (zero | has_gap).all():
+    zero, is_clear = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest
+    if not (zero | is_clear).all():
         return int(zero.sum()), nan, rounding
     if int(zero.sum()) != expected or values[0] < -rounding * largest:
         return int(zero.sum()), -1.0, rounding

@@ -77,9 +77,9 @@ def repulsive_part(s, b, par):
     """Return ∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, stable also at η = 0."""
     root_at_s, root_at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
     gap = (b - s) * (b + s) / (root_at_s + root_at_b)
-    is_small = b < 2.0 * s  # else nothing cancels, and 1 + x would round
-    ratio = log1p((b - s) / s) if is_small else log(b / s)
-    roots = log1p(-par[ETA] * gap / (1.0 + root_at_b)) if is_small else log((1.0 + root_at_s) / (1.0 + root_at_b))
+    is_close = b < 2.0 * s  # else nothing cancels, and 1 + x would round
+    ratio = log1p((b - s) / s) if is_close else log(b / s)
+    roots = log1p(-par[ETA] * gap / (1.0 + root_at_b)) if is_close else log((1.0 + root_at_s) / (1.0 + root_at_b))
     return 2.0 * par[K_R] * (ratio + roots) + par[K_DELTA] * gap
 
 
@@ -116,10 +116,10 @@ def potential(s, par, panels):
 def pair_dead_zone(s2, par):
     """Return (weight of q_j − q_i, a_ij) of a pair at squared distance s2 within range, without branches."""
     s, ramp_slope = sqrt(s2), 1.0 / par[RAMP] if par[RAMP] > 0.0 else 1e300
-    ramped_dot = max(0.0, min(1.0, (s - par[D_2]) * ramp_slope)) - max(0.0, min(1.0, (par[D_1] - s) * ramp_slope))
+    ramp_value = max(0.0, min(1.0, (s - par[D_2]) * ramp_slope)) - max(0.0, min(1.0, (par[D_1] - s) * ramp_slope))
     gap = s if s < par[D_1] else par[R_D] - s
     gap2 = gap * gap
-    weight = ramped_dot * (2.0 * par[K_R] + par[K_DELTA] * gap2) / (gap2 * sqrt(1.0 + par[ETA] * s2)) + par[K_1]
+    weight = ramp_value * (2.0 * par[K_R] + par[K_DELTA] * gap2) / (gap2 * sqrt(1.0 + par[ETA] * s2)) + par[K_1]
     return weight, 1.0
 
 

@@ -33,32 +33,32 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
     then, skin, listed = np.full((rows, n), inf), 0.0, 0
     drift, squares, last_update, row = np.zeros(rows), np.empty(n), 0, 0
     most = n * (n - 1) // 2
-    first_text, second_law, is_inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
+    first_agents, partners, is_inside = np.empty(most, np.uint32), np.empty(most, np.uint32), np.empty(most, np.uint8)
     ends = np.empty(n, np.uint32)  # of each agent's pairs with later ones in the list
-    s2, w, d, pair_entry = np.empty(most), np.empty(most), np.empty((rows // 2, most, 2)), np.empty((n, 2))
+    s2, w, d, both = np.empty(most), np.empty(most), np.empty((rows // 2, most, 2)), np.empty((n, 2))
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     constants = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(1, wanted[-1] + 1 if wanted.size else 1):
         if _moved_beyond(x, then, drift, (step - last_update) * dt, 0.25 * skin * skin, squares):
             skin = 1e-3 * r + _AHEAD * dt * _spread(v, drift)
-            listed = _listed(x, par, skin, is_near, degree, first_text, second_law, is_inside, ends)
+            listed = _listed(x, par, skin, is_near, degree, first_agents, partners, is_inside, ends)
             put(x, then)
             last_update = step
         s2[:listed] = 0.0
         for c in range(0, rows, 2):
-            _part(x[c], x[c + 1], first_text, second_law, listed, d[c // 2], s2)
+            _part(x[c], x[c + 1], first_agents, partners, listed, d[c // 2], s2)
         change_count = 0
         for k in range(listed):
             w[k] = pair_dead_zone(s2[k], constants)[0] if s2[k] < square else 0.0
             change_count += (s2[k] < square) != (is_inside[k] == 1)
         if change_count:
-            _crossed(s2, square, listed, is_near, degree, first_text, second_law, is_inside)
+            _crossed(s2, square, listed, is_near, degree, first_agents, partners, is_inside)
         for c in range(rows):
             for i in range(n):
                 z[c, i], u[c, i] = k_1 * (x[c, i] - x[c, 0]) + c2 * (v[c, i] - v[c, 0]), 0.0
         for c in range(0, rows, 2):
             _gather(is_near, degree, z[c], z[c + 1], u[c], u[c + 1])
-            _scatter(w, d[c // 2], second_law, ends, u[c], u[c + 1], pair_entry)
+            _scatter(w, d[c // 2], partners, ends, u[c], u[c + 1], both)
         for c in range(m):
             x_c, v_c, u_c = x[c], v[c], u[c]
             for i in range(n):
@@ -105,14 +105,14 @@ def _scatter(w, d, second, ends, u, v, both):
         both[i, 0], both[i, 1] = u[i], v[i]
     begin = 0
     for i in range(len(ends)):
-        own_entry, partner_entry = both[i, 0], both[i, 1]  # in registers, not stored and loaded again from pair to pair
+        own_entry, second_entry = both[i, 0], both[i, 1]  # in registers, not stored and loaded again from pair to pair
         for k in range(begin, ends[i]):
             j, f, g = second[k], w[k] * d[k, 0], w[k] * d[k, 1]
             own_entry += f
-            partner_entry += g
+            second_entry += g
             both[j, 0] -= f
             both[j, 1] -= g
-        both[i, 0], both[i, 1], begin = own_entry, partner_entry, ends[i]
+        both[i, 0], both[i, 1], begin = own_entry, second_entry, ends[i]
     for i in range(len(ends)):
         u[i], v[i] = both[i, 0], both[i, 1]
 
@@ -134,10 +134,10 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
     for k in range(kept):
         is_inside = s2[k] < square
         if is_inside != (inside[k] == 1):
-            i, j, sign_change = first[k], second[k], 1.0 if is_inside else -1.0
+            i, j, change = first[k], second[k], 1.0 if is_inside else -1.0
             inside[k], near[i, j], near[j, i] = is_inside, is_inside, is_inside
-            degree[i] += sign_change
-            degree[j] += sign_change
+            degree[i] += change
+            degree[j] += change
 
 
 @register_jitable
@@ -149,10 +149,10 @@ def _moved_beyond(x, then, drift, passed, square, squares):
         x_c, then_c, drift_passed = x[c], then[c], passed * drift[c]
         for i in range(len(squares)):
             squares[i] += (x_c[i] - then_c[i] - drift_passed) ** 2
-    exponent = 0 if square < inf else 1
+    far_count = 0 if square < inf else 1
     for i in range(len(squares)):
-        exponent += not squares[i] <= square
-    return exponent > 0
+        far_count += not squares[i] <= square
+    return far_count > 0
 
 
 @kernel

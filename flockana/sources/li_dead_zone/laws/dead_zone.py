@@ -80,8 +80,8 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""
         q, p = ensure_state(q, p)
         n = len(q)
-        distant_pairs = n * (n - 1) // 2 - len(links(q, self.interaction.r))
-        return self.hamiltonian(0.0, q, p) - distant_pairs * self.interaction.far_potential
+        distant_count = n * (n - 1) // 2 - len(links(q, self.interaction.r))
+        return self.hamiltonian(0.0, q, p) - distant_count * self.interaction.far_potential
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
         def literal() -> FloatArray:

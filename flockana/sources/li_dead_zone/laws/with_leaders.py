@@ -127,11 +127,11 @@ class LedDeadZoneFlocking(SumOfTerms):
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         led = [self.ties.led(float(time)) for time in t]
-        deviation, slip = (
+        distance, slip = (
             np.array([np.linalg.norm(own_p - item[k], axis=1).max() for own_p, item in zip(state, led, strict=True)])
             for k, state in enumerate((q, p))
         )
         return {
-            "leader_distance": ("largest distance of an agent from its leader", deviation),
+            "leader_distance": ("largest distance of an agent from its leader", distance),
             "leader_slip": ("largest difference of velocity from one's leader", slip),
         }

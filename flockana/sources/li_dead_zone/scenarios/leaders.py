@@ -24,8 +24,8 @@ def _slip(run: Trajectory) -> FloatArray:
     law = _law(run)
     leader_velocity = law.ties.led(float(run.t[-1]))[1]
     parting_speed = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
-    velocity_difference: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting_speed
-    return velocity_difference
+    speed_ratios: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting_speed
+    return speed_ratios
 
 
 def _carried_off(run: Trajectory) -> int:
@@ -44,14 +44,14 @@ def _same(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("different-leaders", "agents with different leaders do not match")
 def _different(run: Trajectory, tolerances: Tolerances) -> Claim:
-    lost_agents = _carried_off(run)
-    is_mixed = lost_agents * (run.n - lost_agents) > 0
+    lost_count = _carried_off(run)
+    is_mixed = lost_count * (run.n - lost_count) > 0
     detail = (
-        f"{lost_agents} agents match their neighbours of the other leader, as pair forces hold together whoever is near"
+        f"{lost_count} agents match their neighbours of the other leader, as pair forces hold together whoever is near"
         if is_mixed
         else "no agent moves with one of another leader"
     )
-    return finding(-0.5 if is_mixed else 0.5, detail, computed=lost_agents, stated="they do not match")
+    return finding(-0.5 if is_mixed else 0.5, detail, computed=lost_count, stated="they do not match")
 
 
 @report("pinned", "pinned agents follow their leaders")

@@ -76,8 +76,8 @@ def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     is_seen = ever > 0.5 * d1 and not thinned(run)
     margin = ever / d1 - 0.5 if is_seen else least_distance / d1 - 0.5 if least_distance < 0.5 * d1 else float("nan")
     detail = f"agents come as near as {ever:.3g}, where repulsion begins at d1 = {d1:g}"
-    stated_value = "safe distances all the time (over d1/2)"
-    return finding(margin, detail, computed=ever, stated=stated_value, error=_rounding(run, d1))
+    stated_text = "safe distances all the time (over d1/2)"
+    return finding(margin, detail, computed=ever, stated=stated_text, error=_rounding(run, d1))
 
 
 @report("lattice", "the agents form an α-lattice")

@@ -97,7 +97,7 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
         distance, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
     else:
         distance, time = least_distance(seen), seen.run.closest_approach().time
-    place_text = "at the samples" if seen.is_map else "ever"
+    time_text = "at the samples" if seen.is_map else "ever"
     distance = distance.widened(4.0 * EPS * float(np.abs(seen.run.q).max())).clip(0.0)
     if seen.n == 1:
         margin = Enclosure.of(1.0)  # a single agent has no distances
@@ -105,7 +105,7 @@ def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs:
         margin = (distance / bound).log()
     else:
         margin = distance / unit if distance.lo > 0.0 else Enclosure(-inf, distance.mid / unit, inf)
-    text = f"no two agents come closer than {distance.lo:.4g} {place_text}; the bound is {bound.mid:.3g}"
+    text = f"no two agents come closer than {distance.lo:.4g} {time_text}; the bound is {bound.mid:.3g}"
     return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
         computed=float(distance.lo), stated=f"every distance > {bound.mid:.4g}", witness={"time": time}, detail=text
     )

@@ -51,7 +51,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     hard_law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))
     coarse, fine = _chatter(hard_law, 0.01), _chatter(hard_law, 0.002)
     q, p = _settled(law, 0.01)
-    ramped_dot = hold(law, q, p, 0.01).certificate
+    certificate = hold(law, q, p, 0.01).certificate
     state = observed(hard_law, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
     return [
         limit_claim("printed", [], escape=end.separation, stated="all velocities match").described(
@@ -65,7 +65,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
         by_count("sliding", int("sliding" not in state.stats)).described(
             stated="a pair at d1 is held there in a sliding mode", detail=f"with every switch located: {state.message}"
         ),
-        limit_claim("ramp", [], [ramped_dot]).described(
+        limit_claim("ramp", [], [certificate]).described(
             computed=float(np.sqrt(spreads(p[None])[0] / len(p))), detail="with a ramp of 0.25 the mismatch vanishes"
         ),
     ]

@@ -38,8 +38,8 @@ def _slip(run: Trajectory) -> FloatArray:
     law = run.law.continuous
     rows = []
     for t, p in zip(run.t[1:], run.p[1:], strict=True):
-        leader_state = law.ties.led(float(t))[1]
-        rows.append((np.linalg.norm(p - leader_state, axis=1) / np.linalg.norm(leader_state, axis=1)).max())
+        led_velocity = law.ties.led(float(t))[1]
+        rows.append((np.linalg.norm(p - led_velocity, axis=1) / np.linalg.norm(led_velocity, axis=1)).max())
     return np.array(rows)
 
 

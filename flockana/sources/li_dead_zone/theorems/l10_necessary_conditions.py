@@ -18,8 +18,8 @@ def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
     """Return two agents in contact that separate with twice the escape energy under strong damping."""
     law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
     q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
-    remaining_power = law.hamiltonian(0.0, q, np.zeros_like(q))
-    speed = float(np.sqrt(_TIMES * law.interaction.far_potential - remaining_power))  # each: H = 2 · ½ v² + rest
+    rest_energy = law.hamiltonian(0.0, q, np.zeros_like(q))
+    speed = float(np.sqrt(_TIMES * law.interaction.far_potential - rest_energy))  # each: H = 2 · ½ v² + rest
     return law, q, np.array([[-speed, 0.0], [speed, 0.0]])
 
 
@@ -43,14 +43,14 @@ def _is_finite_apart() -> bool | None:
 
 def _necessary() -> Claim:
     """Return the claim that the condition excludes some start, by algebra."""
-    finite_claim, stated = _is_finite_apart(), "the condition leaves some start out"
-    if finite_claim is None:
+    is_finite, stated = _is_finite_apart(), "the condition leaves some start out"
+    if is_finite is None:
         return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)
     detail = (
         "a pair's potential is finite at every distance > 0: every start from distinct positions meets the stated "
         "condition, which as a necessary one excludes nothing; no other is stated"
     )
-    return exact("printed-necessary", not finite_claim, stated=stated, detail=detail)
+    return exact("printed-necessary", not is_finite, stated=stated, detail=detail)
 
 
 @erratum(
@@ -65,7 +65,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     """
     # Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary.
     law, q, p = parting_pair()
-    distance = final_components(observed(law, q, p, (0.0, 10.0)), law)
+    components = final_components(observed(law, q, p, (0.0, 10.0)), law)
     wild_law, x, v = escaping_pair()
     share = energy_share(wild_law, x, v)
     later_run = observed(wild_law, x, v, (0.0, 10.0))
@@ -73,7 +73,7 @@ def theorem(tolerances: Tolerances) -> list[Claim]:
     left = bond.text.replace("its energy", "the energy left")
     calm_component = Component(law, x, 0.1 * v)
     return [
-        limit_claim("printed-sufficient", [], escape=distance.separation).described(
+        limit_claim("printed-sufficient", [], escape=components.separation).described(
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
             detail=f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
             "neither stay together nor match velocities (L4, L7)",

@@ -91,19 +91,19 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
     """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
     # It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
     # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
-    third_value, pair = np.zeros(lengths.shape), law.interaction
+    bounds, pair = np.zeros(lengths.shape), law.interaction
     zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
     for zone in np.unique(zones):
         zone_pairs = np.flatnonzero(zones == zone)
-        length_bounds = lengths[zone_pairs] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
-        s = Enclosure.between(np.maximum(length_bounds[:-1], 0.0), length_bounds[1:])
+        length_grid = lengths[zone_pairs] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
+        s = Enclosure.between(np.maximum(length_grid[:-1], 0.0), length_grid[1:])
         action, slope, second_slope = _action(pair, int(zone), s)
         root = (1.0 + pair.eta * s.square()).sqrt()
         cube = root * root.square()
         curve = second_slope * s / root + 2.0 * slope / cube - 3.0 * pair.eta * s * action / (cube * root.square())
         transverse_term = slope / root - pair.eta * s * action / cube
-        third_value[zone_pairs] = (abs(curve) + 2.0 / sqrt(3.0) * abs(transverse_term)).max(axis=0).hi
-    return third_value
+        bounds[zone_pairs] = (abs(curve) + 2.0 / sqrt(3.0) * abs(transverse_term)).max(axis=0).hi
+    return bounds
 
 
 def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:

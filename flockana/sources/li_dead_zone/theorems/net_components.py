@@ -90,8 +90,8 @@ class Component:
         if self.size == 1:
             return 0.0
         if self.basin.certificate.certain:
-            flock_radius = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
-            return flock_radius + 2.0 * self.off + self.basin.reach
+            radius = float(np.linalg.norm(self.q - self.q.mean(axis=0), axis=1).max())
+            return radius + 2.0 * self.off + self.basin.reach
         pairs, n = self._out_of_range * (1.0 + _WHOLE) + _WHOLE, self.size
         return self.law.interaction.r * (n - 1 + floor(pairs)) / n if pairs < n - 1 else inf
 
@@ -155,9 +155,9 @@ class Components:
         if self.count == 1:
             return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed
-        rounding_width, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
-        velocity_difference = 4.0 * rounding_width * (sqrt(drift) + rounding_width) + 64.0 * EPS * drift
-        margin, error = min(self._clearance, (drift, velocity_difference), key=lambda pair: pair[0] - pair[1])
+        speed_error, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
+        drift_error = 4.0 * speed_error * (sqrt(drift) + speed_error) + 64.0 * EPS * drift
+        margin, error = min(self._clearance, (drift, drift_error), key=lambda pair: pair[0] - pair[1])
         text = f"{self.count} {self.apart.text}, and their centres keep a K̃ of {self.drift:.4g}"
         return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 

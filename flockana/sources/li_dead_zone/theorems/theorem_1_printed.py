@@ -18,8 +18,8 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
     (whole,), r = end.members, end.r
     basin_certificate = whole.basin.certificate
     if whole.size == 1 or basin_certificate.certain:
-        error_bars = (whole.basin.reach + 2.0 * whole.off + 2.0 * frame_error(seen.run.q[-1:])) / r + 4.0 * EPS
-        return Enclosure.around(1.0 - radius / r, error_bars), basin_certificate.text
+        error = (whole.basin.reach + 2.0 * whole.off + 2.0 * frame_error(seen.run.q[-1:])) / r + 4.0 * EPS
+        return Enclosure.around(1.0 - radius / r, error), basin_certificate.text
     if whole.dt is None and whole.radius < r:
         text = f"{whole.bond.text}, and no agent {whole.radius:.4g} away from the centre"
         return Enclosure.around(1.0 - whole.radius / r, 4.0 * EPS), text

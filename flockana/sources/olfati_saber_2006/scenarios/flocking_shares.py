@@ -20,10 +20,10 @@ def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
     components = component_count(run)
     mismatch = velocity_mismatch(run.p[-1]) / (run.n * run.scales.energy)
     text = f"{components} component(s) at t = {run.t[-1]:g}, K̃ = {mismatch:.2g} of the square of the law's speed"
-    stated_value = f"one component, K̃ <= {tolerances.mismatch:g}"
+    stated_text = f"one component, K̃ <= {tolerances.mismatch:g}"
     if components > 1:
-        return finding(1.5 - components, text, computed=components, stated=stated_value)
-    return finding(tolerances.mismatch - mismatch, text, computed=components, stated=stated_value, error=ROUNDING)
+        return finding(1.5 - components, text, computed=components, stated=stated_text)
+    return finding(tolerances.mismatch - mismatch, text, computed=components, stated=stated_text, error=ROUNDING)
 
 
 @report("fragments", "it rarely flocks: the run does not end as one flock")
@@ -31,8 +31,8 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Return whether the run ends in several components, or with different velocities."""
     flock = _flocks.check(run, tolerances)
     assert flock.margin is not None
-    stated_value = f"several components, or K̃ > {tolerances.mismatch:g}"
-    return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated_value, error=flock.error)
+    stated_text = f"several components, or K̃ > {tolerances.mismatch:g}"
+    return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated_text, error=flock.error)
 
 
 def _share(name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report) -> Builder:

@@ -58,8 +58,8 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"{lengths.size} links are {lengths.min():.4g} to {lengths.max():.4g} long for d = {d:g}, squeezed inwards"
     )
     margin = tolerances.deviation - deviation
-    stated_value = f"Ẽ <= {tolerances.deviation:g}"
-    return finding(margin, detail, computed=deviation, stated=stated_value, error=ROUNDING)
+    stated_text = f"Ẽ <= {tolerances.deviation:g}"
+    return finding(margin, detail, computed=deviation, stated=stated_text, error=ROUNDING)
 
 
 @report("matched", "velocities match (Fig. 18: K̃ goes to 0)")
@@ -91,9 +91,9 @@ def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"normalised velocity mismatch K̃ is {series[-1]:.3g} at t = {run.t[-1]:g}, and never below {share:.2g} of "
         "its start in the second half: the fragments move apart"
     )
-    stated_value = f"K̃ > {tolerances.agreement:g} K̃(0)"
+    stated_text = f"K̃ > {tolerances.agreement:g} K̃(0)"
     margin = share - tolerances.agreement
-    return finding(margin, detail, computed=share, stated=stated_value, error=ROUNDING)
+    return finding(margin, detail, computed=share, stated=stated_text, error=ROUNDING)
 
 
 @report("expands", "the cohesion radius grows (Fig. 18(b): R)")
@@ -130,8 +130,8 @@ def _centre_converges(run: Trajectory, tolerances: Tolerances) -> Claim:
     exact = "(q_c − q_r)'' + c2γ (q_c − q_r)' + c1γ (q_c − q_r) = 0"
     certificate = Certificate(1.0, exact) if uniform and is_damped else Certificate(-1.0, "the γ-agent accelerates")
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
-    stated_value = "both -> 0"
-    return limit_report(certificate, detail, computed=float(away[-1]), stated=stated_value)
+    stated_text = "both -> 0"
+    return limit_report(certificate, detail, computed=float(away[-1]), stated=stated_text)
 
 
 @report("coincide", "pairs of agents end in the same place (erratum E11)")

@@ -51,10 +51,10 @@ def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
 def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the flock is connected at the end; open where this depends on rounding of the start."""
     counts = component_counts(run)
-    split_times = np.flatnonzero(counts > 1)
+    split_rows = np.flatnonzero(counts > 1)
     detail = f"{counts[-1]} component(s) at t = {run.t[-1]:g}"
-    if counts[-1] == 1 and split_times.size:
-        detail += f", connected again from t = {run.t[split_times[-1] + 1]:.4g} on"
+    if counts[-1] == 1 and split_rows.size:
+        detail += f", connected again from t = {run.t[split_rows[-1] + 1]:.4g} on"
     certificate = Certificate(-1.0, "the net at one instant decides no limit")
     return limit_report(certificate, detail, computed=int(counts[-1]), stated="1")
 
@@ -64,10 +64,10 @@ def _passed_between(run: Trajectory) -> int:
     was_before = run.q[:-1, :, 0] < 150.0
     crossing = was_before & (run.q[1:, :, 0] >= 150.0)
     row, agent = np.nonzero(crossing)
-    last_side = np.full(run.n, -1)
-    np.maximum.at(last_side, agent, row)
-    y = run.q[np.maximum(last_side, 0) + 1, np.arange(run.n), 1]
-    return int(np.sum((last_side >= 0) & (y > 55.0) & (y < 75.0)))
+    last_rows = np.full(run.n, -1)
+    np.maximum.at(last_rows, agent, row)
+    y = run.q[np.maximum(last_rows, 0) + 1, np.arange(run.n), 1]
+    return int(np.sum((last_rows >= 0) & (y > 55.0) & (y < 75.0)))
 
 
 @report("past", "all agents get past the obstacles")
@@ -129,9 +129,9 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     t, force, speed = (float(series[calmest_index]) for series in (run.t[late], forces, speeds))
     left = max(float(lefts[calmest_index]), 1e-300)
     damped_certificate = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of the thresholds of rest")
-    no_certificate = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
+    free_certificate = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
-    certificate = damped_certificate if law.gains.c2_gamma > 0.0 else no_certificate
+    certificate = damped_certificate if law.gains.c2_gamma > 0.0 else free_certificate
     return limit_report(certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 

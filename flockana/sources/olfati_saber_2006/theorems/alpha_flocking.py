@@ -69,10 +69,10 @@ _SYMBOLS = {
 
 def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
     """Return the claim that a whole number never exceeds a bound, at and between the samples."""
-    t, interval_counts = part.seen.t[part.first :], counts[2]
+    t, interval_count = part.seen.t[part.first :], counts[2]
     smallest, largest = (series[part.first :] for series in counts[:2])
     worst = int(np.argmax(smallest))
-    possible_count = max(float(largest.max()), interval_counts)
+    possible_count = max(float(largest.max()), interval_count)
     is_open = smallest[worst] <= most < possible_count
     open_remark = "whether there are ever more is open: a pair comes as near to r as this run can tell"
     return counted(name, most, int(smallest[worst]), int(possible_count), computed=int(smallest[worst])).described(
@@ -110,22 +110,22 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     seen = part.seen
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
-    difference = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
+    root_error = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
     one_link, at, during = (
         2.0 * (r / d - 1.0) ** 2,
         bounds_between_samples.nets_at(seen),
         bounds_between_samples.nets_between(seen),
     )
-    root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), difference).clip(0.0)
+    root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), root_error).clip(0.0)
     deviation = root.square().widened(one_link * at.open_links / (2.0 * at.links + 1.0)).clip(0.0)
     # of links that stay: √Ẽ grows by no more than the largest of their deviations does
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
     interval_bound = (
         np.maximum(root.hi[:-1], root.hi[1:]) + bounds_between_samples.stretch_between(seen) / d
     ) ** 2 + jumps
-    range_bound = Enclosure(0.0, np.minimum(interval_bound, 1e300), interval_bound)
+    span_bound = Enclosure(0.0, np.minimum(interval_bound, 1e300), interval_bound)
     return [
-        _always("deviation", part, deviation, range_bound, tolerances.deviation),
+        _always("deviation", part, deviation, span_bound, tolerances.deviation),
         _always(
             "mismatch",
             part,

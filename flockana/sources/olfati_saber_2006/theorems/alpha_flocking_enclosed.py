@@ -52,10 +52,10 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
         return arb(missing(possible_pairs)).union(arb(missing(certain_pairs)))
 
     number, time_of_highest = _highest(tube, window, count)
-    stated_value = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
+    stated_text = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
     quantity_name = "components" if name == "flock" else "agents outside the giant component"
     text = f"{quantity_name}: {float(number.upper()):.0f} at most, about t = {time_of_highest:.4g}"
-    return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated_value, detail=text)
+    return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated_text, detail=text)
 
 
 def _deviation(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
@@ -95,12 +95,12 @@ def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> C
 def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
-    bounds = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
-    bound = arb(tolerances.cohesion) * bounds[0]
-    highest = _highest(tube, range(len(bounds)), lambda k: bounds[k])[0]
-    detail = f"R is at most {float(highest.upper()):.5g}, and {float(bounds[0].mid()):.5g} when the window begins"
-    top, stated_value = float(highest.upper()), "R stays bounded"
-    return decided("cohesive", bound - highest, computed=top, stated=stated_value, detail=detail)
+    radii = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
+    bound = arb(tolerances.cohesion) * radii[0]
+    highest = _highest(tube, range(len(radii)), lambda k: radii[k])[0]
+    detail = f"R is at most {float(highest.upper()):.5g}, and {float(radii[0].mid()):.5g} when the window begins"
+    top, stated_text = float(highest.upper()), "R stays bounded"
+    return decided("cohesive", bound - highest, computed=top, stated=stated_text, detail=detail)
 
 
 def _connected(tube: Tube, window: range, tolerances: Tolerances) -> Claim:

@@ -64,7 +64,7 @@ def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
     if apart.status == "met" or is_paper(seen):
         return []
     slopes = seen.law.alpha.slopes(_PARTS)
-    if all(np.isfinite([component.force, component.adjacency]).all() for component in slopes):
+    if all(np.isfinite([slope.force, slope.adjacency]).all() for slope in slopes):
         return []
     name = "force and adjacency are bounded at contact, or no two agents meet"
     return [Hypothesis(name, "assumed", detail="no bound of their slopes near contact is known")]
@@ -149,8 +149,8 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
     """Return the claim that forces tend to 0: the flock tends to critical points of its potential."""
     forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
-    stated_value = "the largest force on an agent at rest -> 0"
-    return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated_value, proof=LIMITS)
+    stated_text = "the largest force on an agent at rest -> 0"
+    return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated_text, proof=LIMITS)
 
 
 def _needs(seen: Observed) -> list[Hypothesis]:

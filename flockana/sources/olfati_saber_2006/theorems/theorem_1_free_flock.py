@@ -16,10 +16,10 @@ from flockana.theorems.tube_claims import enclosed_by
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
     """Return claim (ii), matching velocities: by the proof if all its hypotheses are met, else by a basin."""
-    basin_certificate = [final_basin(seen).certificate]
-    if needs[-1].status == "assumed" and basin_certificate[0].certain:
-        return velocities_match(seen, needs[:-1], name="ii", caught=basin_certificate)
-    return velocities_match(seen, [*needs, *bounded], name="ii", caught=basin_certificate, proof=any_potential.LIMITS)
+    certificates = [final_basin(seen).certificate]
+    if needs[-1].status == "assumed" and certificates[0].certain:
+        return velocities_match(seen, needs[:-1], name="ii", caught=certificates)
+    return velocities_match(seen, [*needs, *bounded], name="ii", caught=certificates, proof=any_potential.LIMITS)
 
 
 @run_theorem(

@@ -66,9 +66,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
     end, caught = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), final_basin(seen).certificate
     force_claims = any_potential.bounded_at_contact(seen, none)
-    stay_claim, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
+    stay_proof, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
     claims = [
-        any_potential.cohesive(seen, needs, name="i", proof=stay_claim),
+        any_potential.cohesive(seen, needs, name="i", proof=stay_proof),
         _minimum(seen, needs, end, tolerances),
         *_limits(seen, [*needs, *force_claims], end),
         velocities_match(seen, [*needs, *force_claims], name="iii", caught=[caught], proof=any_potential.LIMITS),

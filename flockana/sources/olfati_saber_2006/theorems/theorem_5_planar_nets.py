@@ -204,23 +204,23 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: flo
     net = Net(q, d, r, off)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
-    plane, count_claim = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
+    plane, count_need = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
     more, far = _dimension("n > m + 1", net.n > net.m + 1, net), _far_apart(net, net.r, "r/√2")
     longest = float(net.lengths.max(initial=0.0))
-    length_claim = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
+    length_need = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed_value = 3 * net.n - 6
     claims = [
         uncrossed(net, [*lattice, wide], "i"),
         _graph(net, [*lattice, wide]),
-        _bound(net, [*lattice, plane, count_claim], "ii", printed_value, "3n - 6"),
+        _bound(net, [*lattice, plane, count_need], "ii", printed_value, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
         uncrossed(net, [far], "extension"),
-        uncrossed(net, [length_claim], "extension-lengths"),
-        _bound(net, [length_claim, plane, count_claim], "extension-links", printed_value, "3n - 6"),
+        uncrossed(net, [length_need], "extension-lengths"),
+        _bound(net, [length_need, plane, count_need], "extension-links", printed_value, "3n - 6"),
         _quantitative(net),
     ]
-    return [*lattice, wide, plane, count_claim, more, far, length_claim], [_unless_open(net, claim) for claim in claims]
+    return [*lattice, wide, plane, count_need, more, far, length_need], [_unless_open(net, claim) for claim in claims]
 
 
 def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:

@@ -51,13 +51,13 @@ def _stays_outside(tube: Tube) -> Hypothesis:
     name = "no agent enters an obstacle"
     if not tube.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
-    margin = tube.min_clearance()
-    where = f"(agent {margin.agent} at obstacles[{margin.obstacle}], about t = {margin.time:.4g})"
-    if margin.lower > 0.0:
-        return certain(name, True, margin.lower, f"clearance at least {margin.lower:.6g} {where}, proved")
+    clearance = tube.min_clearance()
+    where = f"(agent {clearance.agent} at obstacles[{clearance.obstacle}], about t = {clearance.time:.4g})"
+    if clearance.lower > 0.0:
+        return certain(name, True, clearance.lower, f"clearance at least {clearance.lower:.6g} {where}, proved")
     is_inside = any(x < 0 for k in range(len(tube.taken)) for row in tube.clearances_during(k) for x in row)
     text = "certainly inside" if is_inside else "the tube is too wide to tell"
-    return Hypothesis(name, "unmet" if is_inside else "assumed", margin.lower, f"{text} {where}", decided="enclosed")
+    return Hypothesis(name, "unmet" if is_inside else "assumed", clearance.lower, f"{text} {where}", decided="enclosed")
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
@@ -99,11 +99,11 @@ def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)
         slow_claim, first_index = _slow_enough(tube, flow)
-        distances = bool(tube.law.target.harmonic.terms[1].any())
-        detail = "it moves" if distances else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
-        rest_claim = condition("the γ-agent is static", not distances, detail=detail)
+        is_moving = bool(tube.law.target.harmonic.terms[1].any())
+        detail = "it moves" if is_moving else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
+        rest_claim = condition("the γ-agent is static", not is_moving, detail=detail)
         needs = [common_gains(tube), rest_claim, slow_claim, _stays_outside(tube)]
         if tube.status != "complete":
-            reason, stated_value = f"the tube ends early: {tube.message}", "over the whole time span"
-            return needs, [undecided(name, reason, needs, stated=stated_value) for name in ("rate", "balance")]
+            reason, stated_text = f"the tube ends early: {tube.message}", "over the whole time span"
+            return needs, [undecided(name, reason, needs, stated=stated_text) for name in ("rate", "balance")]
         return needs, [_never_rises(tube, flow, first_index, needs), _balance(tube, [rest_claim, needs[0]], tolerances)]

@@ -33,8 +33,8 @@ def _least_slack(seen: Observed) -> FloatArray:
         legs = 5.0 / h * np.diff(points, axis=1)[:, :, : seen.m]
         squares = 0.5 * np.einsum("nim,njm->ij", legs, legs) - 0.25 * np.add.outer(*[(legs @ p_r).sum(axis=0)] * 2)
         error = float(seen.between_speed_error.max() + seen.drift_error.max())
-        rounding_width = error * float(lengths(legs - 0.5 * p_r).max(axis=1).sum()) + 0.5 * seen.n * error**2
-        slacks.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - rounding_width)
+        error_bound = error * float(lengths(legs - 0.5 * p_r).max(axis=1).sum()) + 0.5 * seen.n * error**2
+        slacks.append(min(np.sum(_EIGHT * squares[::-1], where=_DIAGONALS[k]) for k in range(9)) - error_bound)
     bounds = np.array(slacks)
     if seen.run.path.slack is not None:  # of steps that were not kept the velocities are not known
         bounds[seen.run.path.slack.max(axis=1) > 0.0] = -np.inf
@@ -50,8 +50,8 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     if not any_p_r.any() and run.law.target.constant_velocity:
         return Hypothesis(name, "met", float(slack.min()), "p_d = 0: T >= 0 at all times"), 0
     terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * any_p_r * lengths(run.p).sum(axis=1)
-    deviation = seen.series(condition_76).half_width
-    rounding = np.where(any_p_r > 0.0, (run.n + 8) * EPS * terms + deviation, 0.0)
+    error = seen.series(condition_76).half_width
+    rounding = np.where(any_p_r > 0.0, (run.n + 8) * EPS * terms + error, 0.0)
     broken = np.flatnonzero(slack < -rounding)
     since = 0 if broken.size == 0 else int(broken[-1]) + 1
     if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:

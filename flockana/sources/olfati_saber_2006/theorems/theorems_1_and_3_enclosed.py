@@ -93,14 +93,14 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
 
 def _lattice(case: tube_claims.TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Return claim (i): the limit is an equilibrium with all links of length d, within the tolerance."""
-    alpha, stated_value = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
+    alpha, stated_text = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
-        return tube_claims.in_the_limit(case, needs, name="i", stated=stated_value)
+        return tube_claims.in_the_limit(case, needs, name="i", stated=stated_text)
     with ctx.workprec(BITS):
         strain = tube_claims.rest_strain(case.basin, alpha)
         margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
     detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {largest:.2g} d"
-    return tube_claims.in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated_value, detail=detail)
+    return tube_claims.in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated_text, detail=detail)
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:

@@ -48,12 +48,12 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
 
 def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Return the claim that the library's delay margin (frequency sweep) agrees with the closed form."""
-    off, margin_list = 0.0, {}
+    off, margins = 0.0, {}
     for name, (system, largest) in nets.items():
         margin = delay_margin(system)
-        margin_list[name] = margin.delay
+        margins[name] = margin.delay
         off = max(off, abs(margin.delay * 2.0 * largest / pi - 1.0), abs(margin.frequency / largest - 1.0))
-    return spectral("margin", _SWEEP - off, 0.0, computed=margin_list).described(
+    return spectral("margin", _SWEEP - off, 0.0, computed=margins).described(
         stated="π/(2 λ_n), where the net swings at the frequency λ_n",
         detail=f"of {len(nets)} nets the delay margin that a sweep over frequency finds is π/(2 λ_n), to {off:.1g}",
     )
@@ -62,18 +62,18 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
 def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Return the rightmost root for a delay 1 % off the margin, by discretising the delayed state."""
     share = 1.0 + sign * float(_AROUND)
-    margin, error, deviation, margin_list = np.inf, 0.0, 0.0, {}
+    margin, error, deviation, real_parts = np.inf, 0.0, 0.0, {}
     for net, (system, largest) in nets.items():
         delay = share * pi / (2.0 * largest)
         root = complex(rightmost_roots(system, delay, count=2)[0])
         sharp_error = root_error(system, root, delay)
-        margin_list[net] = root.real
+        real_parts[net] = root.real
         deviation = max(deviation, abs(abs(root) - abs(consensus_root(largest, delay))) / largest if sign > 0 else 0.0)
         if sign * root.real / largest - sharp_error / largest < margin - error:
             margin, error = sign * root.real / largest, sharp_error / largest
     words, side = ("grows", "right") if sign > 0 else ("decays", "left")
     closed_text = f"; it is Lambert's W(-λ_n τ)/τ, to {deviation:.1g}" if sign > 0 else ""
-    return spectral(name, margin, error, computed=margin_list).described(
+    return spectral(name, margin, error, computed=real_parts).described(
         stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
         detail=f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
         f"the imaginary axis{closed_text}",

@@ -26,11 +26,11 @@ CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "n
 
 def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
     """Return the hypothesis that uninformed agents stay linked to informed ones, and a mask of them."""
-    is_informed = leader_frame.linked_to_informed(run) & ~leader_frame.informed(run)
-    count, of = int(is_informed.sum()), int((~leader_frame.informed(run)).sum())
+    is_led = leader_frame.linked_to_informed(run) & ~leader_frame.informed(run)
+    count, of = int(is_led.sum()), int((~leader_frame.informed(run)).sum())
     text = f"{count} of {of} uninformed agents, in each of {leader_frame.WINDOWS} windows of the last half of the run"
     name = "uninformed agents are joined to informed ones across each of contiguous, bounded windows, without end"
-    return Hypothesis(name, "assumed" if count else "unmet", float(count), text), is_informed
+    return Hypothesis(name, "assumed" if count else "unmet", float(count), text), is_led
 
 
 @run_theorem(
@@ -53,9 +53,9 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     here: links may be as weak as one likes when they come and go, and a run shows its own end only.
     """
     run = observed.run
-    gains, gain_claim = positive(observed, c1_alpha="c1α", c2_alpha="c2α"), leader_frame.constant_velocity(run)
+    gains, steady_claim = positive(observed, c1_alpha="c1α", c2_alpha="c2α"), leader_frame.constant_velocity(run)
     follow = [leader_frame.some_informed(run), gains, leader_frame.constant_velocity(run, any_p_r=True)]
-    needs = [*follow[:2], gain_claim]
+    needs = [*follow[:2], steady_claim]
     if unmet(follow):
         return needs, []
     seen = leader_frame.as_the_leader_sees(observed)
@@ -63,12 +63,12 @@ def theorem(observed: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs):  # a constant error of p_r moves the place that the flock follows, and not its velocity
         return needs, [rests]
     below = below_multiple(seen.energy[0], run.law.gains.c1_alpha * run.law.alpha.c_star)
-    lasting, linked_claim = _lasting(run)
+    lasting, is_linked = _lasting(run)
     return [*needs, lasting, below], [
         never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
         stays_within(seen, needs, name="distance", proof=PROOF),
         rests,
-        leader_frame.comes_to_rest(seen, linked_claim, [*needs, lasting], "linked"),
+        leader_frame.comes_to_rest(seen, is_linked, [*needs, lasting], "linked"),
         distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),

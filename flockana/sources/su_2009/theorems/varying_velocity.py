@@ -49,8 +49,8 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
         steady = constant_velocity(run)
         return Hypothesis(name, steady.status, steady.margin, f"no feedforward; {steady.name}: {steady.detail}")
     terms = [type(term) for term in law.terms]
-    is_uniform = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
-    is_feedforward = is_uniform and type(law.alpha) is AlphaInteraction
+    is_same_law = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
+    is_feedforward = is_same_law and type(law.alpha) is AlphaInteraction
     if is_feedforward and (tells := consistent(run)).status != "met":
         return Hypothesis(name, tells.status, tells.margin, f"{tells.name}: {tells.detail}", tells.error)
     return condition(name, is_feedforward, detail=", ".join(term.__name__ for term in terms))
@@ -64,17 +64,17 @@ def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     start = centre[0].reshape(2, run.m)
     from scipy.linalg import expm
 
-    predicted_value = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
-    return centre, predicted_value
+    predictions = np.array([(expm(flow * (t - run.t[0])) @ start).ravel() for t in run.t.tolist()])
+    return centre, predictions
 
 
 def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     run = seen.run
-    (centre, predicted_value), unit = centre_of(run), seen.scales.time
+    (centre, predictions), unit = centre_of(run), seen.scales.time
     units = np.repeat([1.0, unit], run.m)  # velocities as lengths
     magnitude = max(float(np.abs(centre[0] * units).max()), seen.scales.length)
     error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
-    off = (Enclosure.around(np.abs((centre - predicted_value) * units), error).max(axis=1) / magnitude).clip(0.0)
+    off = (Enclosure.around(np.abs((centre - predictions) * units), error).max(axis=1) / magnitude).clip(0.0)
     worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
     return judged("centre", _AGREES - off, needs, proof=PROOF, computed=float(off.mid[worst])).described(
         stated=f"q_c − q_r solves z'' = −c1 z − c2 z', and dies out as exp(−{rate:.4g} t)",
@@ -89,8 +89,8 @@ def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
     q, p, *errors = seen.end
-    error_bars, p_off = (float(np.linalg.norm(error)) for error in errors)
-    return [attraction(replace(seen.law, gains=gains), q, p, off=error_bars, p_off=p_off).certificate]
+    q_off, p_off = (float(np.linalg.norm(error)) for error in errors)
+    return [attraction(replace(seen.law, gains=gains), q, p, off=q_off, p_off=p_off).certificate]
 
 
 @run_theorem(

@@ -13,12 +13,12 @@ from flockana.theorems.theorem_toolkit import EPS, Checked, Hypothesis, Observed
 def _connected(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the net is connected at all times."""
     name, run = "the net is connected at all times", seen.run
-    rounding_width = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
-    for q, t, range_error in zip(run.q, run.t, rounding_width, strict=True):
+    error_bounds = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
+    for q, t, range_error in zip(run.q, run.t, error_bounds, strict=True):
         if components(run.n, links(q, run.law.r + float(range_error))).max() > 0:
             return condition(name, False, detail=f"the net has several components at t = {t:.6g}", decided="enclosed")
     pairs = out_of_range(seen)
-    start = components(run.n, links(run.q[0], run.law.r - float(rounding_width[0]))).max() == 0
+    start = components(run.n, links(run.q[0], run.law.r - float(error_bounds[0]))).max() == 0
     if start and pairs.hi < run.n - 1:
         text = f"the energy of the start can put {pairs.mid:.3g} pairs out of range; to part takes {run.n - 1}"
         return condition(name, True, float((run.n - 1 - pairs).mid) / (run.n - 1), text, decided="enclosed")

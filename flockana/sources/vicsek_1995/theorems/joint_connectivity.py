@@ -65,13 +65,13 @@ def _contraction(headings: FloatArray, found: tuple[heading_averages.Block, ...]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
     name = f"n - 1 = {n - 1} jointly connected windows in a row"
-    window_claim = replace(condition(name, bool(found), detail=f"{len(found)} times in the run"), on_motion=True)
+    window_need = replace(condition(name, bool(found), detail=f"{len(found)} times in the run"), on_motion=True)
     slowest = max((b.factor for b in found), default=float("nan"))
-    first_item = (missed[0].start, missed[0].stop) if missed else None
+    first_steps = (missed[0].start, missed[0].stop) if missed else None
     text = f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
-    return by_count("contraction", len(missed), [*needs, window_claim], proof=_PROOF, computed=slowest).described(
+    return by_count("contraction", len(missed), [*needs, window_need], proof=_PROOF, computed=slowest).described(
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
-        witness={"blocks": len(found), "steps of the first missed": first_item},
+        witness={"blocks": len(found), "steps of the first missed": first_steps},
         detail=text if found else does_not_hold(name),
     )
 
@@ -108,9 +108,9 @@ def theorem(seen: Observed, tolerances: Tolerances) -> Checked:
     windows = joint_windows(run.n, nets)
     end_state = run.law, run.q[-1], headings[-1]
     connected_claim = heading_averages.permanently_connected(*end_state)
-    lasting_windows = _at_all_later_times(windows, connected_claim, heading_averages.permanently_separated(*end_state))
-    return [*requirements, lasting_windows], [
+    lasting_need = _at_all_later_times(windows, connected_claim, heading_averages.permanently_separated(*end_state))
+    return [*requirements, lasting_need], [
         _hull(headings, requirements),
         _contraction(headings, heading_averages.blocks(nets, headings, windows), requirements),
-        _limit(run, headings[-1], [*requirements, lasting_windows], connected_claim),
+        _limit(run, headings[-1], [*requirements, lasting_need], connected_claim),
     ]
