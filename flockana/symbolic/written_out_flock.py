@@ -153,7 +153,7 @@ class ConcreteFlock(Printed):
 
         Examples
         --------
-        >>> ConcreteFlock("algorithm1", 2, 1).expand(sums.half_square(sums.P))
+        >>> ConcreteFlock("algorithm1", 2, 1).expand(sums_over_pairs.half_square(sums_over_pairs.P))
         p_11**2/2 + p_21**2/2
         """
         x, v = self.moving

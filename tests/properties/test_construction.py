@@ -13,7 +13,7 @@ PACKAGE = Path(flockana.__file__).parent
 PATTERNS = ("theorems/*.py", "sources/*/theorems.py", "sources/*/theorems/*.py")
 FILES = sorted(path for pattern in PATTERNS for path in PACKAGE.glob(pattern))
 ALLOWED = {
-    "simulate": {"observed.py", "second_runs.py", "verification.py", "on_recordings.py"},
+    "simulate": {"observed_run.py", "second_runs.py", "verification.py", "recording_verdicts.py"},
     "Claim": {"claims.py", "theorem.py"},
 }
 
