@@ -125,7 +125,7 @@ def named_arrays(
     read = {stated_columns.get(kind, next((x for x in _NAMES[kind] if x in lower), "")) for kind in filed} | {frame}
     unused_names = [repr(x) for x in arrays if x not in read and str(x).lower() not in read and counts[x] > 1]
     reading_remarks += [f"not read: {', '.join(unused_names)}"] if unused_names else []
-    if m is not None and m not in range(1, q.shape[2] + 1):
+    if m is not None and (np.ndim(m) or m not in range(1, q.shape[2] + 1)):
         raise ArgumentError(f"m = {m!r}: expected 1 to {q.shape[2]}, of which {where} has positions")
     if m is not None:
         filed |= {kind: filed[kind][..., :m] for kind in "qpu" if kind in filed}
