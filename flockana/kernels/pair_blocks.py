@@ -13,7 +13,7 @@ from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, later_in_row, sort_into_grid
 
 NORMED = True  # bound
 OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")  # as in `flockana.kernels.pair_sums`
@@ -36,16 +36,13 @@ def _put_agent(own, q, order, k, x):
 
 
 @register_jitable
-def _energy_in_slab(own, low, high, start, rows, x, limit, par, panels, sums):
+def _energy_in_slab(own, low, high, start, rows, x, limit, numbers, sums):
     """Write Σ ψ between the agents in some cells and later ones within range, and the number of pairs."""
-    total, pairs = 0.0, 0
+    (par, panels), total, pairs = numbers, 0.0, 0
     for cell in range(low, high):
         for i in range(start[cell], start[cell + 1]):
             for row in range(-1, np.int64(rows.size)):
-                begin, end = i + np.uint64(1), start[cell + 2]
-                if row >= 0:
-                    there = np.int64(cell) + np.int64(rows[row])
-                    begin, end = start[there - 1], start[there + 2]
+                begin, end = later_in_row(start, rows, cell, i, row)
                 for j in range(begin, end):
                     squared_value = square_between(x, i, j)
                     if squared_value < limit:
@@ -64,7 +61,7 @@ def energy_in_slabs(q, r, par, panels):
     for k in prange(order.size):
         _put_agent(marker, q, order, np.int64(k), x)
     for s in prange(slabs):
-        _energy_in_slab(marker, slab_cuts[s + 1], slab_cuts[s + 2], start, rows, x, limit, par, panels, sums[s])
+        _energy_in_slab(marker, slab_cuts[s + 1], slab_cuts[s + 2], start, rows, x, limit, (par, panels), sums[s])
     for s in range(slabs):
         total, pairs = total + sums[s, 0], pairs + np.int64(sums[s, 1])
     return total, pairs
